@@ -79,7 +79,7 @@ def expected_tre(
     standard deviation σ on each axis adds 3σ².
 
     Args:
-        registration: The registration whose errors are asked for.
+        registration: The registration.
         targets: (m, 3) float, in mm.
         localization: The FLE; by default the isotropic one that explains the residuals.
         common_bias_sd_mm: σ.
@@ -108,7 +108,7 @@ def target_error(
     FRE of zero leaves the common offset alone.
 
     Args:
-        registration: The registration whose error is asked for.
+        registration: The registration.
         target: (3,) float, in the fixed space, in mm.
         localization: The FLE; by default the isotropic one that explains the residuals.
         confidence: Least probability that the error lies in the interval.

@@ -1,4 +1,4 @@
-"""The report of a study: one HTML page and the numbers behind it as a CSV file."""
+"""The report of a study: one HTML page, and its numbers as a CSV file."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ class WrittenReport:
 
 
 def write_report(data: StudyData, folder: Path, made_utc: str | None = None) -> WrittenReport:
-    """Write the report of a study into a folder, which is made if it is not there.
+    """Write the report of a study into a folder.
 
     Args:
-        data: Of `read_study_data`.
-        folder: Where to; files of an earlier report there are replaced.
-        made_utc: When it was made, as the report shall say it; now by default.
+        data: From `read_study_data`.
+        folder: Created if missing; files of an earlier report are replaced.
+        made_utc: Time stated in the report; now by default.
 
     Raises:
         InputError: the folder cannot be written, or scipy is missing.
@@ -65,7 +65,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     Raises:
         InputError: scipy is missing.
     """
-    # Before anything that catches the sentences of what cannot be computed.
+    # Before anything that catches `InputError`.
     scipy_module("stats")
     data = with_one_score_version(with_ctps(data))
     pairs = list(itertools.combinations(sorted(data.modes), 2))

@@ -1,7 +1,7 @@
-"""A scenario: a head, where it stands, the tasks on it, and how it is looked at.
+"""A scenario: a head, its pose, the tasks on it, and the views.
 
-A scenario is a folder with `scenario.json`, the head's mesh, one `.mrk.json` file a task and, where
-there are, the images that the head was made of.
+A scenario is a folder with `scenario.json`, the head's mesh, one `.mrk.json` file per task and,
+optionally, the images of the head.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ class Camera:
 
     Attributes:
         position: (3,) float, the eye.
-        focal_point: (3,) float, what is in the middle of the picture.
+        focal_point: (3,) float, the center of the picture.
         view_up: (3,) float, unit vector.
-        view_angle_deg: the picture's height as an angle.
+        view_angle_deg: vertical angle of view.
     """
 
     position: np.ndarray
@@ -73,12 +73,12 @@ class Furniture:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where the head comes from.
+    """The origin of the head.
 
     Attributes:
-        source: the images, and who made them.
-        method: how the head was made of them.
-        license: under which it may be used, with the notice that it requires.
+        source: the images and their authors.
+        method: how the head was made from them.
+        license: with the notice that it requires.
     """
 
     source: str
@@ -88,24 +88,23 @@ class Provenance:
 
 @dataclass(frozen=True)
 class Scenario:
-    """Everything a trial needs; see the module's description.
+    """Everything that a trial needs; see the module's description.
 
     Attributes:
         folder: where it was read from.
         name: short, for records; `title` is for people.
-        head_mesh: path of the head's mesh, read by `rastrainer.head.mesh.read_head_mesh`.
-        target_name: of the point at which the target error is told, such as the head's center.
+        head_mesh: path of the head's mesh, for `rastrainer.head.mesh.read_head_mesh`.
+        target_name: of the point at which the target error is reported, such as the head's center.
         target_position: (3,) float, RAS mm.
         head_to_world: (4, 4) float, rigid, mm: the nominal pose.
         perturbation: how far a trial's pose may be from it.
-        tasks: in the order of their difficulty.
-        cameras: by the names of the protocol, "close-up" (the default view) and "far".
-        furniture, provenance: see there.
-        skull_mesh: path of the skull's mesh, like the head's; None where there is none.
-        is_skull_approximate: whether it is only estimated from the skin, as it is of MRI.
-        targets: further points that are planned to be reached.
-        trajectory: the way that is planned into the head.
-        volume: the images, for whoever looks at them; None where there are none.
+        tasks: in order of difficulty.
+        cameras: by name, "close-up" (the default view) and "far".
+        skull_mesh: path of the skull's mesh, or None.
+        is_skull_approximate: whether the skull is only estimated from the skin, as from MRI.
+        targets: further planned targets.
+        trajectory: the planned trajectory, or None.
+        volume: the images, or None.
     """
 
     folder: Path
@@ -128,15 +127,15 @@ class Scenario:
 
     @property
     def preview(self) -> Path | None:
-        """The picture that lists show; None where the folder has none."""
+        """The picture for lists, or None."""
         path = self.folder / PREVIEW_NAME
         return path if path.is_file() and not path.is_symlink() else None
 
     def task(self, name: str) -> Task:
-        """Return the task of that name.
+        """Return the task of this name.
 
         Raises:
-            InputError: there is none; the sentence lists those there are.
+            InputError: there is none; the message lists the tasks.
         """
         for task in self.tasks:
             if task.name == name:
@@ -145,9 +144,9 @@ class Scenario:
         raise InputError(f"The scenario {self.name} has no such task; it has {names}.")
 
     def perturbed_head_to_world(self, seed: int) -> np.ndarray:
-        """Return the head's pose in the trial of that seed, (4, 4) float, mm.
+        """Return the head's pose in the trial of a seed, (4, 4) float, mm.
 
-        The head is turned about its target, then moved. The same seed gives the same pose.
+        The head is rotated about its target, then moved.
         """
         return perturbed_pose(self.head_to_world, self.target_position, self.perturbation, seed)
 
@@ -156,7 +155,7 @@ def load_scenario(folder: Path | str) -> Scenario:
     """Read a scenario's folder.
 
     Raises:
-        InputError: a file is missing or cannot be used; the sentence names it and the field.
+        InputError: a file is missing or unusable; the message names it and the field.
     """
     try:
         return _load(Path(folder))

@@ -1,4 +1,4 @@
-"""How a head is set up before the robot: its pose, the table, the robot's base."""
+"""The set-up of a head at the robot: its pose, the table, the robot's base."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ LOWEST_BASE_MM = 20.0
 
 @dataclass(frozen=True)
 class SetUp:
-    """A set-up; lengths in mm, in the table's frame: World of a robot whose base is not moved.
+    """A set-up; lengths in mm, in the table's frame: World of a robot at the default place.
 
     Attributes:
-        head_center: where the middle of the head is.
-        head_yaw_deg: its turn about the vertical, counterclockwise from above; 0 looks to −y, with
-            the right side to the robot.
+        head_center: center of the head.
+        head_yaw_deg: rotation about the vertical, counterclockwise from above; 0 faces −y, with the
+            right side toward the robot.
         perturbation: how far a trial's pose may be from it.
         table_center: x and y.
         table_size: along x, along y, thickness.
@@ -47,7 +47,7 @@ class SetUp:
         return np.array([*self.robot_base, 0.0])
 
     def head_to_world(self, middle_ras: np.ndarray) -> np.ndarray:
-        """Return the nominal pose (4, 4), mm, of a head whose middle is (3,) RAS mm."""
+        """Return the nominal pose (4, 4), mm, of a head with its center at (3,) RAS mm."""
         angle = np.radians(180.0 + self.head_yaw_deg)
         c, s = np.cos(angle).round(12), np.sin(angle).round(12)
         pose = np.eye(4)
@@ -56,7 +56,7 @@ class SetUp:
         return pose
 
     def cameras(self) -> dict[str, Camera]:
-        """Return the close-up view of the face's side and the far one of the robot, World mm."""
+        """Return the close-up view of the face and the far view of the robot, World mm."""
         center, up = np.array(self.head_center), np.array([0.0, 0.0, 1.0])
         near = center + CLOSE_UP_FROM_HEAD_MM, center + FOCUS_FROM_HEAD_MM
         far = np.array(FAR_EYE_MM), np.array(FAR_FOCUS_MM)
@@ -71,10 +71,10 @@ class SetUp:
         return Furniture(center, np.array(self.table_size), self.stand_diameter)
 
     def check_height(self, lowest_ras: float, middle_ras: np.ndarray) -> None:
-        """Raise a sentence where the head's base would not be above the table.
+        """Check that the head's base is above the table.
 
         Raises:
-            InputError: it would not.
+            InputError: it is not.
         """
         height = self.head_center[2] - (middle_ras[2] - lowest_ras)
         if height < LOWEST_BASE_MM:
@@ -85,12 +85,12 @@ class SetUp:
 
 
 def read_setup(path: Path) -> SetUp:
-    """Read a set-up from a JSON file; what it leaves out is as usual.
+    """Read a set-up from a JSON file; missing fields have defaults.
 
     Raises:
-        InputError: the file cannot be used; the sentence names the field.
+        InputError: the file is unusable; the message names the field.
     """
-    fields, usual = read_fields(Path(path)), SetUp()
+    fields, default = read_fields(Path(path)), SetUp()
     known = ("head", "perturbation", "table", "stand", "robotBaseMm")
     unknown = [name for name in fields.names() if name not in known]
     if unknown:
@@ -98,28 +98,30 @@ def read_setup(path: Path) -> SetUp:
     head, table, stand = (_part(fields, name) for name in ("head", "table", "stand"))
     limits = _part(fields, "perturbation")
     return SetUp(
-        _point(head, "centerMm", usual.head_center),
-        _number(head, "yawDeg", -180.0, 180.0, usual.head_yaw_deg),
+        _point(head, "centerMm", default.head_center),
+        _number(head, "yawDeg", -180.0, 180.0, default.head_yaw_deg),
         Perturbation(
             _number(
                 limits,
                 "translationMm",
                 0.0,
                 MAX_PERTURBATION.translation_mm,
-                usual.perturbation.translation_mm,
+                default.perturbation.translation_mm,
             ),
-            _number(limits, "yawDeg", 0.0, MAX_PERTURBATION.yaw_deg, usual.perturbation.yaw_deg),
-            _number(limits, "tiltDeg", 0.0, MAX_PERTURBATION.tilt_deg, usual.perturbation.tilt_deg),
+            _number(limits, "yawDeg", 0.0, MAX_PERTURBATION.yaw_deg, default.perturbation.yaw_deg),
+            _number(
+                limits, "tiltDeg", 0.0, MAX_PERTURBATION.tilt_deg, default.perturbation.tilt_deg
+            ),
         ),
-        _point(table, "centerMm", usual.table_center),
-        _point(table, "sizeMm", usual.table_size),
-        _number(stand, "diameterMm", *STAND_DIAMETERS_MM, usual.stand_diameter),
-        _point(fields, "robotBaseMm", usual.robot_base),
+        _point(table, "centerMm", default.table_center),
+        _point(table, "sizeMm", default.table_size),
+        _number(stand, "diameterMm", *STAND_DIAMETERS_MM, default.stand_diameter),
+        _point(fields, "robotBaseMm", default.robot_base),
     )
 
 
 def write_setup(path: Path, setup: SetUp) -> None:
-    """Write a set-up as `read_setup` reads it.
+    """Write a set-up for `read_setup`.
 
     Raises:
         InputError: the file cannot be written.
@@ -142,13 +144,15 @@ def _part(fields: Fields, name: str) -> Fields | None:
     return fields.fields(name) if name in fields.names() else None
 
 
-def _point(fields: Fields | None, name: str, usual: tuple[float, ...]) -> tuple[float, ...]:
+def _point(fields: Fields | None, name: str, default: tuple[float, ...]) -> tuple[float, ...]:
     if fields is None or name not in fields.names():
-        return usual
-    return tuple(fields.numbers(name, len(usual), WORLD_LIMIT_MM))
+        return default
+    return tuple(fields.numbers(name, len(default), WORLD_LIMIT_MM))
 
 
-def _number(fields: Fields | None, name: str, lowest: float, highest: float, usual: float) -> float:
+def _number(
+    fields: Fields | None, name: str, lowest: float, highest: float, default: float
+) -> float:
     if fields is None or name not in fields.names():
-        return usual
+        return default
     return fields.number(name, lowest, highest)

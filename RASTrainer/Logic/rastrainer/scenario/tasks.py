@@ -21,15 +21,15 @@ _NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 @dataclass(frozen=True)
 class Task:
-    """What a trainee has to touch.
+    """A task for trainees.
 
     Attributes:
-        name: such as "trial-run" or "task-1"; commands and records use it.
-        title: what people read.
-        labels: "1" to "15", in the order to touch.
-        fiducials: (15, 3) float, RAS mm, in that order.
-        complexity: the index of `rastrainer.scenario.complexity`.
-        shortest_path_mm: of `rastrainer.head.surface_path`; None where it was not measured.
+        name: such as "trial-run" or "task-1", for commands and records.
+        title: for people.
+        labels: "1" to "15", in touch order.
+        fiducials: (15, 3) float, RAS mm, in touch order.
+        complexity: index from `rastrainer.scenario.complexity`.
+        shortest_path_mm: from `rastrainer.head.surface_path`, or None.
     """
 
     name: str
@@ -46,8 +46,8 @@ def read_task(
     """Read a task's fiducials from a `.mrk.json` file.
 
     Raises:
-        InputError: the file cannot be used, or does not hold fifteen different points that are
-            labeled "1" to "15" in this order.
+        InputError: the file is unusable, or does not have fifteen different points labeled "1" to
+            "15" in this order.
     """
     points = read_markups(path)
     if tuple(points.labels) != LABELS:
@@ -65,7 +65,7 @@ def read_task(
 
 
 def is_task_name(name: str) -> bool:
-    """Return whether a name can stand in commands and file names: lower case, digits, hyphens."""
+    """Return whether a name is valid in commands and files: lower case, digits, hyphens."""
     return len(name) <= 40 and _NAME.fullmatch(name) is not None
 
 
@@ -73,13 +73,13 @@ _NUMBER = re.compile(r"(\d{1,6})\s*$")
 
 
 def touch_order(labels: Sequence[str]) -> list[int]:
-    """Return the rows of a list of fifteen fiducials in the order to touch them.
+    """Return the rows of a list of fifteen fiducials in touch order.
 
-    Numbers at the ends of the labels, such as "7" or Slicer's own "F-7", are the order; without
-    any, it is the list's.
+    The order follows the numbers at the ends of the labels, such as "7" or Slicer's "F-7", or the
+    list if there are none.
 
     Raises:
-        InputError: there are more or fewer fiducials, or their numbers are no order.
+        InputError: the number of fiducials is wrong, or their numbers are ambiguous.
     """
     if len(labels) != FIDUCIAL_COUNT:
         raise InputError(f"it has {len(labels)} fiducials; a task has {FIDUCIAL_COUNT}.")
@@ -101,7 +101,7 @@ MIN_TRAJECTORY_MM = 1.0
 
 @dataclass(frozen=True)
 class PlannedTarget:
-    """A point to be reached, such as a tumor's center.
+    """A target point, such as a tumor's center.
 
     Attributes:
         name: for people.
@@ -118,8 +118,8 @@ class PlannedTrajectory:
 
     Attributes:
         name: for people.
-        entry: (3,) float, RAS mm, where it enters.
-        target: (3,) float, RAS mm, where it ends.
+        entry: (3,) float, RAS mm.
+        target: (3,) float, RAS mm.
     """
 
     name: str
@@ -131,7 +131,7 @@ def read_targets(fields: Fields) -> tuple[PlannedTarget, ...]:
     """Return the optional field `targets`.
 
     Raises:
-        InputError: it is there and cannot be used.
+        InputError: it is invalid.
     """
     if "targets" not in fields.names():
         return ()
@@ -145,7 +145,7 @@ def read_trajectory(fields: Fields) -> PlannedTrajectory | None:
     """Return the optional field `trajectory`.
 
     Raises:
-        InputError: it is there and cannot be used.
+        InputError: it is invalid.
     """
     if "trajectory" not in fields.names():
         return None

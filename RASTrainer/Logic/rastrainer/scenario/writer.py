@@ -33,17 +33,17 @@ _DECIMALS = 4
 
 @contextlib.contextmanager
 def new_folder(folder: Path) -> Iterator[Path]:
-    """Yield a folder beside `folder` that takes its place at the end, or goes where that fails.
+    """Yield a temporary folder that becomes `folder` at the end, or is deleted on failure.
 
     Raises:
-        InputError: `folder` holds something already, or cannot be made.
+        InputError: `folder` is not empty, or cannot be made.
     """
     folder = Path(folder).absolute()
     if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
         raise InputError(f"{folder} is there already; name a folder that is new or empty.")
     partial = folder.parent / f".{uuid.uuid4().hex}.partial"
     try:
-        # A head shows a face.
+        # The head may have a recognizable face.
         make_private_folder(folder.parent)
         partial.mkdir()
         yield partial
@@ -55,10 +55,10 @@ def new_folder(folder: Path) -> Iterator[Path]:
 
 
 def scenario_name(title: str) -> str:
-    """Return a name for commands and records, made of a title.
+    """Return a name for commands and records, derived from a title.
 
     Raises:
-        InputError: none can be made of it.
+        InputError: the title has no Latin letter or digit.
     """
     name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40].strip("-")
     if not is_task_name(name):
@@ -75,14 +75,14 @@ def write_scenario(
     skull: HeadMesh | None = None,
     volume: HeadVolume | None = None,
 ) -> None:
-    """Write `scenario.json`, the meshes, the volume and the tasks into a folder that exists.
+    """Write `scenario.json`, meshes, volume and tasks into an existing folder.
 
     Args:
-        folder: such as `new_folder` yields.
-        scenario: what to write; its own paths do not matter.
-        head: its head's mesh.
-        skull: its skull's; None where it has none.
-        volume: its images; None where it has none.
+        folder: such as from `new_folder`.
+        scenario: the scenario; its own paths are ignored.
+        head: the head's mesh.
+        skull: the skull's mesh, or None.
+        volume: the images, or None.
 
     Raises:
         InputError: a file cannot be written.
@@ -146,7 +146,7 @@ def scenario_json(
 
 
 def volume_entry(volume: HeadVolume) -> dict[str, Any]:
-    """Return what JSON says about a volume that `write_head_volume` has put beside it."""
+    """Return the JSON entry of a volume written by `write_head_volume`."""
     return {"file": VOLUME_NAME, "window": volume.window, "level": volume.level}
 
 
@@ -189,10 +189,10 @@ class HeadDraft:
 
     Attributes:
         head: closed, with a flat base, RAS mm.
-        method: how it was made, for the scenario's provenance.
-        skull: None where there is none.
+        method: how it was made, for the provenance.
+        skull: or None.
         is_skull_approximate: whether the skull is only the skin moved inward.
-        volume: the images it was made of; None where they are not wanted.
+        volume: the images, or None.
     """
 
     head: HeadMesh
@@ -203,7 +203,7 @@ class HeadDraft:
 
 
 def write_draft(folder: Path, draft: HeadDraft) -> None:
-    """Write a draft into a folder that exists.
+    """Write a draft into an existing folder.
 
     Raises:
         InputError: a file cannot be written.
@@ -223,7 +223,7 @@ def read_draft(folder: Path) -> HeadDraft:
     """Read a draft.
 
     Raises:
-        InputError: it is missing or cannot be used.
+        InputError: it is missing or unusable.
     """
     fields = read_fields(folder / DRAFT_NAME)
     kind = fields.one_of("skull", (*SKULL_KINDS, NO_SKULL))

@@ -27,11 +27,11 @@ class LcCusum:
     """The chart of a trainee.
 
     Attributes:
-        scores: After each trial; a success adds, a failure takes off, never below 0.
+        scores: After each trial; a success adds, a failure subtracts, never below 0.
         limit: A score at or above it shows competence.
-        competent_at: Number of the trial (the first is 1) that showed it; None where none did.
-        false_discovery: Probability that a trainee with the inadequate failure rate gets this
-            signal within as many trials.
+        competent_at: Number of the trial (from 1) that showed it, or None.
+        false_discovery: Probability of this signal within as many trials at the inadequate failure
+            rate.
     """
 
     scores: tuple[float, ...]
@@ -97,17 +97,17 @@ def lc_cusum_limit(
 
 
 def fewest_trials(adequate: float, inadequate: float, limit: float) -> int:
-    """Return how many trials show competence at the earliest: successes without a failure."""
+    """Return the least number of trials that can show competence: successes only."""
     success, _ = _steps(adequate, inadequate)
     return math.ceil(limit / success - 1e-12)
 
 
 def chance_of_successes(count: int, trials: int, adequate: float, inadequate: float) -> float:
-    """Return how probable it is that an inadequate trainee reaches the score of so many successes.
+    """Return the probability that an inadequate trainee reaches the score of `count` successes.
 
     Args:
-        count: Successes without a failure between them.
-        trials: Within how many.
+        count: Consecutive successes.
+        trials: Number of trials in which to reach it.
         adequate: Failure rate of a competent trainee.
         inadequate: Failure rate of one who is not.
     """
@@ -118,7 +118,7 @@ def chance_of_successes(count: int, trials: int, adequate: float, inadequate: fl
 def signal_probability(
     failure_rate: float, trials: int, adequate: float, inadequate: float, limit: float
 ) -> float:
-    """Return how probable a signal is within so many trials, exactly, by following every score."""
+    """Return the exact probability of a signal within `trials`, by following every score."""
     success, failure = _steps(adequate, inadequate)
     # A score is a number of successes and of failures since it was last 0.
     open_scores, signaled = {(0, 0): 1.0}, 0.0
@@ -152,14 +152,14 @@ MIN_GROUP_SIZE = 5
 
 @dataclass(frozen=True)
 class PassMark:
-    """Where to pass, and whom that wrongs if both groups' scores are normal.
+    """A pass mark, and its errors if the scores of both groups are normal.
 
     Attributes:
         score: Those at or above it pass.
         passing_novices: Expected share of novices who pass.
         failing_experts: Expected share of experts who fail.
-        observed_passing_novices: The same, counted.
-        observed_failing_experts: The same, counted.
+        observed_passing_novices: Observed share.
+        observed_failing_experts: Observed share.
     """
 
     score: float
@@ -202,7 +202,7 @@ def pass_mark(novices: Sequence[float], experts: Sequence[float]) -> PassMark:
 
 
 def _crossing(below: NormalDist, above: NormalDist) -> float:
-    """Return where the densities cross between the means, or the point that errs alike on both."""
+    """Return where the densities cross between the means, or the point of equal errors."""
     left, right = below.mean, above.mean
     if below.pdf(left) < above.pdf(left) or above.pdf(right) < below.pdf(right):
         # One curve covers the other's mean: they do not cross between the means.

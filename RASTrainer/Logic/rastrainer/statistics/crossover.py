@@ -1,10 +1,10 @@
-"""Two conditions one after the other: the difference, free of what the order adds.
+"""Two conditions in sequence: their difference, separated from the effect of the order.
 
-Who does a condition later has more practice, or is more tired. Where the order is balanced, half of
-the subjects gain by it in one condition and half in the other: the mean difference is right, but
-the subjects' differences scatter by twice the effect of the period, and a paired test that takes
-this for chance finds little. The regression here takes it out (for two sequences AB and BA it is
-the usual analysis of a crossover: Hills and Armitage 1979; Senn 2002, chapter 3).
+A subject has more practice, or is more tired, in the later condition. With balanced orders half of
+the subjects gain by this in one condition and half in the other: the mean difference is right, but
+the differences scatter by twice the effect of the period, so a paired test finds little. The
+regression here removes it (for two sequences AB and BA it is the usual analysis of a crossover:
+Hills and Armitage 1979; Senn 2002, chapter 3).
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from rastrainer.statistics.intervals import CONFIDENCE
 from rastrainer.statistics.scipy_modules import scipy_module
 
 MIN_SUBJECTS = 4
-"""Two are spent on difference and period, and a variance of one degree of freedom shows nothing."""
+"""Difference and period take two; one degree of freedom for the variance is not enough."""
 
 
 @dataclass(frozen=True)
 class DifferenceFit:
-    """The mean of differences, and the effect of the period where it is separated.
+    """The mean of differences, and the effect of the period if separated.
 
-    All arrays have the shape of the data without its last axis.
+    Arrays have the shape of the data without its last axis.
 
     Attributes:
-        mean: Difference for subjects whom the order neither helps nor hinders.
-        standard_error: Of it.
+        mean: Difference for subjects unaffected by the order.
+        standard_error: Of the mean.
         sd: Standard deviation of the differences about the fit.
-        dof: Of it.
-        later: What doing a condition one period later adds; None where it is not separated.
-        later_error: Standard error of it; None where it is not separated.
+        dof: Degrees of freedom.
+        later: Effect of doing a condition one period later, or None.
+        later_error: Its standard error, or None.
     """
 
     mean: np.ndarray
@@ -92,14 +92,14 @@ class Sequences:
     """Subjects by the condition that they did first.
 
     Attributes:
-        first_first: How many did the first condition first.
-        second_first: How many did the second one first.
-        later: What one period later adds.
-        later_interval: 95 % interval of it.
-        between: Mean over both conditions of those who did the second one first, minus that of
-            those who did the first one first; None with fewer than two subjects in one of both.
-            Without carry-over it is 0 but for chance.
-        between_interval: 95 % interval of it.
+        first_first: Number who did the first condition first.
+        second_first: Number who did the second one first.
+        later: Effect of one period later.
+        later_interval: Its 95 % interval.
+        between: Mean over both conditions of those who did the second one first, minus that of the
+            others; None with fewer than two subjects in a sequence. Without carry-over it is 0 but
+            for chance.
+        between_interval: Its 95 % interval.
     """
 
     first_first: int
@@ -113,11 +113,11 @@ class Sequences:
 def compare_sequences(
     first: np.ndarray, second: np.ndarray, order: np.ndarray, fit: DifferenceFit
 ) -> Sequences:
-    """Return what the order did, of (n,) float values of both conditions.
+    """Return the effects of the order on (n,) float values of both conditions.
 
     Args:
-        first: One condition.
-        second: The other one.
+        first: First condition.
+        second: Second condition.
         order: By how many periods each subject did the second condition later than the first.
         fit: Of the differences, with the period.
 

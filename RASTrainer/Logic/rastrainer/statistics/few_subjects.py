@@ -1,4 +1,4 @@
-"""In words: what a paired comparison shows, and what so few subjects cannot show."""
+"""In words: what a paired comparison of few subjects shows and cannot show."""
 
 from __future__ import annotations
 

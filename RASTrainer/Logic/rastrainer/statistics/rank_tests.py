@@ -15,12 +15,12 @@ MAX_SIGNED = 400
 
 @dataclass(frozen=True)
 class SignedRankTest:
-    """What the signs and ranks of the differences say.
+    """The signed-rank test of differences.
 
     Attributes:
-        n: Differences that are not 0.
+        n: Number of differences that are not 0.
         p: Two-sided, exact.
-        smallest_p: What the p of so few differences cannot fall below.
+        smallest_p: Smallest possible p for these differences.
     """
 
     n: int
@@ -70,11 +70,11 @@ MAX_EXACT_SUMS = 100
 
 @dataclass(frozen=True)
 class RankSumTest:
-    """What the ranks of two groups say.
+    """The rank-sum test of two groups.
 
     Attributes:
         p: Two-sided; exact, or by the normal approximation for more than 100 values.
-        smallest_p: What the p of so few values cannot fall below; 0 for more than 100.
+        smallest_p: Smallest possible p; 0 for more than 100 values.
     """
 
     p: float
@@ -82,10 +82,10 @@ class RankSumTest:
 
 
 def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankSumTest | None:
-    """Test whether (n,) and (m,) float values lie alike; None where one group is empty.
+    """Test whether (n,) and (m,) float values have equal location; None if a group is empty.
 
-    The distribution is that of all ways to draw n of the observed ranks; tied values share their
-    mean rank, which scipy's exact test does not know.
+    The distribution is that of all draws of n of the observed ranks; tied values share their mean
+    rank, which scipy's exact test does not support.
     """
     if not len(one) or not len(other):
         return None

@@ -1,8 +1,8 @@
-"""The modules of scipy that the statistics of a report use, imported when they are first needed.
+"""Scipy modules for the statistics of reports, imported when first needed.
 
-3D Slicer brings scipy along. The simulator's own installation does without it: only a report, a
-calculation of power, and groups of trainees ask for it. What is needed while trials are played and
-registered stands on numpy (`rastrainer.registration.distributions`).
+3D Slicer includes scipy; the simulator's installation does not need it, except for reports, power
+calculations and groups of trainees. Everything needed for trials and registration uses numpy
+(`rastrainer.registration.distributions`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ def scipy_module(name: str) -> ModuleType:
     """Return a module of scipy, such as `stats`.
 
     Raises:
-        InputError: scipy is not installed; the sentence says how it is.
+        InputError: scipy is not installed.
     """
     try:
         return importlib.import_module(f"scipy.{name}")

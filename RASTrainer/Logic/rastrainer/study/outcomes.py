@@ -1,4 +1,4 @@
-"""What a report compares: each outcome with its title, unit, and which way is better."""
+"""The outcomes in a report: title, unit, and which direction is better."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ MODE_NAMES = {"desktop": "the desktop screen", "hmd": "the headset"}
 
 @dataclass(frozen=True)
 class Outcome:
-    """One number of a trial.
+    """An outcome of a trial.
 
     Attributes:
         name: Key in a trial's values.
         title: For people.
-        unit: "" where it has none.
-        better: -1 where less is better, 1 where more is, 0 where neither is.
-        digits: After the point.
+        unit: "" if none.
+        better: -1 if less is better, 1 if more is, 0 if neither.
+        digits: Decimals.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Outcome:
         return f"{self.title}, {self.unit}" if self.unit else self.title
 
     def text(self, value: float) -> str:
-        """Return a value with as many digits as make sense, without its unit."""
+        """Return a value with its decimals, without its unit."""
         return fixed(value, self.digits)
 
 
@@ -60,19 +60,19 @@ CLUSTER_METRICS = (
     "sparc",
     "idle_time_s",
 )
-"""Trainees are grouped by those of these that all have; few, as few trainees allow."""
+"""Metrics for grouping trainees, if all have them; few, because of few trainees."""
 
 
 def mode_title(mode: str) -> str:
-    """Return how a mode is called for people."""
+    """Return the title of a mode."""
     return MODE_TITLES.get(mode, mode)
 
 
 def mode_name(mode: str) -> str:
-    """Return how a mode is called within a sentence."""
+    """Return the name of a mode for a sentence."""
     return MODE_NAMES.get(mode, mode)
 
 
 def task_title(task: str) -> str:
-    """Return how a task is called for people: `task-1` and `1` are Task 1."""
+    """Return the title of a task: `task-1` and `1` are Task 1."""
     return f"Task {task}" if task.isdigit() else task.replace("-", " ").capitalize()

@@ -1,4 +1,4 @@
-"""What a report is about: the trials of a study, from its database or from a CSV file."""
+"""The data of a report: the trials of a study, from its database or a CSV file."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ class TrialRow:
         trainee: Pseudonym.
         mode: Such as `desktop`.
         task: Its name.
-        number: Which of the trainee's trials in this mode it was, from 1; 0 for a trial run.
-        values: What was measured, by name; see `rastrainer.study.outcomes`.
-        trial_id: UUID; "" in files that know none.
-        started_utc: ISO 8601; "" where unknown.
-        scenario: In which it was played; "" where unknown.
-        score_version: Of our score; "" without one.
+        number: Of the trainee's trials in this mode, from 1; 0 for a trial run.
+        values: Measurements by name; see `rastrainer.study.outcomes`.
+        trial_id: UUID; "" if unknown.
+        started_utc: ISO 8601; "" if unknown.
+        scenario: Its name; "" if unknown.
+        score_version: Of our score; "" if none.
         acceptable: Whether it was within all limits of its score; False without a score.
-        completed_utc: When the last kept touch was made, ISO 8601; "" where unknown.
+        completed_utc: Time of the last kept touch, ISO 8601; "" if unknown.
     """
 
     trainee: str
@@ -54,23 +54,22 @@ class TrialRow:
 
 @dataclass(frozen=True)
 class StudyData:
-    """Everything a report is about.
+    """The data of a report.
 
     Attributes:
         title: For people.
-        trials: But the trial runs; of a trainee who follows the protocol, those that it asks for.
-        mean_ct_s: Mean completion times that CTPS shall use instead of the trials' own, by mode.
-        notes: What is known about the study beside its numbers; None where nothing is.
-        protocol: None where trainees practiced freely.
+        trials: Without trial runs; for trainees in a protocol, those of its steps.
+        mean_ct_s: Mean completion times for CTPS instead of the trials' own, by mode.
+        notes: On a published study, or None.
+        protocol: None if trainees practiced freely.
         answers: Answered questionnaires.
-        skipped: Trainee, step and reason of each step that was left out.
-        outside_protocol: How many trials the protocol has not asked for; they are left out.
-        without_consent: How many trainees are left out because they did not agree to research.
+        skipped: Trainee, step and reason of each skipped step.
+        outside_protocol: Number of trials outside the protocol, which are left out.
+        without_consent: Number of trainees left out without consent.
         versions: Of the programs that made the records, name → different versions.
         has_order: Whether the order of the trials is known.
-        gap: What is missing of a virtual cohort that was not played to its end, as a sentence; ""
-            of a whole one and of any other study.
-        aborted: Trials that were aborted, trial runs too, by trainee as they were started.
+        gap: What is missing of an incomplete virtual cohort, as a sentence; else "".
+        aborted: Aborted trials, including trial runs, by trainee in order.
     """
 
     title: str
@@ -99,11 +98,11 @@ class StudyData:
 
     @property
     def tasks(self) -> tuple[str, ...]:
-        """Tasks by name; numbers in them count as numbers."""
+        """Tasks by name, with numbers in numerical order."""
         return tuple(sorted({trial.task for trial in self.trials}, key=_by_number))
 
     def with_mean_times(self, mean_ct_s: Mapping[str, float]) -> StudyData:
-        """Return the study with further mean completion times for CTPS, by mode."""
+        """Return the study with given mean completion times for CTPS, by mode."""
         return replace(self, mean_ct_s={**self.mean_ct_s, **mean_ct_s})
 
     def of_mode(self, mode: str) -> list[TrialRow]:
@@ -111,7 +110,7 @@ class StudyData:
         return [trial for trial in self.trials if trial.mode == mode]
 
     def ctps_trials(self, mode: str) -> list[Trial]:
-        """Return the trials of a mode as CTPS takes them; those without a registration lack."""
+        """Return the registered trials of a mode for CTPS."""
         return [
             Trial(t.mode, t.trainee, t.task, t.values["completion_time_s"], t.values["rmse_mm"])
             for t in self.of_mode(mode)
@@ -122,15 +121,15 @@ class StudyData:
 def read_study_data(path: Path, allow_incomplete: bool = False) -> StudyData:
     """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
 
-    Beside a CSV file `NAME.csv`, notes are read from `NAME.json` if it is there.
+    Notes beside a CSV file `NAME.csv` are read from `NAME.json`.
 
     Args:
         path: Of the file.
-        allow_incomplete: Read a virtual cohort that was not played to its end, too.
+        allow_incomplete: Accept an incomplete virtual cohort.
 
     Raises:
-        IncompleteStudyError: it was not, and is not allowed.
-        InputError: the file cannot be used, or holds no trials of anyone who consents.
+        IncompleteStudyError: the cohort is incomplete.
+        InputError: the file is unusable, or has no trials of consenting trainees.
     """
     if not path.is_file():
         raise InputError(f"There is no file {path}.")
@@ -207,7 +206,7 @@ def _from_database(path: Path) -> StudyData:
 
 
 def trial_rows(history: Iterable[StoredTrial]) -> list[TrialRow]:
-    """Return the trials of one trainee, in the order they were started, as rows."""
+    """Return the trials of one trainee, in order, as rows."""
     counts: dict[str, int] = defaultdict(int)
     rows = []
     for stored in history:
@@ -253,9 +252,9 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
 
 
 def _score_parts(score: TrialScore) -> dict[str, float]:
-    """Return what the score is made of; the safety metrics are among the motion metrics."""
+    """Return the parts of a score; the safety metrics are among the motion metrics."""
     parts = {
-        # That of the first version is the expected TRE, which stands among the values already.
+        # In the first version it is the expected TRE, which the values include already.
         "score_tre_mm": None if score.version == FIRST_SCORE_VERSION else score.measures.tre_mm,
         "score_time_desirability": score.time_desirability,
         "score_accuracy_desirability": score.accuracy_desirability,

@@ -1,4 +1,4 @@
-"""What is known about a published study beside its numbers, from a file beside its CSV."""
+"""Notes on a published study, from a file beside its CSV."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ QUANTITIES = (
 
 @dataclass(frozen=True)
 class Printed:
-    """A number as a paper prints it, and which of ours it should equal."""
+    """A number printed in a paper, and the computed quantity that it should equal."""
 
     what: str
     mode: str

@@ -1,7 +1,7 @@
-"""True against expected target error of trials: how honest the expectation was.
+"""Calibration of the expected target error: true against expected errors of trials.
 
-Only a simulator can draw it, since only there the truth is known. What is compared is what was
-reported before the truth was known: the expected TRE and its interval, as stored with each trial.
+Only a simulator knows the true error. It is compared with the expected TRE and interval stored
+before the truth was revealed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rastrainer.statistics.intervals import Proportion, proportion
 from rastrainer.study.database.values import StoredTrial
 
 MIN_SHARE_TRIALS = 5
-"""Of fewer trials a share says nothing."""
+"""Fewer trials have no meaningful share."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +28,9 @@ class CalibrationPoint:
     Attributes:
         trainee, mode, task: Of the trial.
         expected_mm: Expected TRE, RMS.
-        interval_mm: In which the true TRE was to lie.
-        true_mm: The true TRE.
-        allows_for_offset: Whether expectation and interval allow for an offset that all touches
-            share; older ones do not.
+        interval_mm: Interval of the expected TRE.
+        true_mm: True TRE.
+        allows_for_offset: Whether both include an offset common to all touches; older ones do not.
     """
 
     trainee: str
@@ -49,7 +48,7 @@ class CalibrationPoint:
 
     @property
     def is_above(self) -> bool:
-        """Whether the true error is larger than the interval allows: the harmful side."""
+        """Whether the true error is above the interval, the harmful side."""
         return self.true_mm > self.interval_mm[1]
 
 
@@ -58,9 +57,9 @@ class TreCalibration:
     """All trials of a study.
 
     Attributes:
-        points: Trials of which both errors are known, by their expected TRE.
-        without_truth: How many trials lack the true error alone.
-        without_expectation: How many trials lack the expected one, as those without a score.
+        points: Trials with both errors, by expected TRE.
+        without_truth: Number of trials that lack only the true error.
+        without_expectation: Number of trials that lack the expected error.
     """
 
     points: tuple[CalibrationPoint, ...]
@@ -74,7 +73,7 @@ class TreCalibration:
         without_truth: int = 0,
         without_expectation: int = 0,
     ) -> TreCalibration:
-        """Return a calibration with its points in order."""
+        """Return a calibration with sorted points."""
         ordered = tuple(sorted(points, key=lambda point: (point.expected_mm, point.true_mm)))
         return cls(ordered, without_truth, without_expectation)
 
@@ -91,7 +90,7 @@ class TreCalibration:
 
     @property
     def above(self) -> int:
-        """How many true errors are larger than their interval allows."""
+        """Number of true errors above their interval."""
         return sum(point.is_above for point in self.points)
 
     @property
@@ -101,7 +100,7 @@ class TreCalibration:
 
     @property
     def true_rms_mm(self) -> float:
-        """Root mean square of the true errors, which the expected one is to equal."""
+        """Root mean square of the true errors."""
         return float(np.sqrt(np.mean([point.true_mm**2 for point in self.points])))
 
     def of_mode(self, mode: str) -> TreCalibration:
@@ -109,7 +108,7 @@ class TreCalibration:
         return TreCalibration(tuple(point for point in self.points if point.mode == mode))
 
     def sentences(self) -> list[str]:
-        """Return what there is to say.
+        """Return the findings as sentences.
 
         Raises:
             InputError: scipy is missing.
@@ -141,9 +140,8 @@ class TreCalibration:
 
 
 def calibration_of(trials: Iterable[StoredTrial]) -> TreCalibration:
-    """Return the calibration of stored trials; trial runs, which are not registered, are no part.
-
-    Errors are those of the rigid registration that was scored.
+    """Return the calibration of stored trials, using their rigid registrations; trial runs are left
+    out.
     """
     points, without_truth, without_expectation = [], 0, 0
     for trial in trials:

@@ -1,6 +1,6 @@
-"""The record of an aborted trial, as the simulator delivers it and the study keeps it.
+"""The record of an aborted trial, as delivered by the simulator and stored in the study.
 
-What was touched and then given up counts as tried: so nobody passes by aborting what went wrong.
+An aborted trial with touches counts as an attempt, so nobody passes by aborting bad trials.
 """
 
 from __future__ import annotations
@@ -64,31 +64,31 @@ class AbortedTrial:
 
     @property
     def is_trial_run(self) -> bool:
-        """Whether it was a trial run, which nobody passes or fails."""
+        """Whether it was a trial run, which is neither passed nor failed."""
         return self.task == TRIAL_RUN
 
     @property
     def is_after_all_touches(self) -> bool:
-        """Whether all fiducials were touched: only Register was lacking."""
+        """Whether all fiducials were touched and only Register was missing."""
         return self.phase == Phase.COMPLETE.value
 
     @property
     def is_kept(self) -> bool:
-        """Whether there is anything to keep of it: a touch, a refused one too, or some time."""
+        """Whether it is worth keeping: it has a touch, even a refused one, or took some time."""
         touches = len(self.points) + self.rejected_touches + self.undone_touches
         return touches > 0 or self.elapsed_s > MIN_ABORTED_S
 
     @property
     def counts_as_failed(self) -> bool:
-        """Whether it is a trial not passed: one of a scored task, with a touch that counted."""
+        """Whether it counts as not passed: a scored task with a kept or undone touch."""
         return not self.is_trial_run and len(self.points) + self.undone_touches > 0
 
     @classmethod
     def from_json(cls, value: object) -> AbortedTrial:
-        """Return the record that a decoded JSON object holds; unknown keys are ignored.
+        """Return the record in a decoded JSON object; unknown keys are ignored.
 
         Raises:
-            InputError: a key is missing or holds something else than it should.
+            InputError: a key is missing or invalid.
         """
         return record_from_json(cls, value, _CHECKS, "The record of an aborted trial")
 

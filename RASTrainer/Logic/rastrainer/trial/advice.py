@@ -1,4 +1,4 @@
-"""What would have raised the score most: each thing with the points that it would bring."""
+"""What would have raised the score most, each with the points gained."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from rastrainer.trial.touch_findings import TouchFinding
 from rastrainer.trial.wording import Sentence, say
 
 GOOD_EFFICIENCY = 0.35
-"""What straight ways with lifts of 35 mm reach even where fiducials are near each other.
+"""Reached by straight paths with lifts of 35 mm, even between near fiducials.
 
-Virtual trainees who move so reach 0.36 in task 1 and 0.50 in task 5."""
+Virtual trainees who move like this reach 0.36 in task 1 and 0.50 in task 5."""
 ATTEMPT_S = 3.0
-"""What a refused touch costs at least: to notice, to move, to touch again."""
+"""Minimum time lost by a refused touch."""
 LONG_CONTACT_S = 2.0
-"""From here on a contact is described by its length, not as a bump."""
+"""Longer contact is described by its duration, not as a bump."""
 MIN_GAIN = 0.5
 MAX_ADVICE = 3
 
 
 @dataclass(frozen=True)
 class Advice:
-    """One thing to improve.
+    """One improvement.
 
     Attributes:
         topic: Short, for programs.
         sentence: For the trainee.
-        gain: Points that the score would have been higher by, about.
+        gain: Approximate gain in points.
     """
 
     topic: str
@@ -42,10 +42,10 @@ class Advice:
 def advise(
     score: TrialScore | None, findings: Sequence[TouchFinding], motion: Mapping[str, float]
 ) -> tuple[Advice, ...]:
-    """Return up to three things to improve, the most rewarding first.
+    """Return up to three improvements, the most rewarding first.
 
-    A contact that was not meant, and pressing, come first whatever they cost: safety is not bought
-    with points. Without a score of this version nothing else can be advised.
+    Unintended contact and pressing come first regardless of points: safety has priority. Without a
+    score of the current version there is no other advice.
     """
     if score is None or score.version != SCORE_VERSION:
         return tuple(_contacts(motion, 0.0))
@@ -113,7 +113,7 @@ def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
         yield Advice(
             "idle time",
             say("idle time", idle=float(idle), time=time),
-            # Half of it is needed to aim and to hold still.
+            # Half of it is needed to aim.
             _gain(score, time_s=time - idle / 2),
         )
     efficiency = motion.get("path_efficiency", GOOD_EFFICIENCY)
@@ -146,7 +146,7 @@ def _gain(
     measures = replace(
         score.measures,
         completion_time_s=max(time_s or score.measures.completion_time_s, 1e-3),
-        # The target error is, on the average, proportional to the registration error.
+        # On average, the target error is proportional to the registration error.
         tre_mm=score.measures.tre_mm * min(error_factor, 1.0),
         **safety,
     )

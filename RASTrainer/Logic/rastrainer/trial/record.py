@@ -1,7 +1,4 @@
-"""The record of a finished trial, as the simulator delivers it and the study keeps it.
-
-Both sides import this one file: what a record must hold is said here and nowhere else.
-"""
+"""The record of a finished trial, as delivered by the simulator and stored in the study."""
 
 from __future__ import annotations
 
@@ -227,7 +224,7 @@ def _key(field: Field[Any]) -> str:
 
 
 def _check_points(points: tuple[TouchedPoint, ...]) -> None:
-    """Raise `InputError` where a label stands twice, or a point before an earlier one."""
+    """Raise `InputError` if a label is repeated or the points are not in order of time."""
     seen: set[str] = set()
     for point in points:
         if point.label in seen:

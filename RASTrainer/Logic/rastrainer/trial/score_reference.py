@@ -38,10 +38,10 @@ Points = tuple[tuple[float, ...], ...]
 
 
 def fiducial_normals(scenario: Scenario, task_name: str) -> np.ndarray:
-    """Return the skin's outward unit normals at a task's fiducials, (n, 3) float, RAS; read only.
+    """Return the skin's outward unit normals at a task's fiducials, (n, 3) float, RAS; read-only.
 
     Raises:
-        InputError: there is no such task, or the head's mesh cannot be used.
+        InputError: there is no such task, or the head's mesh is unusable.
     """
     fiducials = np.asarray(scenario.task(task_name).fiducials, dtype=float)
     return computed_once(scenario, _normals, tuple(map(tuple, fiducials.tolist())))
@@ -50,12 +50,12 @@ def fiducial_normals(scenario: Scenario, task_name: str) -> np.ndarray:
 def computed_once(
     scenario: Scenario, compute: Callable[..., np.ndarray], *arguments: Points
 ) -> np.ndarray:
-    """Return `compute(mesh, *arguments)` of the scenario's head; read only.
+    """Return the cached, read-only `compute(mesh, *arguments)` for the scenario's head.
 
-    The result is kept for as long as the mesh's file stays as it is.
+    The cache is valid while the mesh's file is unchanged.
 
     Raises:
-        InputError: the head's mesh cannot be used.
+        InputError: the head's mesh is unusable.
     """
     mesh = scenario.head_mesh
     changed = mesh.stat().st_mtime_ns if mesh.is_file() else 0
@@ -93,7 +93,7 @@ class Region:
     grid: np.ndarray
 
     def mean(self, of_targets: np.ndarray, of_grid: np.ndarray) -> float:
-        """Return the mean of a value at the targets and at the grid, each half of it."""
+        """Return the mean of a value over targets and grid, weighted half and half."""
         return float((np.mean(of_targets) + np.mean(of_grid)) / 2)
 
     def tre_mm(self, world_to_head: np.ndarray, head_to_world: np.ndarray) -> float:
@@ -101,7 +101,7 @@ class Region:
 
         Args:
             world_to_head: (4, 4) float, mm, the registration.
-            head_to_world: (4, 4) float, mm, where the head really is.
+            head_to_world: (4, 4) float, mm, the true pose.
         """
         squares = [
             np.sum(true_errors(world_to_head, head_to_world, points) ** 2, axis=1)
@@ -110,14 +110,14 @@ class Region:
         return float(np.sqrt(self.mean(*squares)))
 
     def tre_per_fle(self, fiducials: np.ndarray, normals: np.ndarray) -> float:
-        """Return the RMS TRE to expect of a rigid registration of touches on the skin.
+        """Return the expected RMS TRE of a rigid registration of touches on the skin.
 
-        Their errors are independent, of an FLE of 1 mm each, and lie along the skin, in which all
-        directions are alike: Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). To first order they move the fit by
-        Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point r by J(r) times that, with J the motions of a point.
+        The touching errors are independent, with an FLE of 1 mm, and isotropic along the skin:
+        Cov(eᵢ) = ½ (I − nᵢnᵢᵀ). To first order they move the fit by Σ (Σ JᵀJ)⁻¹ Jᵢᵀ eᵢ, and a point
+        r by J(r) times that, with J the motions of a point.
 
         Args:
-            fiducials: (n, 3) float, RAS mm, not on one line.
+            fiducials: (n, 3) float, RAS mm, not collinear.
             normals: (n, 3) float, unit normals of the skin there, RAS.
         """
         center = fiducials.mean(axis=0)
@@ -136,17 +136,17 @@ def region_of(scenario: Scenario) -> Region:
     """Return the region of a scenario: the head's target, the planned ones, and the grid.
 
     Raises:
-        InputError: the head's mesh cannot be used.
+        InputError: the head's mesh is unusable.
     """
     targets = [scenario.target_position, *(target.position for target in scenario.targets)]
     return Region(np.array(targets, dtype=float), computed_once(scenario, brain_grid))
 
 
 def brain_grid(head: HeadMesh) -> np.ndarray:
-    """Return the grid's points, (n, 3) float, RAS mm.
+    """Return the points of the grid, (n, 3) float, RAS mm.
 
     Raises:
-        InputError: the head is too small or too flat to have any.
+        InputError: the head is too small or too flat.
     """
     top = head.vertices[:, 2].max()
     low, high = head.vertices.min(axis=0), head.vertices.max(axis=0)
@@ -169,11 +169,11 @@ def brain_grid(head: HeadMesh) -> np.ndarray:
 
 
 LIFT_MM = 35.0
-"""How far the tip is off the skin on its way from one fiducial to the next."""
+"""Height of the tip above the skin between two fiducials."""
 TOUCH_S, SPEED_MM_S = 5.2, 26.0
-"""What a fiducial takes, and how fast the tip travels between two. The proportion is that of the
-virtual trainee on the six tasks of Colin27; the size makes the mean of Tasks 1 to 5 the 127 s of
-the published study, pooled over both modes."""
+"""Time per fiducial, and speed of the tip between two. The ratio is that of the virtual trainee on
+the six tasks of Colin27; the scale gives Tasks 1 to 5 the mean of 127 s of the published study,
+pooled over both modes."""
 PUBLISHED_RMSE_MM = 1.4
 """The published study's mean RMSE over fifteen fiducials."""
 REFERENCE_FLE_MM = PUBLISHED_RMSE_MM / np.sqrt(1 - 2 / FIDUCIAL_COUNT)
@@ -188,10 +188,10 @@ def score_reference(
     Args:
         scenario: with the task.
         task_name: of the task.
-        of_protocol: references by task that a study's protocol sets; they come first.
+        of_protocol: references by task from a study's protocol, which take precedence.
 
     Raises:
-        InputError: there is no such task, or the head's mesh cannot be used.
+        InputError: there is no such task, or the head's mesh is unusable.
     """
     if of_protocol and task_name in of_protocol:
         return of_protocol[task_name]
@@ -204,10 +204,10 @@ def score_reference(
 
 
 def _time_s(fiducials: np.ndarray, normals: np.ndarray) -> float:
-    """Return the time of fiducials (n, 3) with the skin's outward unit normals (n, 3).
+    """Return the reference time of fiducials (n, 3) with the skin's outward unit normals (n, 3).
 
-    Between two fiducials the tip goes straight from above the one to above the other: where the
-    skin turns between them, and with it the tool, that way is the longer one.
+    The tip moves straight between points above the fiducials; where the skin and the tool turn
+    between two, the path is longer.
     """
     above = fiducials + LIFT_MM * normals
     path_mm = np.linalg.norm(np.diff(above, axis=0), axis=1).sum()

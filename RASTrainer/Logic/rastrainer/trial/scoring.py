@@ -206,7 +206,7 @@ class TrialScore:
 
 
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
-    """Tell whether a trial reaches the mark and is within all limits."""
+    """Return whether a trial reaches the mark and is within all limits."""
     return acceptable and score >= pass_mark
 
 

@@ -1,4 +1,4 @@
-"""Which touches hurt the registration, and why."""
+"""Touches that degraded the registration, and why."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TREMOR_RADIUS_MM = 5.0
 
 
 class Reason(str, Enum):
-    """Why a touch was off."""
+    """Why a touch was inaccurate."""
 
     DEPTH = "depth"
     ASIDE = "aside"
@@ -33,19 +33,18 @@ class Reason(str, Enum):
 
 @dataclass(frozen=True)
 class TouchFinding:
-    """One touch.
+    """The analysis of one touch.
 
     Attributes:
         label: Of the fiducial.
-        residual_mm: How far the registered touch is from its fiducial.
-        depth_mm: The part along the skin's outward normal: above 0 is off the skin. None where
-            the skin is not known.
-        aside_mm: The part along the skin; None likewise.
-        share: Of the squared registration error, 1 for all of it.
+        residual_mm: Distance of the registered touch from its fiducial.
+        depth_mm: Part along the skin's outward normal, positive off the skin; None without skin.
+        aside_mm: Part along the skin; None likewise.
+        share: Of the squared registration error, 0 to 1.
         dwell_s: How long the tip had been within 2 mm; None without a recording.
-        is_outlier: Whether it is one of those that made the registration worse.
-        reasons: Why, the main one first; empty where nothing stands out.
-        replay_s: From when to when to look at it again, in trial time; None without a recording.
+        is_outlier: Whether it degraded the registration.
+        reasons: The main one first; may be empty.
+        replay_s: Start and end for a replay, in trial time; None without a recording.
     """
 
     label: str

@@ -1,4 +1,4 @@
-"""How a trial stands among the trainee's own earlier ones, and against the marks to pass."""
+"""A trial among the trainee's earlier ones, and against pass mark and competence."""
 
 from __future__ import annotations
 
@@ -59,14 +59,14 @@ class PastTrial:
 
 @dataclass(frozen=True)
 class TraineeProgress:
-    """A trainee's way so far, this trial included.
+    """A trainee's progress including this trial.
 
     Attributes:
-        scores: Of the trials of this task in this mode, in their order; like the competence without
-            trials whose score is of another version.
+        scores: Of the trials of this task in this mode, in order; like competence, without scores
+            of other versions.
         pass_mark: Score that passes.
-        competence: LC-CUSUM over the trainee's trials of all tasks in this mode; an aborted one
-            counts as not passed.
+        competence: LC-CUSUM over the trainee's trials of all tasks in this mode; aborted ones count
+            as not passed.
         sentences: The same in words.
     """
 
@@ -77,16 +77,16 @@ class TraineeProgress:
 
 
 def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> TraineeProgress:
-    """Return how a trial stands.
+    """Return the progress at a trial.
 
     Args:
-        past: All scored trials of the trainee but the trial runs, and the aborted ones that count
-            as not passed, in their order; later ones than this do not count.
+        past: All scored trials of the trainee without trial runs, and aborted ones that count as
+            not passed, in order; later ones are ignored.
         trial_id: Of one of them.
-        pass_mark: Score to reach, such as that of contrasting groups.
+        pass_mark: Score that passes.
 
     Raises:
-        InputError: the trial is none of them.
+        InputError: the trial is not among them.
     """
     ids = ["" if other.is_aborted else other.trial_id for other in past]
     if trial_id not in ids:
@@ -112,13 +112,13 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> T
 
 
 def competence_of(failures: Sequence[bool]) -> LcCusum:
-    """Return the LC-CUSUM of a trainee in one mode; `failures` has each trial, in order."""
+    """Return the LC-CUSUM of a trainee in one mode; `failures` are in order."""
     limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
     return lc_cusum(failures, ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
 
 
 def _compares(other: PastTrial, trial: PastTrial) -> bool:
-    """Return whether a score says the same as another one; an aborted trial has none."""
+    """Return whether two scores are comparable; an aborted trial has none."""
     return other.is_aborted or other.score_version == trial.score_version
 
 

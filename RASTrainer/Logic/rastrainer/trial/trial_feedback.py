@@ -1,4 +1,4 @@
-"""The feedback on one trial, as data and as sentences for any view."""
+"""Feedback on one trial, as data and as sentences for any view."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class TrialFeedback:
 
     @property
     def score_sentences(self) -> tuple[str, ...]:
-        """The score and what it is made of; what is not known is left out."""
+        """The score and its parts, as far as known."""
         score, sentences = self.score, []
         if score is not None:
             beyond = "." if score.acceptable else ": not acceptable."
@@ -73,7 +73,7 @@ class TrialFeedback:
 
     @property
     def touch_sentences(self) -> tuple[Sentence, ...]:
-        """The touches that hurt, the worst first; or that none stands out."""
+        """The outliers, the worst first, or that there are none."""
         outliers = sorted((t for t in self.touches if t.is_outlier), key=lambda t: -t.residual_mm)
         if not outliers:
             return (say("no touch"),)
@@ -81,16 +81,16 @@ class TrialFeedback:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Everything, in the order in which it is shown."""
+        """All sentences in display order."""
         progress = () if self.progress is None else self.progress.sentences
         improve = tuple(f"{i}. {a.sentence}" for i, a in enumerate(self.advice, start=1))
         return (*self.score_sentences, *self.touch_sentences, *improve, *progress)
 
     @property
     def short_sentences(self) -> list[Sentence]:
-        """What a page beside the score has room for: the worst touch, advice, and progress.
+        """The sentences that fit beside the score: worst touch, advice, and progress.
 
-        The pass mark and the competence come last and are always among them.
+        Pass mark and competence come last and are always included.
         """
         progress = () if self.progress is None else self.progress.sentences
         others = [*self.touch_sentences[:1], *(a.sentence for a in self.advice)]

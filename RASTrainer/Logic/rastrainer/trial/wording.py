@@ -1,4 +1,4 @@
-"""The feedback's sentences in English, each with a key by which others word it otherwise."""
+"""The feedback's sentences in English, with keys for translation."""
 
 from __future__ import annotations
 
@@ -59,22 +59,22 @@ ENGLISH: Mapping[str, str] = {
 }
 
 _ROUND_UP = 1 + 1e-12
-"""Rounds halves up: 0.25, stored a trifle below, becomes 0.3."""
+"""Rounds halves up: 0.25, stored slightly below, becomes 0.3."""
 
 
 class Sentence(str):
-    """An English sentence that remembers how it was made.
+    """An English sentence with its key and values.
 
     Attributes:
         key: of its template.
-        values: what was filled in: numbers, texts, and sentences that are parts of this one.
+        values: numbers, texts, and partial sentences.
     """
 
     key: str
     values: Mapping[str, Any]
 
     def to_json(self) -> dict[str, Any]:
-        """Return key, values and the English text; parts are such objects, too."""
+        """Return key, values and English text, recursively."""
         values = {
             name: value.to_json() if isinstance(value, Sentence) else value
             for name, value in self.values.items()

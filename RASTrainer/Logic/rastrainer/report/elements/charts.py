@@ -32,15 +32,15 @@ def learning_curves(
     curve: Sequence[tuple[float, float]] = (),
     span: Sequence[float] = (),
 ) -> str:
-    """Return the chart.
+    """Return the chart of every trainee's values over the trials, with the curve of all.
 
     Args:
         heading: With the unit.
         color: Of the mode.
         trainees: Pseudonym → points (trial number, value).
         x_title: Below the axis.
-        curve: A fitted curve; the means are joined where there is none.
-        span: Values that the axis shall hold besides, so that charts can be compared.
+        curve: A fitted curve; by default the means are connected.
+        span: Further values that the axis must include, to make charts comparable.
     """
     sheet = Sheet(WIDTH, HEIGHT, heading)
     sheet.text(10, 16, heading, 12.5, INK, weight="600")
@@ -71,7 +71,7 @@ DIFFERENCE = 268
 
 
 def paired_lines(comparison: ModeComparison) -> str:
-    """Return the chart of one outcome; the right part has its own axis of differences."""
+    """Return the chart of one outcome; differences have their own axis on the right."""
     outcome = comparison.outcome
     sheet = Sheet(PAIRED_WIDTH, PAIRED_HEIGHT, f"{outcome.title} of every trainee in both modes")
     sheet.text(10, 16, outcome.heading, 12.5, INK, weight="600")
@@ -125,7 +125,7 @@ MAX_EFFECT_SIZE = 6.0
 
 
 def effect_sizes(comparisons: Sequence[ModeComparison]) -> str:
-    """Return the chart; intervals that leave the axis end in an arrow."""
+    """Return the chart; intervals beyond the axis end in an arrow."""
     shown = [
         (comparison, result.hedges_gz, result.gz_interval)
         for comparison, result in tested(comparisons)

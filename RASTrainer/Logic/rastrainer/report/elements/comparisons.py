@@ -1,4 +1,4 @@
-"""Modes compared on the means of the trainees who did both, free of what their order adds."""
+"""Comparisons of modes on the means of trainees who did both, separated from order effects."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from rastrainer.study.outcomes import Outcome
 from rastrainer.study.study_data import StudyData, TrialRow
 
 CONFIRMATORY = ("completion_time_s", "rmse_mm", "score")
-"""These are corrected together for being several; the others are only described."""
+"""Corrected together for multiple testing; the others are only described."""
 UNTESTED = {
     "ctps": "not tested: CTPS compares with the best trial of each mode, and chance in this one "
     "trial moves the mode's mean for all trainees alike"
 }
-"""A paired test would find a difference between equal modes in every second study of twelve."""
+"""A paired test finds a difference between equal modes in half of the studies of twelve."""
 
 
 @dataclass(frozen=True)
@@ -26,17 +26,17 @@ class ModeComparison:
     """One outcome in two modes.
 
     Attributes:
-        outcome: Which.
+        outcome: The outcome.
         first: Mode that is subtracted.
         second: Mode that it is subtracted from.
-        trainees: Who did both.
-        first_means: Mean of each of them, (n,) float.
-        second_means: The same in the second mode.
-        order: By how many periods each of them did the second mode later than the first, (n,)
-            float; None where the order of the trials is unknown.
-        result: The tests; None where they cannot be computed.
-        adjusted_p: p of the t-test, adjusted by Holm's method; None for what is only described.
-        reason: Why there is no result; "" where there is.
+        trainees: Those who did both.
+        first_means: Means in the first mode, (n,) float.
+        second_means: Means in the second mode.
+        order: By how many periods each trainee did the second mode later than the first, (n,)
+            float; None if unknown.
+        result: The tests, or None.
+        adjusted_p: p of the t-test, adjusted by Holm's method; None if only described.
+        reason: Why there is no result; "" otherwise.
     """
 
     outcome: Outcome
@@ -56,9 +56,8 @@ def compare_modes(
 ) -> tuple[ModeComparison, ...]:
     """Compare two modes on every outcome that trials of both have.
 
-    A trainee counts with the mean over the tasks that he or she did in both modes, so that a
-    missing trial does not make one mode look easier. Where trainees had different orders of the
-    modes, the effect of the period is taken out.
+    A trainee's mean is over the tasks done in both modes, so a missing trial does not make a mode
+    look easier. With different orders of the modes, the effect of the period is removed.
     """
     found = []
     delays = mode_delays(data, first, second) if data.has_order else None
@@ -79,7 +78,7 @@ def compare_modes(
 
 
 def tested(comparisons: Sequence[ModeComparison]) -> list[tuple[ModeComparison, PairedComparison]]:
-    """Return the comparisons that could be computed, each with its result."""
+    """Return the comparisons with results."""
     return [(one, one.result) for one in comparisons if one.result is not None]
 
 
@@ -100,10 +99,10 @@ def paired_means(
 
 
 def mode_delays(data: StudyData, first: str, second: str) -> dict[str, float]:
-    """Return for each trainee who did both modes how many periods later the second one was done.
+    """Return by how many periods each trainee did the second mode later than the first.
 
-    A period is a run of trials in one mode: 1 for who did all of the first mode before the second,
-    -1 for the opposite order; where modes took turns, the difference of the mean periods.
+    A period is a run of trials in one mode: 1 if all of the first mode came before the second, -1
+    for the opposite; for alternating modes, the difference of the mean periods.
     """
     periods: dict[str, dict[str, list[int]]] = {}
     latest: dict[str, tuple[str, int]] = {}

@@ -1,4 +1,4 @@
-"""The report's HTML: its pieces, in which every text is escaped, and the page around them."""
+"""The HTML elements of a report, with escaped text, and the page around them."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 MAX_KEPT_TOGETHER = 10
-"""Rows of a table; longer ones on one page would leave half of the page before empty."""
+"""Rows; keeping longer tables on one page could leave half a page empty."""
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell of a table: its text, how many columns it spans, and its color and class."""
+    """A table cell: text, column span, color and class."""
 
     text: str
     span: int = 1
@@ -20,13 +20,13 @@ class Cell:
     kind: str = ""
 
     def html(self, tag: str, scope: str = "col") -> str:
-        """Return the cell; `scope` is what it heads, where it is a `th`."""
+        """Return the cell; `scope` is that of a `th`."""
         attributes = f' colspan="{self.span}"' if self.span > 1 else ""
         attributes += f' class="{self.kind}"' if self.kind else ""
         attributes += f' style="background:{self.color}"' if self.color else ""
         if tag == "th":
             if not self.text:
-                # A corner heads nothing; a screen reader would name it.
+                # A corner is no header; a screen reader would read it.
                 tag = "td"
             else:
                 attributes += f' scope="{scope}{"group" if self.span > 1 else ""}"'
@@ -40,9 +40,9 @@ Line = list[Cell | str]
 def table(
     headers: Sequence[Sequence[Cell | str]], rows: Sequence[Sequence[Cell | str]], kind: str = ""
 ) -> str:
-    """Return a table of header lines and rows; the first cell of each row heads it.
+    """Return a table; the first cell of each row is its header.
 
-    A table of more rows than `MAX_KEPT_TOGETHER` may continue on the next page when it is printed.
+    Tables of more than `MAX_KEPT_TOGETHER` rows may break across printed pages.
     """
     if len(rows) > MAX_KEPT_TOGETHER:
         kind = " ".join(filter(None, (kind, "long")))
@@ -54,12 +54,12 @@ def table(
 
 
 def section(title: str, *parts: str) -> str:
-    """Return a section with its headline."""
+    """Return a section with its heading."""
     return f"<section><h2>{html.escape(title)}</h2>{''.join(parts)}</section>"
 
 
 def heading(text: str) -> str:
-    """Return a headline within a section."""
+    """Return a heading within a section."""
     return f"<h3>{html.escape(text)}</h3>"
 
 
@@ -75,7 +75,7 @@ def bullets(texts: Sequence[str]) -> str:
 
 
 def figure(charts: Sequence[str], caption: str) -> str:
-    """Return charts, which are HTML already, side by side as far as they fit."""
+    """Return charts, which are HTML already, side by side if they fit."""
     inside = "".join(f'<div class="chart">{chart}</div>' for chart in charts)
     kind = "charts" if len(charts) > 1 else "chart-alone"
     return (

@@ -1,4 +1,4 @@
-"""The scores of a report: CTPS by trial and mode, and RASTrainer's own of one version alone."""
+"""The scores in a report: CTPS by trial and mode, and RASTrainer's own of one version."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rastrainer.trial.ctps import (
 
 
 def with_ctps(data: StudyData) -> StudyData:
-    """Return the study with `ctps` among the values of each trial that has a registration."""
+    """Return the study with `ctps` in the values of each registered trial."""
     references = {}
     for mode in data.modes:
         scores = cohort_scores(data, mode)
@@ -34,7 +34,7 @@ def with_ctps(data: StudyData) -> StudyData:
 
 
 def cohort_scores(data: StudyData, mode: str) -> CohortScores | None:
-    """Return the CTPS table of a mode; None where its trials give no reference."""
+    """Return the CTPS table of a mode, or None without a reference."""
     try:
         return score_cohort(data.ctps_trials(mode), data.mean_ct_s.get(mode))
     except InputError:
@@ -42,7 +42,7 @@ def cohort_scores(data: StudyData, mode: str) -> CohortScores | None:
 
 
 def complexity_correlation(values: Iterable[tuple[str, float]]) -> Correlation | None:
-    """Return how values of tasks (name, value) go with the tasks' numbers; None of too few."""
+    """Return the correlation of values (task, value) with the tasks' numbers, or None."""
     pairs = [(task_number(task), value) for task, value in values]
     numbered = np.array([pair for pair in pairs if pair[0] is not None], dtype=float)
     try:
@@ -62,21 +62,21 @@ SCORE = "score"
 
 
 def with_one_score_version(data: StudyData) -> StudyData:
-    """Return the study with the scores of the latest version that it has, and no others.
+    """Return the study with scores of its latest version only.
 
-    The trials stay, with their times, errors and the version of the score that they had.
+    All trials are kept, with their times, errors and score versions.
     """
     latest = max((trial.score_version for trial in data.trials), key=_order, default="")
     return replace(data, trials=tuple(_with_score_of(trial, latest) for trial in data.trials))
 
 
 def compared_version(data: StudyData) -> str:
-    """Return the version of the scores that are compared; "" where there are none."""
+    """Return the version of the compared scores; "" if there are none."""
     return next((trial.score_version for trial in data.trials if SCORE in trial.values), "")
 
 
 def versions_note(data: StudyData) -> str:
-    """Say which scores `with_one_score_version` has left out; "" where it left out none."""
+    """Return which scores `with_one_score_version` left out; "" if none."""
     compared = compared_version(data)
     left_out = Counter(
         trial.score_version for trial in data.trials if trial.score_version not in ("", compared)
@@ -104,5 +104,5 @@ def _with_score_of(trial: TrialRow, version: str) -> TrialRow:
 
 
 def _order(version: str) -> tuple[int, str]:
-    """Order versions as numbers, so that 10 comes after 9."""
+    """Return a sort key: 10 comes after 9."""
     return (int(version) if version.isdecimal() else 0, version)

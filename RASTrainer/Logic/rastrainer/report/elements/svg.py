@@ -1,4 +1,4 @@
-"""A sheet to draw on: a few shapes as SVG text, and axes with round numbers."""
+"""A sheet to draw on: shapes as SVG text, and axes with round numbers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ OTHER_COLORS = ("#3d7f5f", "#8a4f9e", "#b3972c", "#5a6672")
 
 
 def mode_color(mode: str, index: int = 0) -> str:
-    """Return the color of a mode; the two of the paper differ for the color-blind too."""
+    """Return the color of a mode; the paper's two are distinguishable for the color-blind."""
     return MODE_COLORS.get(mode, OTHER_COLORS[index % len(OTHER_COLORS)])
 
 
@@ -107,7 +107,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Axis:
-    """From values to px, in a straight line; `start` may be below `end` or above."""
+    """A linear map from values to px; `start` may be above or below `end`."""
 
     low: float
     high: float
@@ -115,7 +115,7 @@ class Axis:
     end: float
 
     def at(self, value: float) -> float:
-        """Return where a value lies."""
+        """Return the position of a value."""
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def ticks(self, count: int = 5) -> list[float]:
@@ -146,12 +146,12 @@ def round_step(about: float) -> float:
 
 
 def number(value: float) -> str:
-    """Return a tick's number, with a true minus sign."""
+    """Return a tick's number with a true minus sign."""
     return f"{value:g}".replace("-", "−")
 
 
 def y_grid(sheet: Sheet, axis: Axis, left: float, right: float) -> None:
-    """Draw the lines and numbers of a vertical axis."""
+    """Draw grid lines and numbers of a vertical axis."""
     for tick in axis.ticks():
         y = axis.at(tick)
         sheet.line(left, y, right, y, "#9aa5b1" if tick == 0 else GRID, 1)
@@ -159,7 +159,7 @@ def y_grid(sheet: Sheet, axis: Axis, left: float, right: float) -> None:
 
 
 def legend(sheet: Sheet, x: float, y: float, names: Sequence[tuple[str, str]]) -> None:
-    """Write names with their colors in a row."""
+    """Draw names with their colors in a row."""
     for name, color in names:
         sheet.rect(x, y - 9, 10, 10, color)
         sheet.text(x + 15, y, name, 11)

@@ -1,4 +1,4 @@
-"""Whether the true target errors were as expected, which only a simulator can show."""
+"""Calibration of the expected target errors, which needs a simulator."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ HEADER = [
 
 
 def calibration(data: StudyData) -> str:
-    """Return the section; "" where nothing is known of target errors.
+    """Return the section; "" if no target errors are known.
 
     Raises:
         InputError: scipy is missing.
@@ -108,11 +108,11 @@ def _note() -> str:
 WIDTH, HEIGHT = 660, 360
 LEFT, RIGHT, TOP, BOTTOM = 52, 640, 52, 306
 OFF = "#b3261e"
-"""The rim of what lies outside of its interval."""
+"""Outline of points outside their interval."""
 
 
 def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[str, str]]) -> str:
-    """Return the chart; both axes begin at nought, each with its own scale.
+    """Return the chart; both axes start at 0 and have different scales.
 
     Args:
         calibration: With at least one point.
@@ -131,7 +131,7 @@ def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[st
         sheet.line(x, BOTTOM, x, BOTTOM + 4, FAINT)
         sheet.text(x, BOTTOM + 17, number(tick), 10, FAINT, "middle")
     _identity(sheet, along, up)
-    # Bars of very many trials make a band.
+    # Bars of many trials overlap.
     opacity = max(0.05, min(0.55, 14 / len(points)))
     for point in points:
         _bar(sheet, along, up, point, colors[point.mode][1], opacity)
@@ -188,6 +188,6 @@ def _legend(sheet: Sheet, colors: Mapping[str, tuple[str, str]]) -> None:
 
 
 def _words(sheet: Sheet, x: float, y: float, text: str) -> float:
-    """Write a name and return where the next may begin."""
+    """Draw a name and return the position of the next."""
     sheet.text(x, y, text, 11)
     return x + 22 + 5.1 * len(text)

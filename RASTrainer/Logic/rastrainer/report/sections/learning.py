@@ -1,4 +1,4 @@
-"""How trainees changed from trial to trial, and whether that is more than chance."""
+"""How trainees changed from trial to trial, and whether that is significant."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rastrainer.study.study_data import StudyData
 
 SHOWN = ("completion_time_s", "rmse_mm", "score")
 MIN_CURVE_TRIALS = 8
-"""Of fewer trials the plateau lies too far beyond them to be reported."""
+"""With fewer trials the plateau is too uncertain to report."""
 HEADER: Line = [
     *(
         "Outcome",
@@ -38,7 +38,7 @@ Points = dict[str, list[tuple[float, float]]]
 
 
 def learning(data: StudyData) -> str:
-    """Return the curves of each mode over the trials, or over the tasks where no order is known."""
+    """Return the curves of each mode over the trials, or over the tasks if the order is unknown."""
     charts, rows, sentences = [], [], []
     for outcome in (o for o in MAIN_OUTCOMES if o.name in SHOWN):
         for index, mode in enumerate(data.modes):
@@ -78,7 +78,7 @@ def _points(data: StudyData, mode: str, outcome: Outcome) -> Points:
 
 
 def _curve(trend: CohortTrend | None, outcome: Outcome) -> LearningCurve | None:
-    """Return the curve of the means where they are shown to fall."""
+    """Return the curve of the means if they fall significantly."""
     if trend is None or not trend.is_shown or outcome.better > 0:
         return None
     return fit_learning_curve(trend.means) if len(trend.means) >= MIN_TRIALS else None

@@ -80,7 +80,7 @@ def _paused(data: StudyData) -> list[str]:
 
 
 def _missing(data: StudyData) -> list[str]:
-    """Say which tasks some trainees lack, since means over other tasks do not compare."""
+    """Return which tasks some trainees lack, since means over different tasks do not compare."""
     lacking = []
     for mode in data.modes:
         own = data.of_mode(mode)

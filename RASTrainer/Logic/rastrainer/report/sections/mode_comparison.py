@@ -37,7 +37,7 @@ SHOWN = ("completion_time_s", "rmse_mm", "ctps", "score")
 
 
 def mode_comparison(data: StudyData) -> str:
-    """Return one chart an outcome: modes side by side for every task."""
+    """Return one chart per outcome, with the modes side by side for every task."""
     charts = [
         _chart(data, outcome)
         for outcome in MAIN_OUTCOMES
@@ -76,7 +76,7 @@ MAX_DOTS = 40
 
 @dataclass(frozen=True)
 class Series:
-    """One color: its name and, for each group, the values."""
+    """One color: name and values of each group."""
 
     name: str
     color: str
@@ -84,7 +84,7 @@ class Series:
 
 
 def grouped_bars(heading: str, groups: Sequence[str], series: Sequence[Series]) -> str:
-    """Return the chart; a bar is the mean, its whisker one standard deviation, n − 1."""
+    """Return the chart; bars are means, whiskers one standard deviation (n − 1)."""
     sheet = Sheet(WIDTH, HEIGHT, f"{heading} by task and mode")
     sheet.text(LEFT - 34, 16, heading, 12.5, INK, weight="600")
     legend(sheet, LEFT, 34, [(one.name, one.color) for one in series])
@@ -126,7 +126,7 @@ STACK = 38.0
 
 
 def distribution_chart(heading: str, lanes: Sequence[tuple[str, str, Sequence[float]]]) -> str:
-    """Return the chart of lanes, each a name, a color and its values."""
+    """Return the chart of lanes with name, color and values."""
     height = 54 + LANE_HEIGHT * len(lanes)
     sheet = Sheet(LANE_WIDTH, height, f"Distribution of {heading}")
     sheet.text(10, 16, heading, 12.5, INK, weight="600")
@@ -159,9 +159,9 @@ def _lane(sheet: Sheet, axis: Axis, y: float, color: str, values: Sequence[float
 
 
 def _swarm(xs: np.ndarray, size: float) -> list[tuple[float, float]]:
-    """Return positions of dots that are stacked where they would hide each other.
+    """Return positions of dots, stacked to avoid overlap.
 
-    Stacks that would be too high are pressed together, all alike, so that their shape remains.
+    High stacks are compressed evenly, so that their shape remains.
     """
     placed: list[tuple[float, float]] = []
     for x in xs:
@@ -175,7 +175,7 @@ def _swarm(xs: np.ndarray, size: float) -> list[tuple[float, float]]:
 
 
 def distributions(data: StudyData) -> str:
-    """Return a chart an outcome, each with a lane a mode."""
+    """Return one chart per outcome, with a lane for each mode."""
     charts = []
     for outcome in MAIN_OUTCOMES:
         lanes = []
@@ -192,7 +192,7 @@ def distributions(data: StudyData) -> str:
 
 
 def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
-    """Return the table; "" where no trial was recorded."""
+    """Return the table; "" if no trial was recorded."""
     found = {name for trial in data.trials for name in trial.values}
     outcomes = [outcome for outcome in MOTION_OUTCOMES if outcome.name in found]
     if not outcomes:
@@ -230,7 +230,7 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
 
 
 def _effect(result: PairedComparison | None) -> list[str]:
-    """Return the number of trainees and the effect size, as far as there is one."""
+    """Return the number of trainees and the effect size, if known."""
     if result is None:
         return ["–", "–"]
     if result.hedges_gz is None or result.gz_interval is None:

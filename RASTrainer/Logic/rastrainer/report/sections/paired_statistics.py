@@ -1,4 +1,4 @@
-"""What the comparison of modes shows on the means of the trainees, and how sure it is."""
+"""The comparison of modes on the means of trainees, with its uncertainty."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ UNKNOWN_ORDER = (
 
 
 def findings(comparisons: Sequence[ModeComparison]) -> list[str]:
-    """Return a sentence for each outcome that was tested."""
+    """Return a sentence for each tested outcome."""
     return [
         what_it_shows(
             comparison.outcome.title,
@@ -50,7 +50,7 @@ def findings(comparisons: Sequence[ModeComparison]) -> list[str]:
 
 
 def paired_statistics(comparisons: Sequence[ModeComparison]) -> str:
-    """Return tables, charts and sentences; "" where no trainee did two modes."""
+    """Return tables, charts and sentences; "" if no trainee did two modes."""
     if not comparisons:
         return ""
     first, second = (mode_title(m) for m in (comparisons[0].first, comparisons[0].second))
@@ -77,7 +77,7 @@ def paired_statistics(comparisons: Sequence[ModeComparison]) -> str:
 
 
 def order_caveat(comparisons: Sequence[ModeComparison]) -> str:
-    """Return why the effect of the period is not separated; "" where it is."""
+    """Return why the effect of the period is not separated; "" if it is."""
     if any(result.sequences is not None for _one, result in tested(comparisons)):
         return ""
     known = any(comparison.order is not None for comparison in comparisons)
@@ -85,7 +85,7 @@ def order_caveat(comparisons: Sequence[ModeComparison]) -> str:
 
 
 def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
-    """Say what the order of the modes did, or why that is unknown."""
+    """Return the effects of the order, or why they are unknown."""
     separated = [
         (comparison, result.sequences)
         for comparison, result in tested(comparisons)

@@ -1,4 +1,4 @@
-"""Which trials reached the pass mark, and which trainees the LC-CUSUM calls competent."""
+"""Which trials reached the pass mark, and which trainees are competent by LC-CUSUM."""
 
 from __future__ import annotations
 
@@ -68,9 +68,9 @@ def passing(data: StudyData) -> str:
 
 
 def _failures(data: StudyData, mode: str, mark: float) -> dict[str, list[bool]]:
-    """Return of each trainee whether each scored trial failed, in their order.
+    """Return whether each scored trial of each trainee failed, in order.
 
-    An aborted one that counts as not passed stands in its place in time.
+    Aborted trials that count as not passed are included in order of time.
     """
     aborted: dict[str, list[datetime]] = defaultdict(list)
     for record in _aborted(data, mode):

@@ -1,4 +1,4 @@
-"""The paper's Tables I and II from the trials, and its printed numbers and claims beside ours."""
+"""The paper's Tables I and II from the trials, and its numbers and claims checked."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def published_tables(data: StudyData) -> str:
 
 
 def performance_color(value: float, values: Iterable[float]) -> str:
-    """Return the color of a score among others: red, yellow, green."""
+    """Return the color of a score among others, from red to green."""
     values = list(values)
     low, high = min(values), max(values)
     share = 0.5 if low == high else (value - low) / (high - low)
@@ -90,7 +90,7 @@ def _whole(data: StudyData, mode: str, scores: CohortScores) -> str:
 
 
 def _by_task(data: StudyData, mode: str, scores: CohortScores) -> str:
-    """Return the table of a cohort that is too large for a column a subject."""
+    """Return the table of a cohort too large for a column per subject."""
     rows: list[Line] = []
     for task in (task for task in data.tasks if task in scores.tasks):
         own = [t.values for t in data.of_mode(mode) if t.task == task and "rmse_mm" in t.values]
@@ -141,7 +141,7 @@ def _overall(mode: str, scores: CohortScores) -> str:
 
 
 def _complexity(data: StudyData, mode: str, scores: CohortScores) -> str:
-    """Say how time and CTPS go with the tasks' numbers, of task means and of single trials."""
+    """Return how time and CTPS correlate with the tasks' numbers."""
     trials = data.ctps_trials(mode)
     of_times = complexity_correlation((t.task, t.completion_time_s) for t in trials)
     of_trials = complexity_correlation(
@@ -191,7 +191,7 @@ def paper_notes(data: StudyData) -> str:
 
 
 def _count(data: StudyData, printed: Printed) -> str:
-    """Return what a number is computed from, and how many there are."""
+    """Return the number of values behind a printed number."""
     trials = data.ctps_trials(printed.mode)
     if printed.quantity in ("pearson_r", "r_squared"):
         return counted(len({trial.task for trial in trials}), "task mean")

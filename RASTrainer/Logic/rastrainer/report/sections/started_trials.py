@@ -1,4 +1,4 @@
-"""How many trials were started, and how they ended: an aborted one does not disappear."""
+"""How many trials were started and how they ended, including aborted ones."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HEADER = [
 
 
 def started_trials(data: StudyData) -> str:
-    """Return the section; "" where only finished trials are known, as in a CSV file."""
+    """Return the section; "" if only finished trials are known, as in a CSV file."""
     if not data.has_order:
         return ""
     scored = [stored for stored in data.aborted if not stored.record.is_trial_run]

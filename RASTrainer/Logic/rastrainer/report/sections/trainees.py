@@ -19,7 +19,7 @@ from rastrainer.study.study_data import StudyData
 
 
 def questionnaires(data: StudyData) -> str:
-    """Return a table of the scores by mode and occasion; "" where nobody was asked."""
+    """Return a table of scores by mode and occasion; "" if there are no answers."""
     if not data.answers:
         return ""
     values: dict[tuple[str, str, str], list[float]] = defaultdict(list)

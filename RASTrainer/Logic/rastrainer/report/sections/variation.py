@@ -1,4 +1,4 @@
-"""What the trials vary by: practice, haste, trainees and modes."""
+"""Sources of variation of the trials: practice, speed, trainees and modes."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ TIME, ERROR, LAPSES = "completion_time_s", "rmse_mm", "undone_touches"
 
 @dataclass(frozen=True)
 class StudyVariation:
-    """What time and RMSE of a study vary by.
+    """Sources of variation of time and RMSE.
 
     Attributes:
-        trainees: Those who did every mode.
-        trials: Theirs.
+        trainees: Number who did every mode.
+        trials: Number of their trials.
         time: Of the completion time.
         error: Of the RMSE.
         trade_off: k, and its standard error.
-        lapses: Share of the trials in which a touch was taken back.
+        lapses: Share of the trials with an undone touch.
     """
 
     trainees: int
@@ -42,7 +42,7 @@ class StudyVariation:
 
 
 def study_variation(data: StudyData) -> StudyVariation | None:
-    """Return what the trials vary by; None as of `fit_variation`."""
+    """Return the sources of variation; None as in `fit_variation`."""
     if not data.has_order:
         return None
     rows = _rows(data)
@@ -69,7 +69,7 @@ def study_variation(data: StudyData) -> StudyVariation | None:
 
 
 def _rows(data: StudyData) -> list[tuple[TrialRow, int]]:
-    """Return the trials of those who did every mode, each with its number over all modes."""
+    """Return the trials of those who did every mode, numbered over all modes."""
     of_trainee: dict[str, list[TrialRow]] = defaultdict(list)
     for row in data.trials:
         of_trainee[row.trainee].append(row)
@@ -87,7 +87,7 @@ HEADER: Line = [Cell("Source of variation", kind="text"), "completion time", "RM
 
 
 def variation(data: StudyData) -> str:
-    """Return a table for a study whose trials allow it; otherwise nothing."""
+    """Return a table if the trials allow it; else ""."""
     found = study_variation(data)
     if found is None:
         return ""

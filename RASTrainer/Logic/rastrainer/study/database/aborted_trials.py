@@ -1,4 +1,4 @@
-"""Aborted trials in a study: stored once, deleted with their trainee, counted in their place."""
+"""Aborted trials in a study: stored once, deleted with their trainee, counted in order."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class StoredAborted:
     """An aborted trial, and why it was repeated.
 
     Attributes:
-        record: As the simulator delivered it.
-        step: Name of the study's step that it belonged to; "" where none or nothing was asked.
-        repeat_reason: Why that step was played again; "" as long as nobody has said it.
+        record: As delivered by the simulator.
+        step: The study step that it belonged to; "" if none.
+        repeat_reason: Why that step was repeated; "" if no reason was given.
     """
 
     record: AbortedTrial
@@ -42,16 +42,16 @@ class AbortedTrials:
     def add(
         self, record: AbortedTrial | Mapping[str, Any], delivered: Mapping[str, Any] | None = None
     ) -> bool:
-        """Store an aborted trial; return whether it was new. Twice is once.
+        """Store an aborted trial; return whether it was new.
 
-        A trainee whom the study does not know is added without consent, as by `Study.add_trial`.
+        An unknown trainee is added without consent, as in `Study.add_trial`.
 
         Args:
-            record: The trial, or the JSON object that holds it, which is checked.
-            delivered: The object that the record was read from; its unknown keys are kept, too.
+            record: The trial, or its untrusted JSON object.
+            delivered: The original object, whose unknown keys are stored too.
 
         Raises:
-            InputError: the object is no record, larger than 1 MiB, or another trial has its UUID.
+            InputError: the record is invalid or larger than 1 MiB, or another trial has its UUID.
             DeletedTrialError: the trial was deleted with its trainee.
         """
         if not isinstance(record, AbortedTrial):
@@ -64,7 +64,7 @@ class AbortedTrials:
             return _add(connection, record, text)
 
     def of(self, pseudonym: str) -> tuple[StoredAborted, ...]:
-        """Return those of a trainee as they were started; `InputError` for an unknown one."""
+        """Return a trainee's aborted trials in order of starting; `InputError` if unknown."""
         with self._database.reading() as connection:
             study_trainees.find(connection, pseudonym)
             return stored_of(connection, pseudonym)
@@ -93,7 +93,7 @@ class AbortedTrials:
 
 
 def stored_of(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredAborted, ...]:
-    """Return the aborted trials of a trainee as they were started."""
+    """Return the aborted trials of a trainee in order of starting."""
     rows = connection.execute(
         "SELECT record_json, coalesce(step, ''), coalesce(reason, '') FROM aborted_trials "
         "LEFT JOIN repeats USING (trial_id) "
@@ -110,7 +110,7 @@ def stored_of(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredAbo
 def unexplained(
     connection: sqlite3.Connection, pseudonym: str, mode: str, task: str, since: datetime
 ) -> tuple[AbortedTrial, ...]:
-    """Return those of a task, started since a moment, for whose repeat no reason is given yet."""
+    """Return the aborted trials of a task since a time, without a reason for their repeat."""
     return tuple(
         stored.record
         for stored in stored_of(connection, pseudonym)
@@ -121,7 +121,7 @@ def unexplained(
 
 
 def explain(connection: sqlite3.Connection, trial_id: str, step: str, reason: str) -> None:
-    """Store why a step is played again after an aborted trial."""
+    """Store why a step is repeated after an aborted trial."""
     connection.execute(
         "INSERT INTO repeats VALUES (?, ?, ?, ?)", (trial_id, step, reason, utc_now())
     )

@@ -1,7 +1,7 @@
-"""What a study's file knows of the virtual cohort that is played into it, so that it can resume.
+"""The virtual cohort that is simulated into a study, stored so that it can resume.
 
-How many trials are planned and what they follow from is stored before the first is played, and that
-all are done after the last. An incomplete study is recognized as such, whatever interrupted it.
+The plan is stored before the first trial, and its completion after the last, so an incomplete study
+is recognized whatever interrupted it.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from rastrainer.trial.analysis import TrialAnalysis
 
 
 class IncompleteStudyError(InputError):
-    """The study is a virtual cohort that was not played to its end."""
+    """The study is an incomplete virtual cohort."""
 
 
 @dataclass(frozen=True)
 class CohortState:
-    """How far a virtual cohort is played.
+    """The progress of a virtual cohort.
 
     Attributes:
-        planned: Trials of the whole cohort.
-        stored: Trials that were finished and stored.
-        stuck: Trials in which the virtual trainee did not get to a fiducial.
-        is_finished: Whether all were played; trainees that were deleted since change nothing.
+        planned: Number of trials of the whole cohort.
+        stored: Number of finished, stored trials.
+        stuck: Number of trials in which the virtual trainee did not reach a fiducial.
+        is_finished: Whether all trials were played, also if trainees were deleted since.
     """
 
     planned: int
@@ -43,7 +43,7 @@ class CohortState:
 
     @property
     def gap(self) -> str:
-        """What is missing, as a sentence; "" where the cohort is complete."""
+        """What is missing, as a sentence; "" if complete."""
         if self.is_finished:
             return ""
         stuck = f", and {self.stuck} got stuck" if self.stuck else ""
@@ -60,14 +60,14 @@ class CohortStore:
         self._database = study.database
 
     def start(self, plan: Mapping[str, Any], planned_trials: int) -> None:
-        """Note what will be played; the same again, to resume, changes nothing.
+        """Store the plan; the same plan again, to resume, changes nothing.
 
         Args:
-            plan: All that the trials follow from; JSON.
-            planned_trials: How many there will be.
+            plan: Everything that the trials follow from; JSON.
+            planned_trials: Number of trials.
 
         Raises:
-            InputError: the study is of something else, or of another plan.
+            InputError: the study is not a virtual cohort, or has another plan.
         """
         with self._database.writing() as connection:
             row = connection.execute("SELECT plan_json FROM cohort").fetchone()
@@ -81,7 +81,7 @@ class CohortStore:
                 _refuse_other_plan(*map(decode_finite_json, (row[0], json_text(plan))))
 
     def state(self) -> CohortState | None:
-        """Return how far the cohort is played; None where the study is no virtual cohort."""
+        """Return the progress of the cohort, or None if the study is no virtual cohort."""
         with self._database.reading() as connection:
             row = connection.execute("SELECT planned_trials, finished_utc FROM cohort").fetchone()
             if row is None:
@@ -105,13 +105,13 @@ class CohortStore:
             return study_trials.exists(connection, trial_id)
 
     def add(self, analysis: TrialAnalysis) -> None:
-        """Store a finished trial with all that is known of it, together or not at all.
+        """Store a finished trial with all results in one transaction.
 
         Args:
-            analysis: Its record, fits, target errors, truth and score.
+            analysis: Record, fits, target errors, truth and score.
 
         Raises:
-            ValueError: the truth is not known.
+            ValueError: the truth is unknown.
         """
         record, truth = analysis.record, analysis.truth
         if truth is None:
@@ -132,7 +132,7 @@ class CohortStore:
                 )
 
     def add_stuck(self, trial_id: str) -> None:
-        """Note that a trial was played, but not to its end."""
+        """Note that a trial was played but not finished."""
         with self._database.writing() as connection:
             connection.execute("INSERT OR IGNORE INTO stuck_trials VALUES (?)", (trial_id,))
 

@@ -1,8 +1,8 @@
-"""The SQLite file under a study: opened with care, changed in transactions, errors in sentences.
+"""The SQLite file of a study: safe settings, transactions, errors as sentences.
 
-The rollback journal is used, not the write-ahead log: that one needs memory which the computers of
-a shared folder do not share, and a study on a hospital's network drive would be damaged without a
-word. Writers wait for each other; a trial takes milliseconds and comes once in minutes.
+The rollback journal is used, not the write-ahead log, which needs memory shared by all computers:
+it would silently damage a study on a hospital's network drive. Writers wait for each other; a trial
+takes milliseconds and comes once in minutes.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 
 BUSY_TIMEOUT_S = 30.0
 INTERACTIVE_TIMEOUT_S = 0.05
-"""Nobody notices so short a wait in a window."""
+"""Not noticeable in a window."""
 REST_S = 1.0
 
 
 class LockWait:
-    """Waits for a lock, and after a timeout no more for a while.
+    """How long to wait for a lock; after a timeout, not at all for a while.
 
-    A panel asks a study ten questions in a row: with a lock held elsewhere it waits once, not ten
-    times. Several connections may share one.
+    A panel queries a study ten times in a row: if another program holds a lock, it waits once, not
+    ten times. Several connections may share one.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class LockWait:
 
     @classmethod
     def interactive(cls) -> LockWait:
-        """Return that of a thread which draws a window."""
+        """Return the waiting times of a GUI thread."""
         return cls(INTERACTIVE_TIMEOUT_S, REST_S)
 
     @property
@@ -60,7 +60,7 @@ class LockWait:
             self._retry_at = self._clock() + self._rest_s
 
     def may_retry(self) -> bool:
-        """Return whether, after a timeout, it is time to try again; true once."""
+        """Return once whether it is time to retry after a timeout."""
         is_time = self._has_timed_out and self._clock() >= self._retry_at
         self._has_timed_out = self._has_timed_out and not is_time
         return is_time
@@ -70,23 +70,23 @@ _COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'ind
 
 
 class StudyBusyError(InputError):
-    """Another program has the study locked; nothing has changed, and it may be tried again."""
+    """Another program has locked the study; nothing has changed, try again."""
 
 
 class StudyDatabase:
-    """A connection to one file; several processes and threads may have one each."""
+    """A connection to one file; each process and thread may have one."""
 
     def __init__(self, path: str | os.PathLike[str], lock_wait: LockWait | None = None) -> None:
-        """Open the file, create it if it is not there, and bring its tables up to date.
+        """Open or create the file, and migrate its tables.
 
         Args:
             path: of the file.
-            lock_wait: with a lock held elsewhere; half a minute when left out.
+            lock_wait: for locks of others; half a minute by default.
 
         Raises:
-            InputError: no such folder, not a database, another program's, damaged, or made by a
-                newer RASTrainer.
-            StudyBusyError: another program has it locked.
+            InputError: no such folder, not a database, another program's, damaged, or of a newer
+                RASTrainer.
+            StudyBusyError: another program has locked it.
         """
         self.path = Path(path)
         self._lock_wait = lock_wait or LockWait()
@@ -112,20 +112,19 @@ class StudyDatabase:
 
     @contextmanager
     def writing(self) -> Iterator[sqlite3.Connection]:
-        """Give the connection for changes that are stored together or not at all.
+        """Give the connection for changes in one transaction.
 
         Raises:
             InputError: the file is read-only, or the disk is full.
-            StudyBusyError: another program has it locked.
+            StudyBusyError: another program has locked it.
         """
         with self._transaction("BEGIN IMMEDIATE") as connection:
             yield connection
 
     def version(self) -> int | None:
-        """Return a number that is another one once another connection has changed the file.
+        """Return a number that changes when another connection changes the file.
 
-        It waits for nobody, and is cheap enough to be asked every second. None while it cannot be
-        told, as in the moment of such a change.
+        Never waits, and is cheap enough to call every second. None if unknown, as during a change.
         """
         try:
             self._connection.execute("PRAGMA busy_timeout = 0")
@@ -148,7 +147,7 @@ class StudyDatabase:
 
     def _connect(self) -> sqlite3.Connection:
         self._keep_private()
-        # Only we begin transactions: `isolation_level=None`.
+        # Transactions are explicit: `isolation_level=None`.
         return sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s, isolation_level=None)
 
     def _check_place(self) -> None:
@@ -160,8 +159,8 @@ class StudyDatabase:
             raise InputError(f"There is no folder {self.path.parent} for the study database.")
 
     def _keep_private(self) -> None:
-        """Keep others out of the file, and of what SQLite lays beside it and leaves in a crash."""
-        # Only a new one is opened: to close another would end the locks of our other connections.
+        """Keep others out of the file and its temporary companions."""
+        # Only a new file is opened: closing an existing one would release our other locks on it.
         with contextlib.suppress(OSError):
             os.close(open_private(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL))
         for suffix in ("", "-journal", "-wal", "-shm"):
@@ -179,7 +178,7 @@ class StudyDatabase:
             "trusted_schema = OFF",
         ):
             self._connection.execute(f"PRAGMA {pragma}")
-        # In one transaction: another process may just be making the first tables.
+        # In one transaction: another process may be creating the tables.
         with self.reading():
             self._check_origin()
             is_old = self._number("user_version") < len(MIGRATIONS)
@@ -195,7 +194,7 @@ class StudyDatabase:
 
     def _check_origin(self) -> None:
         tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
-        # Ours has none: in a file from elsewhere they would act in our name.
+        # Triggers and views in a foreign file could run as ours.
         if self._connection.execute(_COMMANDS).fetchone()[0]:
             raise InputError(f"The study {self.path} holds triggers or views; ours has none.")
         if self._number("application_id") != (APPLICATION_ID if tables else 0):
@@ -208,7 +207,7 @@ class StudyDatabase:
 
     def _migrate(self) -> None:
         with self.writing() as connection:
-            # Another process may have migrated while this one waited for its turn.
+            # Another process may have migrated meanwhile.
             for version in range(self._number("user_version"), len(MIGRATIONS)):
                 for statement in MIGRATIONS[version]:
                     connection.execute(statement)

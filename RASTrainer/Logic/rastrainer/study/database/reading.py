@@ -1,4 +1,4 @@
-"""A study's file opened for reading only: whoever reads a study leaves every byte of it alone."""
+"""Open a study's file for reading only, without changing it."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from rastrainer.study.database.schema import MIGRATIONS
 class ReadOnlyStudyDatabase(StudyDatabase):
     """A connection that cannot change the file.
 
-    A study of an earlier format is brought up to date in memory. What a crash has left half
-    written is rolled back first, as by any program that opens the file: that is the one change,
-    and what was stored stays as it was.
+    A study of an earlier format is migrated in memory. An incomplete transaction left by a crash is
+    rolled back first, as by any program that opens the file; stored data remain.
     """
 
     def _connect(self) -> sqlite3.Connection:
@@ -63,7 +62,7 @@ class ReadOnlyStudyDatabase(StudyDatabase):
 
 
 def read_only_uri(path: Path) -> str:
-    """Return the URI by which SQLite opens a file without ever writing it."""
+    """Return the URI with which SQLite never writes to a file."""
     name = path.absolute().as_posix()
     # `C:/…` needs a slash before it; a share's `//server/…` must not become a host.
     rooted = name if name.startswith("/") else f"/{name}"

@@ -1,6 +1,6 @@
 """The study: trainees, their trials, registrations and scores, in one SQLite file.
 
-Trials are stored by UUID, so that a trial delivered twice counts once. Results are added, never
+Trials are stored by UUID, so a trial delivered twice counts once. Results are added, never
 overwritten; the latest count. Several processes may use one file at the same time.
 """
 
@@ -31,9 +31,8 @@ STUDY_FILE = "study.db"
 class Study:
     """A study's file; use it in a `with` statement, or call `close`.
 
-    Every method raises `InputError` where the file cannot be read or written: read-only, damaged,
-    disk full; `StudyBusyError` where another program has it locked for longer than the lock_wait
-    lasts. One thread may use it.
+    Every method raises `InputError` if the file cannot be read or written, and `StudyBusyError` if
+    another program has locked it for too long. For one thread.
     """
 
     def __init__(self, database: StudyDatabase) -> None:
@@ -47,17 +46,17 @@ class Study:
         lock_wait: LockWait | None = None,
         make_folder: bool = False,
     ) -> Study:
-        """Open the study in a file, or begin one there.
+        """Open the study in a file, or create one.
 
         Args:
             path: Of the file.
-            lock_wait: With a lock held elsewhere; half a minute when left out.
-            make_folder: Make a missing folder of the file, for its user alone.
+            lock_wait: For locks of others; half a minute by default.
+            make_folder: Create a missing folder of the file, private to its user.
 
         Raises:
-            InputError: the file is no study, damaged, or of a newer RASTrainer; or the folder
-                is missing or cannot be made.
-            StudyBusyError: another program has it locked.
+            InputError: the file is no study, damaged, or of a newer RASTrainer; or the folder is
+                missing or cannot be made.
+            StudyBusyError: another program has locked it.
         """
         if make_folder:
             folder = Path(path).parent
@@ -71,11 +70,11 @@ class Study:
     def open_for_reading(
         cls, path: str | os.PathLike[str], lock_wait: LockWait | None = None
     ) -> Study:
-        """Open the study in a file, which stays as it is; what would change it is refused.
+        """Open the study in a file without changing it; changes are refused.
 
         Raises:
             InputError: as `open`, or there is no such file.
-            StudyBusyError: another program has it locked.
+            StudyBusyError: another program has locked it.
         """
         return cls(ReadOnlyStudyDatabase(path, lock_wait))
 
@@ -91,7 +90,7 @@ class Study:
 
     @property
     def database(self) -> StudyDatabase:
-        """The file underneath, for `rastrainer.experiment`, which keeps its tables there too."""
+        """The underlying file, for further tables of the study."""
         return self._database
 
     def create_trainee(self, pseudonym: str | None = None, consent: bool = False) -> Trainee:
@@ -109,32 +108,32 @@ class Study:
             return study_trainees.next_pseudonym(connection)
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        """Return those who train, or those who are archived, by pseudonym."""
+        """Return active or archived trainees, by pseudonym."""
         with self._database.reading() as connection:
             return study_trainees.listed(connection, archived)
 
     def trainee(self, pseudonym: str) -> Trainee:
-        """Return a trainee; raise `InputError` if the study has none of this pseudonym."""
+        """Return a trainee; raise `InputError` if unknown."""
         with self._database.reading() as connection:
             return study_trainees.find(connection, pseudonym)
 
     def set_consent(self, pseudonym: str, consent: bool) -> Trainee:
-        """Note whether a trainee agrees to research; raise `InputError` if there is none."""
+        """Store whether a trainee consents to research; raise `InputError` if unknown."""
         with self._database.writing() as connection:
             return study_trainees.change(connection, pseudonym, consent=consent)
 
     def set_archived(self, pseudonym: str, archived: bool) -> Trainee:
-        """Hide a trainee from the list or show again; raise `InputError` if there is none."""
+        """Hide a trainee from the list or show them again; raise `InputError` if unknown."""
         with self._database.writing() as connection:
             return study_trainees.change(connection, pseudonym, archived=archived)
 
     def delete_trainee(self, pseudonym: str) -> int:
-        """Delete a trainee with all trials and results, for good; return the number of trials.
+        """Delete a trainee with all trials and results for good; return the number of trials.
 
-        Should the simulator offer one of the trials again, `add_trial` refuses it.
+        `add_trial` refuses these trials from now on.
 
         Raises:
-            InputError: the study has none of this pseudonym.
+            InputError: an unknown trainee.
         """
         self._read_trials.clear()
         with self._database.writing() as connection:
@@ -148,20 +147,20 @@ class Study:
         score: TrialScore | None = None,
         delivered: Mapping[str, Any] | None = None,
     ) -> bool:
-        """Store a finished trial, with its results if they are known; return whether it was new.
+        """Store a finished trial with its results, if known; return whether it was new.
 
-        Of a trial that is already stored, nothing changes. A trainee whom the study does not know
-        is added without consent, so that no trial is lost.
+        A trial that is already stored is not changed. An unknown trainee is added without consent,
+        so that no trial is lost.
 
         Args:
-            record: The trial, or the JSON object that holds it, which is checked.
+            record: The trial, or its untrusted JSON object.
             registrations: At most one of each kind.
             target_errors: By kind of registration.
             score: Our score of the trial.
-            delivered: The object that the record was read from; its unknown keys are kept, too.
+            delivered: The original object, whose unknown keys are stored too.
 
         Raises:
-            InputError: the object is no record, or another trial has its UUID.
+            InputError: the record is invalid, or another trial has its UUID.
             DeletedTrialError: the trial was deleted with its trainee.
         """
         if not isinstance(record, TrialRecord):
@@ -179,7 +178,7 @@ class Study:
         """Return whether a trial would be new, before anything is computed from it.
 
         Raises:
-            InputError: another trial has its UUID, or its trainee's name is no pseudonym.
+            InputError: another trial has its UUID, or its trainee's name is not a valid pseudonym.
             DeletedTrialError: the trial was deleted with its trainee.
         """
         with self._database.reading() as connection:
@@ -192,10 +191,10 @@ class Study:
         target_errors: Mapping[str, TargetError] | None = None,
         score: TrialScore | None = None,
     ) -> None:
-        """Add what was computed from a stored trial; it counts from now on.
+        """Add results of a stored trial; the latest ones count.
 
         Raises:
-            InputError: the study has no such trial.
+            InputError: an unknown trial.
         """
         with self._database.writing() as connection:
             study_trials.add_results(
@@ -203,7 +202,7 @@ class Study:
             )
 
     def set_truth(self, trial_id: str, true_tre_mm: float, head_to_world: Sequence[float]) -> None:
-        """Store what the simulator revealed of a trial; a second time changes nothing.
+        """Store the truth that the simulator revealed; only the first one counts.
 
         Args:
             trial_id: UUID of a stored trial.
@@ -211,22 +210,22 @@ class Study:
             head_to_world: 16 numbers row by row, RAS to `World`, mm.
 
         Raises:
-            InputError: the study has no such trial, or these are not finite numbers.
+            InputError: an unknown trial, or the numbers are not finite.
         """
         with self._database.writing() as connection:
             study_trials.set_truth(connection, trial_id, true_tre_mm, head_to_world)
 
     def set_motion(self, trial_id: str, motion: Mapping[str, float]) -> None:
-        """Store the motion metrics of a trial by name; a second time changes nothing.
+        """Store the motion metrics of a trial by name; only the first ones count.
 
         Raises:
-            InputError: the study has no such trial, or a metric is no finite number.
+            InputError: an unknown trial, or a metric is not finite.
         """
         with self._database.writing() as connection:
             study_trials.set_motion(connection, trial_id, motion)
 
     def trial(self, trial_id: str) -> StoredTrial:
-        """Return a trial; raise `InputError` if the study has no such trial."""
+        """Return a trial; raise `InputError` if unknown."""
         with self._database.reading() as connection:
             return study_trials.find(connection, trial_id)
 
@@ -236,38 +235,34 @@ class Study:
             return study_trials.is_revealed(connection, trial_id)
 
     def history(self, pseudonym: str) -> tuple[StoredTrial, ...]:
-        """Return all trials of a trainee in the order they were started.
+        """Return all trials of a trainee in order of starting.
 
         Raises:
-            InputError: the study has no trainee of this pseudonym.
+            InputError: an unknown trainee.
         """
         with self._database.reading() as connection:
             return study_trials.history(connection, pseudonym, self._read_trials)
 
     def past_trials(self, pseudonym: str) -> tuple[PastTrial, ...]:
-        """Return what progress is computed from: scored trials but the trial runs, as started.
+        """Return the scored trials, without trial runs, from which progress is computed.
 
         Raises:
-            InputError: the study has no trainee of this pseudonym.
+            InputError: an unknown trainee.
         """
         with self._database.reading() as connection:
             return study_trials.past_trials(connection, pseudonym)
 
     def outcomes(self, task: str, mode: str) -> tuple[TrialOutcome, ...]:
-        """Return what all trials of a task and mode are compared by, as they were stored."""
+        """Return the outcomes of all trials of a task and mode, in order of storing."""
         with self._database.reading() as connection:
             return study_trials.outcomes(connection, task, mode)
 
     def unrevealed(self) -> tuple[TrialRecord, ...]:
-        """Return the trials whose truth the simulator has not revealed yet, oldest first."""
+        """Return the records of trials without truth, oldest first."""
         with self._database.reading() as connection:
             return study_trials.unrevealed(connection)
 
     def cohort(self, mode: str | None = None) -> list[Trial]:
-        """Return what CTPS compares: all registered trials of a mode but the trial runs.
-
-        Args:
-            mode: `desktop` or `hmd`; both when left out.
-        """
+        """Return the registered trials of a mode (or all), without trial runs, for CTPS."""
         with self._database.reading() as connection:
             return study_trials.cohort(connection, mode)

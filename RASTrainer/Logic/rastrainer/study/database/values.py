@@ -20,18 +20,18 @@ def utc_now() -> str:
 
 
 def moment(utc: str) -> datetime:
-    """Return the moment of an ISO 8601 text; also before Python 3.11, which knows no Z."""
+    """Return the time of an ISO 8601 text; before Python 3.11, `fromisoformat` rejects Z."""
     return datetime.fromisoformat(utc.replace("Z", "+00:00"))
 
 
 @dataclass(frozen=True)
 class Trainee:
-    """A person who trains, known by a pseudonym only.
+    """A trainee, known only by a pseudonym.
 
     Attributes:
         pseudonym: Unique in the study.
-        consent: Whether the trainee agreed that the data are used for research.
-        archived: Whether the trainee is hidden from the list of those who train.
+        consent: Whether the trainee consents to research.
+        archived: Whether the trainee is hidden from the list.
         created_utc: ISO 8601.
     """
 
@@ -43,21 +43,20 @@ class Trainee:
 
 @dataclass(frozen=True)
 class StoredRegistration:
-    """One registration of a trial, as it was stored.
+    """A stored registration of a trial.
 
     Attributes:
         kind: `rigid`, `similarity` or `affine`.
-        labels: The points that were used; the trial's others were left out.
+        labels: Of the points in the fit.
         matrix: 16 numbers row by row, `World` to RAS, mm.
         fre_mm: Fiducial registration error.
         residuals_mm: One for each label.
         warnings: Each with `code`, `points` and `message`.
-        target_mm: The target of the error below, in RAS; None with the next two where the fit
-            says nothing about targets.
+        target_mm: Target in RAS; None with the next two if the fit gives no target error.
         expected_tre_mm: Expected error there.
-        tre_interval_mm: Where 95 of 100 such errors lie.
-        common_bias_sd_mm: The standard deviation on each axis of the offset common to all touches
-            that both allow for; 0 in what was stored before there was one.
+        tre_interval_mm: Its 95 % interval.
+        common_bias_sd_mm: Standard deviation on each axis of the common offset included in both; 0
+            in older records.
     """
 
     kind: str
@@ -73,7 +72,7 @@ class StoredRegistration:
 
     @classmethod
     def of(cls, registration: Registration, error: TargetError | None) -> StoredRegistration:
-        """Return what is stored of a registration and of its error at the target."""
+        """Return a registration and its target error for storage."""
         return cls(
             kind=registration.kind,
             labels=registration.labels,
@@ -102,15 +101,15 @@ class StoredRegistration:
 
 @dataclass(frozen=True)
 class TrialOutcome:
-    """What trials are compared by.
+    """Outcomes for comparing trials.
 
     Attributes:
         trial_id: UUID.
         trainee: Pseudonym.
         completion_time_s: As recorded.
-        score: The latest; None until the trial is scored.
-        score_version: Of that score; None without one.
-        true_tre_mm: None until the simulator reveals it.
+        score: The latest, or None.
+        score_version: Of that score, or None.
+        true_tre_mm: None until revealed.
     """
 
     trial_id: str
@@ -123,15 +122,15 @@ class TrialOutcome:
 
 @dataclass(frozen=True)
 class StoredTrial:
-    """A trial with the latest of everything that was computed from it.
+    """A trial with its latest results.
 
     Attributes:
-        record: The trial as the simulator delivered it.
+        record: As delivered by the simulator.
         registrations: By kind.
-        score: None until the trial is scored.
-        true_tre_mm: True error at the target; None until the simulator reveals it.
+        score: None until scored.
+        true_tre_mm: True error at the target; None until revealed.
         head_to_world: 16 numbers row by row, RAS to `World`, mm; None until revealed.
-        motion: Motion metrics by name, with the unit at its end; empty where nobody watched.
+        motion: Motion metrics by name, with units; may be empty.
     """
 
     record: TrialRecord

@@ -1,7 +1,7 @@
-"""Which stored trials a study's next steps ask for; each works in the caller's transaction.
+"""The stored trials that belong to the next steps; functions run in the caller's transaction.
 
-A trial belongs to a step if it was started after the trainee was enrolled and after the last trial
-that counts; so does an aborted one.
+A trial, finished or aborted, belongs to a step if it was started after enrollment and after the
+last counted trial.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from rastrainer.trial.aborted_trial import AbortedTrial
 def played_next(
     connection: sqlite3.Connection, pseudonym: str, progress: Progress
 ) -> list[StepEntry]:
-    """Return the entries of the next steps whose trials were played but not counted yet."""
+    """Return the entries of next steps whose trials are stored but not counted yet."""
     entries = []
     while (step := progress.next_step) is not None:
         found = _played_for(connection, pseudonym, progress, step)
@@ -39,10 +39,7 @@ def played_next(
 def _played_for(
     connection: sqlite3.Connection, pseudonym: str, progress: Progress, step: Step
 ) -> str | None:
-    """Return the UUID of the trial that the next step asks for; None where none was played.
-
-    A repeat counts only once it is said why the aborted trials before it were repeated.
-    """
+    """Return the UUID of the next step's trial, or None; a repeat needs a reason to count."""
     counted = set(progress.counted_trials)
     if step.kind is not StepKind.TRIAL:
         return None
@@ -65,7 +62,7 @@ def _played_for(
 def _trials_of(
     connection: sqlite3.Connection, pseudonym: str
 ) -> list[tuple[datetime, str, str, str]]:
-    """Return start, UUID, mode and task of the finished trials of a trainee, as started."""
+    """Return start, UUID, mode and task of the finished trials of a trainee, in order."""
     rows = connection.execute(
         f"SELECT trial_id, mode, task, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})",
         (pseudonym,),
@@ -74,7 +71,7 @@ def _trials_of(
 
 
 def _since(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -> datetime:
-    """Return from when on a trial may be that of the next step."""
+    """Return the earliest start of the next step's trial."""
     counted = set(progress.counted_trials)
     after = [when for when, trial, _m, _t in _trials_of(connection, pseudonym) if trial in counted]
     return max([*after, moment(progress.enrolled_utc)])
@@ -83,11 +80,11 @@ def _since(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -
 def aborted_before(
     connection: sqlite3.Connection, pseudonym: str, progress: Progress
 ) -> tuple[AbortedTrial, ...]:
-    """Return the aborted trials of the next step that nobody has given a reason for."""
+    """Return the aborted trials of the next step without a reason."""
     step = progress.next_step
     if step is None or step.kind is not StepKind.TRIAL:
         return ()
-    # What was left out took its aborted trials with it.
+    # Skipping a step settles its aborted trials.
     left_out = [moment(entry.stored_utc) for entry in progress.skipped]
     since = max([_since(connection, pseudonym, progress), *left_out])
     return unexplained(connection, pseudonym, step.mode, step.task, since)

@@ -19,7 +19,7 @@ MIN_REASON_LENGTH, MAX_REASON_LENGTH = 10, 500
 
 @dataclass(frozen=True)
 class StepEntry:
-    """What became of a step: it was done, or skipped for a reason.
+    """The outcome of a step.
 
     Attributes:
         step: Its name.
@@ -37,14 +37,14 @@ class StepEntry:
 
 @dataclass(frozen=True)
 class Progress:
-    """A trainee's steps and what became of them; nothing is counted as done that is not said.
+    """A trainee's steps and their outcomes.
 
     Attributes:
-        steps: The whole way.
-        entries: Of the first steps, in their order.
-        enrolled_utc: When the trainee was given their place, ISO 8601.
-        practiced_s: How long the next step, if it is a trial run, has been practiced so far, in s.
-        unexplained: Aborted trials of the next step; it is played again only with a reason.
+        steps: All steps.
+        entries: Of the first steps, in order.
+        enrolled_utc: Time of enrollment, ISO 8601.
+        practiced_s: Time already practiced in the next step, if it is a trial run, in s.
+        unexplained: Aborted trials of the next step; repeating it needs a reason.
     """
 
     steps: tuple[Step, ...]
@@ -57,10 +57,10 @@ class Progress:
     def of(
         cls, steps: Sequence[Step], entries: Sequence[StepEntry], enrolled_utc: str = ""
     ) -> Progress:
-        """Return the progress that a log describes.
+        """Return the progress described by a log.
 
         Raises:
-            InputError: the log is not that of these steps.
+            InputError: the log does not match the steps.
         """
         if [step.name for step in steps[: len(entries)]] != [entry.step for entry in entries]:
             raise InputError(
@@ -71,16 +71,16 @@ class Progress:
 
     @property
     def next_step(self) -> Step | None:
-        """What comes next; None when all is done."""
+        """The next step, or None when all are done."""
         return self.steps[len(self.entries)] if len(self.entries) < len(self.steps) else None
 
     @property
     def since_utc(self) -> str:
-        """When the step before the next one was done, or the trainee enrolled; ISO 8601."""
+        """When the previous step was done, or the trainee enrolled; ISO 8601."""
         return self.entries[-1].stored_utc if self.entries else self.enrolled_utc
 
     def minutes_over(self, now: datetime) -> float:
-        """Return how much of the next step's time is over: of a trial run, or of a break; min."""
+        """Return the elapsed time of a trial run or break, min."""
         step = self.next_step
         if step is None or step.kind not in (StepKind.TRIAL_RUN, StepKind.BREAK):
             return 0.0
@@ -90,12 +90,12 @@ class Progress:
 
     @property
     def practice_left_s(self) -> float:
-        """How long the next step, a trial run, is still to be practiced, s; negative when over."""
+        """Remaining time of a trial run, s; negative when over."""
         return 0.0 if self.next_step is None else 60.0 * self.next_step.minutes - self.practiced_s
 
     @property
     def break_end(self) -> datetime | None:
-        """When the next step, a break, is over; None where it is no break."""
+        """End of the next step if it is a break, else None."""
         step = self.next_step
         if step is None or step.kind is not StepKind.BREAK:
             return None
@@ -103,12 +103,12 @@ class Progress:
 
     @property
     def counted_trials(self) -> tuple[str, ...]:
-        """UUIDs of the trials that count, in their order."""
+        """UUIDs of the counted trials, in order."""
         return tuple(e.details["trialId"] for e in self.entries if "trialId" in e.details)
 
     @property
     def skipped(self) -> tuple[StepEntry, ...]:
-        """The steps that were left out, with their reasons."""
+        """The skipped steps."""
         return tuple(entry for entry in self.entries if entry.outcome == SKIPPED)
 
     @property
@@ -121,7 +121,7 @@ class Progress:
 
     @property
     def repeat_sentence(self) -> str:
-        """What is asked after an aborted trial; "" where nothing is."""
+        """The request for a reason after an aborted trial; "" if none is needed."""
         if not self.unexplained:
             return ""
         last = self.unexplained[-1]
@@ -131,11 +131,10 @@ class Progress:
         )
 
     def check_start(self, mode: str, task: str) -> Step:
-        """Return the step that a trial to be started belongs to.
+        """Return the step of a trial to be started.
 
         Raises:
-            InputError: something else comes next, or it was aborted and nobody has said why it is
-                played again; the sentence says what.
+            InputError: another step comes next, or an aborted trial needs a reason.
         """
         step = self._next()
         if step.kind not in (StepKind.TRIAL, StepKind.TRIAL_RUN) or (step.mode, step.task) != (
@@ -148,7 +147,7 @@ class Progress:
         return step
 
     def check_done(self, step: Step, details: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what is to be stored when a step is done; raise `InputError` where it lacks."""
+        """Return the details to store when a step is done; raise `InputError` if incomplete."""
         if step.kind is StepKind.QUESTIONNAIRE:
             if "answers" not in details:
                 raise InputError("A questionnaire is done only with its answers.")
@@ -161,19 +160,19 @@ class Progress:
         return {"minutes": _checked_minutes(step, details.get("minutes"))}
 
     def check_skipped(self, step_name: str, reason: str) -> dict[str, Any]:
-        """Return what is to be stored when a step is skipped.
+        """Return the details to store when a step is skipped.
 
         Raises:
-            InputError: it is not the next step, or no reason is given: nothing is skipped silently.
+            InputError: it is not the next step, or there is no reason.
         """
         self.expected(step_name)
         return {"reason": _checked_reason(reason, "A step is skipped")}
 
     def check_repeat(self, reason: str) -> tuple[Step, str]:
-        """Return the aborted step and the reason to be stored when it is played again.
+        """Return the aborted step and the reason to store when it is repeated.
 
         Raises:
-            InputError: it was not aborted, or no reason is given: nothing is repeated silently.
+            InputError: it was not aborted, or there is no reason.
         """
         if not self.unexplained:
             raise InputError("The next step was not aborted; it needs no reason to be played.")
@@ -185,7 +184,7 @@ class Progress:
         return self.next_step
 
     def expected(self, step_name: str) -> Step:
-        """Return the next step; raise `InputError` where it is not the one of this name."""
+        """Return the next step; raise `InputError` unless it has this name."""
         step = self._next()
         if step.name != step_name:
             raise InputError(
@@ -211,7 +210,7 @@ def _checked_minutes(step: Step, minutes: Any) -> float:
         what = "The trial run" if step.kind is StepKind.TRIAL_RUN else "The break"
         took = f"{minutes:.1f}" if is_number else "none"
         raise InputError(
-            f"{what} takes {step.minutes:g} minutes, of which {took} are over; to go on earlier, "
-            "skip it with a reason."
+            f"{what} takes {step.minutes:g} minutes, of which {took} are over; to continue "
+            "earlier, skip it with a reason."
         )
     return float(minutes)

@@ -11,15 +11,14 @@ from rastrainer.errors import InputError
 
 @dataclass(frozen=True)
 class QuestionnaireItem:
-    """One item: a name for data files, and what it is about.
+    """One item: a name for data files, and its topic.
 
     The published wording is its authors'; a lab shows it from its own licensed or printed form.
 
     Attributes:
         name: For data files.
-        topic: What it is about.
-        anchors: What the smallest and the largest answer mean, where that differs from what they
-            mean for the questionnaire's other items; empty otherwise.
+        topic: Short description.
+        anchors: Meaning of the smallest and the largest answer, if different from the other items.
     """
 
     name: str
@@ -29,7 +28,7 @@ class QuestionnaireItem:
 
 @dataclass(frozen=True)
 class Scale:
-    """One score: its name, title, range, and whether more is better (1) or worse (-1)."""
+    """A score: name, title, range, and whether more is better (1) or worse (-1)."""
 
     name: str
     title: str
@@ -40,19 +39,19 @@ class Scale:
 
 @dataclass(frozen=True)
 class Questionnaire:
-    """What is asked and how it is scored.
+    """A questionnaire and its scoring.
 
     Attributes:
         name: For files and protocols, such as "sus".
         title: For people.
-        items: In the order in which they are asked.
+        items: In order.
         lowest: Smallest answer.
         highest: Largest answer.
-        anchors: What the smallest and the largest mean, but for items with anchors of their own.
-        scales: What the answers are scored on.
-        source: Who published items and scoring.
+        anchors: Meaning of the smallest and the largest answer, except for items with their own.
+        scales: The scores.
+        source: Publication of items and scoring.
         formula: From the checked answers to a score for each scale.
-        marks_apart: Distance of the marks that a form offers; the answers between them count, too.
+        marks_apart: Distance of the marks in a form; answers between them are valid too.
     """
 
     name: str
@@ -68,17 +67,17 @@ class Questionnaire:
 
     @property
     def marks(self) -> range:
-        """The answers that a form offers."""
+        """The answers offered in a form."""
         return range(self.lowest, self.highest + 1, self.marks_apart)
 
     def score(self, answers: Sequence[int] | Mapping[str, int]) -> dict[str, float]:
         """Return the score on each scale.
 
         Args:
-            answers: One whole number for each item, in their order or by their names.
+            answers: One integer for each item, in order or by name.
 
         Raises:
-            InputError: an answer is missing, is too many or out of range; nothing is filled in.
+            InputError: an answer is missing, superfluous or out of range.
         """
         values = self.formula(self.checked(answers))
         return {scale.name: value for scale, value in zip(self.scales, values, strict=True)}
@@ -164,7 +163,7 @@ def _tlx_scores(answers: Sequence[int]) -> tuple[float, ...]:
 
 
 def _tlx_title(name: str, title: str) -> str:
-    """Return the title of a scale beside those of others, with its ends where they are its own."""
+    """Return the title of a scale, with its own anchors if it has any."""
     title = f"TLX {title.lower()}"
     if name not in _TLX_ANCHORS:
         return title
@@ -252,7 +251,7 @@ QUESTIONNAIRES = {q.name: q for q in (SUS, NASA_TLX, SSQ)}
 
 
 def find_questionnaire(name: str) -> Questionnaire:
-    """Return a questionnaire; raise `InputError` with those there are if this is none."""
+    """Return a questionnaire; raise `InputError` if unknown."""
     if name not in QUESTIONNAIRES:
         raise InputError(
             f"There is no questionnaire {name[:40]!r}; known are {', '.join(QUESTIONNAIRES)}."

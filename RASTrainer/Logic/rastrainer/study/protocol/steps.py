@@ -1,4 +1,4 @@
-"""The steps of one trainee through a study, in order."""
+"""The steps of a trainee through a study, in order."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Step:
 
     @property
     def sentence(self) -> str:
-        """What the trainee is asked to do."""
+        """The instruction for the trainee."""
         where = f" {_IN_MODE[self.mode]}" if self.mode else ""
         if self.kind is StepKind.QUESTIONNAIRE:
             return f"Answer the questionnaire {QUESTIONNAIRES[self.questionnaire].title}."
@@ -58,7 +58,7 @@ class Step:
 
 
 def steps_for(protocol: StudyProtocol, place: int) -> tuple[Step, ...]:
-    """Return the way of the trainee who was enrolled at a place, the first is 0."""
+    """Return the steps of the trainee enrolled at a place, from 0."""
     return tuple(_steps(protocol, place))
 
 
@@ -70,7 +70,7 @@ def mode_order(protocol: StudyProtocol, place: int) -> tuple[str, ...]:
 def task_order(
     protocol: StudyProtocol, place: int, mode_index: int, round_: int
 ) -> tuple[str, ...]:
-    """Return the tasks in the order of a trainee's round (from 0) in the mode done at an index.
+    """Return the tasks in the order of a trainee's round (from 0) in the mode at an index.
 
     Trainees with the same order of modes get all orders of tasks in turn.
     """
@@ -130,9 +130,8 @@ def _questions(protocol: StudyProtocol, occasion: str, mode: str, prefix: str) -
 def williams_design(count: int) -> tuple[tuple[int, ...], ...]:
     """Return the rows of a balanced Latin square of conditions 0 … count − 1.
 
-    In all rows together, every condition is as often at every position, and follows every other
-    one equally often. An even count needs as many rows, an odd one twice as many: the square and
-    its mirror image.
+    Over all rows, every condition is equally often at every position and after every other one. An
+    odd count needs twice as many rows: the square and its mirror image.
     """
     first = [0]
     low, high = 1, count - 1

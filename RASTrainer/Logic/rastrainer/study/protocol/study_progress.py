@@ -1,7 +1,7 @@
-"""A study's protocol and every trainee's progress, kept in the study's file.
+"""A study's protocol and every trainee's progress, stored in the study's file.
 
-The module in Slicer and the simulator's flow ask `progress` what comes next and report what was
-done. All of it survives an interruption, since it is stored before it is reported.
+The module in Slicer and the simulator's flow ask `progress` for the next step and report completed
+ones. Everything is stored before it is reported, so it survives interruptions.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol, study_protoc
 
 @dataclass(frozen=True)
 class QuestionnaireAnswers:
-    """What a trainee answered, and its scores."""
+    """The answers of a trainee, and their scores."""
 
     trainee: str
     step: Step
@@ -38,16 +38,16 @@ class QuestionnaireAnswers:
 
 
 class StudyProgress:
-    """The protocol of one study, and who stands where. One thread may use it."""
+    """A study's protocol and the progress of its trainees. For one thread."""
 
     def __init__(self, study: Study) -> None:
         self._database = study.database
 
     def set_protocol(self, protocol: StudyProtocol) -> None:
-        """Make this the study's protocol; the same one again changes nothing.
+        """Set the study's protocol; the same one again changes nothing.
 
         Raises:
-            InputError: the study has another one; a study is not changed while it runs.
+            InputError: the study has another one; it cannot change during the study.
         """
         with self._database.writing() as connection:
             stored = _protocol(connection)
@@ -61,18 +61,18 @@ class StudyProgress:
                 )
 
     def protocol(self) -> StudyProtocol | None:
-        """Return the study's protocol; None where it has none and trainees practice freely."""
+        """Return the study's protocol, or None if trainees practice freely."""
         with self._database.reading() as connection:
             return _protocol(connection)
 
     def enroll(self, pseudonym: str) -> int:
-        """Give a trainee the first free place in the order, and return it; twice is once.
+        """Return a trainee's place, the first free one if not enrolled yet.
 
-        The place decides the order of modes and tasks. That of a deleted trainee is given again,
-        so that the orders stay balanced.
+        The place determines the order of modes and tasks. The place of a deleted trainee is reused,
+        so the orders stay balanced.
 
         Raises:
-            InputError: there is no such trainee, or the study has no protocol.
+            InputError: an unknown trainee, or the study has no protocol.
         """
         with self._database.writing() as connection:
             _require_protocol(connection)
@@ -88,7 +88,7 @@ class StudyProgress:
             return place
 
     def progress(self, pseudonym: str) -> Progress:
-        """Return where a trainee stands.
+        """Return the progress of a trainee.
 
         Raises:
             InputError: the trainee is not enrolled, or the study has no protocol.
@@ -99,16 +99,16 @@ class StudyProgress:
     def finish(
         self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
     ) -> Progress:
-        """Note that the next step was done and return the new progress.
+        """Store that the next step was done and return the new progress.
 
         Args:
             pseudonym: Of an enrolled trainee.
-            step: Name of the step, which must be the next one.
-            details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` that a
-                trial run or a break took.
+            step: Name of the next step.
+            details: `trialId` of a stored trial, `answers` of a questionnaire, or `minutes` of a
+                trial run or break.
 
         Raises:
-            InputError: it is not the next step, or what belongs to it is missing or wrong.
+            InputError: it is not the next step, or the details are invalid.
         """
         with self._database.writing() as connection:
             progress = _progress(connection, pseudonym)
@@ -120,7 +120,7 @@ class StudyProgress:
             return _progress(connection, pseudonym)
 
     def skip(self, pseudonym: str, step: str, reason: str) -> Progress:
-        """Leave out the next step for a reason and return the new progress.
+        """Skip the next step for a reason and return the new progress.
 
         Raises:
             InputError: it is not the next step, or there is no reason of at least ten characters.
@@ -131,7 +131,7 @@ class StudyProgress:
             return _progress(connection, pseudonym)
 
     def explain_repeat(self, pseudonym: str, reason: str) -> Progress:
-        """Say why the next step is played again after it was aborted; return the new progress.
+        """Store why the next step is repeated after an abort; return the new progress.
 
         Raises:
             InputError: it was not aborted, or there is no reason of at least ten characters.
@@ -144,7 +144,7 @@ class StudyProgress:
             return _progress(connection, pseudonym)
 
     def practice(self, pseudonym: str, step: str, seconds: float) -> None:
-        """Add to the time for which the next step, a trial run, was practiced.
+        """Add to the practiced time of the next step, a trial run.
 
         Raises:
             InputError: it is not the next step, or no trial run.
@@ -160,11 +160,11 @@ class StudyProgress:
             )
 
     def count_played(self, pseudonym: str) -> Progress:
-        """Count the stored trials that the next steps ask for, and return the new progress.
+        """Count stored trials for the next steps, and return the new progress.
 
-        A trial counts that was started after the trainee was enrolled and after the last trial that
-        counts. So a trial that arrives late, or whose step an interruption left open, is found. A
-        repeat after an aborted trial counts once its reason is said.
+        Trials count if started after enrollment and after the last counted trial, also if they
+        arrive late or an interruption left their step open. A repeat counts once its reason is
+        given.
         """
         with self._database.reading() as connection:
             progress = _progress(connection, pseudonym)
@@ -177,7 +177,7 @@ class StudyProgress:
             return _progress(connection, pseudonym)
 
     def played(self, pseudonym: str) -> Progress:
-        """Return the progress as `count_played` would leave it, and store nothing."""
+        """Return the progress that `count_played` would give, without storing it."""
         with self._database.reading() as connection:
             progress = _progress(connection, pseudonym)
             further = played_next(connection, pseudonym, progress)
@@ -188,7 +188,7 @@ class StudyProgress:
             return replace(progress, unexplained=aborted_before(connection, pseudonym, progress))
 
     def enrolled(self) -> dict[str, int]:
-        """Return the place of each enrolled trainee, in the order of places."""
+        """Return the place of each enrolled trainee, in order."""
         with self._database.reading() as connection:
             return dict(
                 connection.execute(

@@ -1,4 +1,4 @@
-"""The protocol of a study, as its file says it."""
+"""The protocol of a study and its file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _KEYS = (
 
 @dataclass(frozen=True)
 class ScheduledQuestionnaire:
-    """A questionnaire, when it is asked and in which modes (all where the tuple is empty)."""
+    """A questionnaire, its occasion, and its modes (empty for all)."""
 
     questionnaire: str
     occasion: str
@@ -114,7 +114,7 @@ class StudyProtocol:
 
 
 def pass_mark_of(protocol: StudyProtocol | None) -> float:
-    """Return the score that passes: the protocol's, or the default where there is none."""
+    """Return the protocol's pass mark, or the default."""
     return PASS_MARK if protocol is None or protocol.pass_mark is None else protocol.pass_mark
 
 
@@ -122,13 +122,13 @@ def read_study_protocol(path: Path | str) -> StudyProtocol:
     """Read a protocol file.
 
     Raises:
-        InputError: the file cannot be used; the sentence names the field and what it must be.
+        InputError: the file is unusable; the message names the field.
     """
     return _protocol(read_fields(Path(path)))
 
 
 def study_protocol_from_json(value: Any) -> StudyProtocol:
-    """Return the protocol that `to_json` gave; raise `InputError` where it is not one."""
+    """Return the protocol of a `to_json` object; raise `InputError` if invalid."""
     if not isinstance(value, dict):
         raise InputError("A study protocol must be one JSON object.")
     return _protocol(Fields(value, Path("study protocol")))

@@ -1,4 +1,4 @@
-"""What a study asks of a trainee next (`StudyStep`), and the answers to it (`StepAnswered`)."""
+"""The next step of a trainee (`StudyStep`), and answers to it (`StepAnswered`)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rastrainer.study.protocol.questionnaires import find_questionnaire
 
 @dataclass(frozen=True)
 class StudyStep:
-    """The step that comes next for a trainee.
+    """The next step of a trainee.
 
     Attributes:
         trainee: Pseudonym.
@@ -46,7 +46,7 @@ class StudyStep:
 
     @classmethod
     def of(cls, trainee: str, progress: Progress, now: datetime) -> StudyStep:
-        """Return what comes next for a trainee who stands there."""
+        """Return the next step of a trainee with this progress."""
         step, count = progress.next_step, len(progress.steps)
         if step is None:
             return cls(trainee, ALL_DONE, count, count)
@@ -65,20 +65,20 @@ class StudyStep:
 
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> StudyStep:
-        """Return what checked arguments of the command say."""
+        """Return the step in checked command arguments."""
         return cls(**arguments)
 
     @property
     def is_played(self) -> bool:
-        """Whether a trial or a trial run is started for it."""
+        """Whether it is a trial or trial run."""
         return self.kind in (StepKind.TRIAL.value, StepKind.TRIAL_RUN.value)
 
     def left_s(self, passed_s: float = 0.0) -> float:
-        """Return how long it still takes, s, when so much has passed since it was sent."""
+        """Return the remaining time in s, `passed_s` after it was sent."""
         return max(0.0, 60.0 * (self.minutes - self.over) - passed_s)
 
     def arguments(self) -> dict[str, Any]:
-        """Return the arguments of the command; what is empty is left out."""
+        """Return the command arguments, without empty ones."""
         return {name: value for name, value in asdict(self).items() if value not in ("", 0)}
 
 
@@ -87,13 +87,13 @@ MOST_STEPS = 100_000
 
 @dataclass(frozen=True)
 class StepAnswers:
-    """The answers, and the step that asked for them.
+    """The answers to a step.
 
     Attributes:
         trainee: Pseudonym.
         number: Of the step, from 1.
         questionnaire: Its name.
-        answers: One for each item, in their order.
+        answers: One for each item, in order.
     """
 
     trainee: str
@@ -103,10 +103,10 @@ class StepAnswers:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> StepAnswers:
-        """Return the answers that a JSON object holds.
+        """Return the answers in a JSON object.
 
         Raises:
-            InputError: it does not hold one allowed answer for each item of a questionnaire.
+            InputError: it does not have one allowed answer for each item.
         """
         fields = Fields(dict(value), Path("StepAnswered"))
         questionnaire = find_questionnaire(fields.text("questionnaire", 40))
@@ -125,6 +125,6 @@ class StepAnswers:
         return asdict(self) | {"answers": list(self.answers)}
 
     def belong_to(self, step: StudyStep) -> bool:
-        """Return whether this is the step that they answer."""
+        """Return whether these are answers to a step."""
         answered = (self.trainee, self.number, self.questionnaire)
         return answered == (step.trainee, step.number, step.questionnaire)
