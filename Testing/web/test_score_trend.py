@@ -8,7 +8,7 @@ from Testing.simulator.conftest import setup  # noqa: F401
 from Testing.simulator.flow.conftest import loop, outside, shared  # noqa: F401
 from Testing.simulator.flow.scored_journals import task_menu
 from Testing.simulator.net.views.served import ServedViews
-from Testing.web.chromium import open_page
+from Testing.web.chromium import open_page, wait_for
 
 PICTURE = "#menu img"
 
@@ -33,7 +33,7 @@ def test_the_plot_stands_beside_the_tasks_and_every_score_is_its_text(
 ):
     page.served.tell(task_menu(loop, outside.services, language=language))
     page.wait_for_selector(PICTURE)
-    page.wait_for_function(f"document.querySelector('{PICTURE}').naturalWidth > 0")
+    wait_for(page, f"document.querySelector('{PICTURE}').naturalWidth > 0")
     plot, tasks = page.locator(PICTURE), page.locator("#menu ul")
     assert "38, 52, 47, 67, 71, 69, 88" in plot.get_attribute("alt")
     place, beside = plot.bounding_box(), tasks.bounding_box()

@@ -14,6 +14,7 @@ import pygame
 from rastrainer.protocol import OPEN_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.desktop.camera import Viewpoint
+from rastrainer_simulator.desktop.error_arrows import ErrorArrows
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.overlay import Content, Overlay
@@ -85,6 +86,7 @@ class Picture:
         self.viewports = Viewports(window, quality)
         self._overlay = Overlay(self.viewports.overlay)
         self._scene: ShownScene | None = None
+        self._errors = ErrorArrows()
         self._loaded: LoadedScene | None = None
         self._drawn_state: Mapping[str, Any] | None = None
         self._pulse_step = 0
@@ -107,6 +109,8 @@ class Picture:
         self._take_state(now)
         screen = self._inbox.screen
         self.viewports.wants_inset = screen is None or screen.menu is None
+        if self._errors.show(() if screen is None else screen.errors):
+            self._must_draw = True
         self.viewports.prepare(now)
         if self._overlay.show(self._content(now), self._window.size):
             self._must_draw = True
@@ -128,6 +132,7 @@ class Picture:
             return
         self._loaded, self._drawn_state = loaded, None
         self._scene = ShownScene(loaded.parts, self.viewports.quality.is_physical)
+        self._scene.actors += self._errors.actors
         self.viewports.show(self._scene, loaded.cameras)
 
     def _take_state(self, now: float) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rastrainer_simulator.net.views.screen import (
+    ErrorArrow,
     Fact,
     Hint,
     ItemKind,
@@ -16,6 +17,7 @@ from rastrainer_simulator.net.views.screen import (
     ScreenMessage,
     Tone,
 )
+from rastrainer_simulator.vectors import vector
 
 Json = Mapping[str, Any]
 
@@ -35,7 +37,12 @@ def screen_from_json(value: Json) -> Screen:
         hints=tuple(Hint(str(hint["control"]), str(hint["action"])) for hint in value["hints"]),
         language=str(value["language"]),
         has_arrow=bool(value["has_arrow"]),
+        errors=tuple(_error(arrow) for arrow in value["errors"]),
     )
+
+
+def _error(value: Json) -> ErrorArrow:
+    return ErrorArrow(vector(value["begin"]), vector(value["end"]), Tone(value["tone"]))
 
 
 def _menu(value: Json) -> Menu:

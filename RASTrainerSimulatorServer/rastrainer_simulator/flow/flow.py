@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Guidance, Phase
+from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
@@ -20,6 +21,8 @@ from rastrainer_simulator.ops.texts.texts import LocalizedText
 from rastrainer_simulator.record.view_report import GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import SimulationState, StepResult, TouchStage, TrialResult
+
+OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage)
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = "interrupted"
@@ -155,7 +158,7 @@ class Flow:
             session.pages.show(WaitingPage(session), has_grace=True)
         elif training.phase is Phase.SCORED:
             session.pages.show(ResultPage(session), has_grace=True)
-        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, FinishedPage | ReplayPage):
+        elif before[1] in OPEN_PHASES or isinstance(session.pages.top, OF_A_RESULT):
             # Another simulation may follow a trial while other pages are open: they stay.
             session.pages.show_start()
             session.pages.open(ExperimentPage(session), has_grace=was_working)

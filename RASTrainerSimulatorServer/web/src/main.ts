@@ -3,6 +3,7 @@
 import { Connection, isPaired } from "./connection";
 import { byId } from "./elements";
 import { EnterButton } from "./enter_button";
+import { ErrorArrows } from "./error_arrows";
 import { FlatView } from "./flat_view";
 import { FrameCount } from "./frame_count";
 import { Gamepads } from "./gamepads";
@@ -40,6 +41,7 @@ export class Page {
   private readonly frames = new FrameCount(this.connection);
   private readonly arrow = new TargetArrow();
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
+  private readonly errors = new ErrorArrows();
   private readonly loading = new Loading();
   private readonly enter = new EnterButton((session) => void this.enterHeadset(session));
   private headset: Headset | null = null;
@@ -209,6 +211,7 @@ export class Page {
     const { state, flat } = this;
     const { model } = stage;
     if (state === null || model === null || flat === null) return;
+    if (this.errors.show(this.screen?.errors ?? [], model.root)) this.isDue = true;
     if (this.headset !== null) {
       if (frame === undefined) return;
       this.poses.place(model.bodies, performance.now() / 1000);

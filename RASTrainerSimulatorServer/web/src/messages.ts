@@ -49,6 +49,13 @@ export interface Hint {
   readonly action: string;
 }
 
+/** From a fiducial toward its touch, in World, m. */
+export interface ErrorArrow {
+  readonly begin: readonly [number, number, number];
+  readonly end: readonly [number, number, number];
+  readonly tone: Tone;
+}
+
 export interface Screen {
   readonly menu: Menu | null;
   readonly instruction: Message;
@@ -58,6 +65,7 @@ export interface Screen {
   readonly language: string;
   readonly is_stepped: boolean;
   readonly has_arrow: boolean;
+  readonly errors: readonly ErrorArrow[];
 }
 
 export type Triple = readonly [number, number, number];

@@ -10,9 +10,10 @@ import pytest
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import read_parts
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.screen import ErrorArrow, Screen, Tone
 from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, state_text
 from Testing.simulator.flow.conftest import loop, outside, presenter, shared  # noqa: F401
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
@@ -53,3 +54,19 @@ def test_every_page_is_shown_the_same_when_it_is_opened_again(show, presenter): 
         assert np.array_equal(first, again), name
         assert not np.array_equal(first, empty), name
         show(Screen())
+
+
+def test_the_errors_of_the_touches_are_drawn_in_the_color_of_their_size(show):
+    tones = (Tone.GOOD, Tone.WARNING, Tone.ERROR)
+    arrows = (
+        ErrorArrow((x, -0.12, 0.02), (x, -0.12, 0.06), tone)
+        for x, tone in zip((-0.05, 0.0, 0.05), tones, strict=True)
+    )
+    drawn, empty = show(Screen(errors=tuple(arrows))), show(Screen())
+    for tone in tones:
+        color = np.round(255 * np.array(theme.TONES[tone][:3]))
+        with_arrow, without = (
+            np.count_nonzero((np.abs(pixels[..., :3] - color) <= 6).all(axis=2))
+            for pixels in (drawn, empty)
+        )
+        assert with_arrow > without + 50, tone

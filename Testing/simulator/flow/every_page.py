@@ -9,7 +9,15 @@ from dataclasses import replace
 from rastrainer.protocol import Phase
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.flow.pages import bindings, experiment, introduction, result, start, trial
+from rastrainer_simulator.flow.pages import (
+    bindings,
+    errors,
+    experiment,
+    introduction,
+    result,
+    start,
+    trial,
+)
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
@@ -72,4 +80,5 @@ def _pages(session) -> Iterator[SessionPage]:
         yield over_a_trial(session)
     yield result.WaitingPage(session)
     yield result.ResultPage(session)
+    yield errors.ErrorsPage(session)
     yield ReplayPage(session, _Loading(), begins_at_worst=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -12,6 +13,7 @@ from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.net.views.screen import Tone
 from rastrainer_simulator.ops.texts.german import GERMAN
 
 OWN = "This score is the simulator's own and is not stored in a study."
@@ -42,6 +44,24 @@ def entries_of(outside, trial_id, kind):
     return [entry["arguments"] for entry in read_journal(path).of_kind(kind)]
 
 
+def errors_are_drawn_as_revealed(trainee, registration):
+    """Look at the arrows on the head: they are the revealed errors of the touches, 5 times."""
+    revealed = trainee.submit("SubmitRegistration", **registration).data["touchErrorsMm"]
+    trainee.choose("errors")
+    trainee.until_menu(None)
+    arrows = trainee.presenter.screen.errors
+    lengths_mm = [1000 * math.dist(arrow.begin, arrow.end) for arrow in arrows]
+    assert lengths_mm == pytest.approx([5 * error for error in revealed.values()])
+    tones = [arrow.tone for arrow in arrows]
+    assert tones == [
+        Tone.GOOD if error <= 2 else Tone.ERROR if error >= 4 else Tone.WARNING
+        for error in revealed.values()
+    ]
+    trainee.tap("back")
+    trainee.until_menu("result")
+    assert trainee.presenter.screen.errors == ()
+
+
 def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_replaces_it(
     trainee, outside
 ):
@@ -50,6 +70,7 @@ def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_
     trainee.until_menu("result")
     assert any(sentence.startswith(OWN) for sentence in trainee.menu.paragraphs)
     (submitted,) = entries_of(outside, trial, "registration")
+    errors_are_drawn_as_revealed(trainee, submitted)
     (own,) = entries_of(outside, trial, "scored")
     assert own["details"]["scoreVersion"] == "2"
     # Who has seen the truth cannot register again, not by a micrometre; the same is answered.

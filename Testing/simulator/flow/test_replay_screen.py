@@ -252,12 +252,13 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
     told = result.menu.paragraphs[-1]
     assert told.startswith("Step 4 of 9: take a break of at least 5 minutes, 0")
     names = [item.name for item in result.menu.items]
-    assert names == ["worst", "replay", "menu"]
+    assert names == ["errors", "worst", "replay", "menu"]
     study.take(StudyStep("P07", "trial", 5, 9, "task-2", "desktop"))
     result.step(20)
     assert result.menu.paragraphs[-1] == "Step 5 of 9: play Task 2 on the desktop screen."
     assert [item.label for item in result.menu.items] == [
         "Next: Task 2",
+        "Show the errors on the head",
         "Show the worst touch",
         "Show the trial again",
         "Experiment menu",

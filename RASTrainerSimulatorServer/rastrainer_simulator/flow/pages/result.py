@@ -12,6 +12,7 @@ from rastrainer.json_checks import is_number
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.trial_feedback import MAX_SHORT
+from rastrainer_simulator.flow.pages.errors import GOOD_MM, POOR_MM, ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
@@ -22,10 +23,6 @@ from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import TrialResult
 
-GOOD_MM = 2.0
-POOR_MM = 4.0
-"""Errors up to the first are good, from the second on they are poor: what frameless stereotaxy
-reaches in the clinic lies between them."""
 POOR_SCORE = 40.0
 LONGEST_SENTENCE = 300
 
@@ -119,7 +116,7 @@ class ResultPage(FinishedPage):
     def items(self) -> tuple[MenuItem, ...]:
         """Return where one can go, and what can be shown again."""
         items = {item.name: item for item in super().items()}
-        shown = (self.button("worst"), self.button("replay"))
+        shown = (self.button("errors"), self.button("worst"), self.button("replay"))
         onward = [items.pop("next")] if "next" in items else []
         return (*onward, *shown, *items.values())
 
@@ -127,6 +124,8 @@ class ResultPage(FinishedPage):
         """Show the trial again, or continue."""
         if item in ("replay", "worst"):
             self._show_again(begins_at_worst=item == "worst")
+        elif item == "errors":
+            self.session.pages.open(ErrorsPage(self.session))
         else:
             super().accept(item)
 

@@ -14,6 +14,7 @@ from rastrainer.protocol import OPEN_PHASES, CommandName, Guidance, Mode
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.commands import Commands
@@ -40,7 +41,7 @@ from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, vector
 
 NOTICE_S = 5.0
 SET_UP_AFTER_S = 1.0
@@ -250,6 +251,11 @@ class TrainingSession:
         self._set_up_in = SET_UP_AFTER_S
         path = self._services.config / PREFERENCES_FILE
         self._save(lambda: write_preferences(path, preferences))
+
+    def fiducial(self, label: str) -> Vector:
+        """Return where a fiducial of the present trial is, World, m: only after the score."""
+        truth = self._control_loop.truth
+        return vector((truth.in_world(truth.fiducials[label]) / MM_PER_M).tolist())
 
     def use_scenario(self, name: str) -> None:
         """Continue with another scenario, as soon as it is loaded."""

@@ -112,6 +112,20 @@ class ScreenMessage:
 
 
 @dataclasses.dataclass(frozen=True)
+class ErrorArrow:
+    """The error of one touch, drawn in the scene in the color of its tone.
+
+    Attributes:
+        begin, end: (x, y, z) in World, m; drawn longer than it is.
+        tone: how large the error is.
+    """
+
+    begin: tuple[float, float, float]
+    end: tuple[float, float, float]
+    tone: Tone
+
+
+@dataclasses.dataclass(frozen=True)
 class Hint:
     """Which control does what just now, such as "A" and "Touch"."""
 
@@ -133,6 +147,7 @@ class Screen:
         is_stepped: whether a headset's sticks step as in a menu, though none is open: while a trial
             is shown again.
         has_arrow: whether a view shows an arrow toward a next point that is out of sight.
+        errors: arrows that are drawn in the scene.
     """
 
     menu: Menu | None = None
@@ -143,6 +158,7 @@ class Screen:
     language: str = "en"
     is_stepped: bool = False
     has_arrow: bool = False
+    errors: tuple[ErrorArrow, ...] = ()
 
 
 def focused_picture(menu: Menu | None) -> str:

@@ -247,6 +247,10 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "result.next": "Next: {task}",
         "result.again": "Again: {task}",
         "result.replay": "Show the trial again",
+        "result.errors": "Show the errors on the head",
+        "errors.title": "Your error at each point, {longer:.0f} times as long: green up to "
+        "{good:.0f} mm, red from {poor:.0f} mm",
+        "errors.back": "Back",
         "result.worst": "Show the worst touch",
         "result.menu": "Experiment menu",
         # Settings.

@@ -338,6 +338,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "result.next": "Weiter: {task}",
         "result.again": "Noch einmal: {task}",
         "result.replay": "Versuch noch einmal zeigen",
+        "result.errors": "Fehler am Kopf zeigen",
+        "errors.title": "Dein Fehler an jedem Punkt, {longer:.0f}-mal so lang: grün bis "
+        "{good:.0f} mm, rot ab {poor:.0f} mm",
+        "errors.back": "Zurück",
         "result.worst": "Schlechteste Berührung zeigen",
         "result.menu": "Experiment-Menü",
         # Settings.

@@ -1,0 +1,36 @@
+"""The page draws the errors of the touches on the head, each in the color of its size."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.net.views.screen import ErrorArrow, Screen, Tone
+from Testing.simulator.conftest import setup  # noqa: F401
+from Testing.simulator.flow.conftest import loop, shared  # noqa: F401
+from Testing.simulator.net.views.served import ServedViews
+from Testing.web.chromium import open_page, wait_for
+
+DRAWN = """
+() => page.errors.group.children
+  .filter((mesh) => mesh.geometry.type === "SphereGeometry")
+  .map((mesh) => [mesh.material.color.getHexString(), ...mesh.position.toArray()])
+"""
+
+
+def arrow(tone, height):
+    return ErrorArrow((0.5, 0.0, 0.4), (0.5, 0.0, height), tone)
+
+
+def test_arrows_come_with_the_screen_and_go_with_it(browser, loop, loop_thread):  # noqa: F811
+    served = ServedViews(loop_thread, loop)
+    page = open_page(browser, served.url, served.code)
+    arrows = tuple(map(arrow, (Tone.GOOD, Tone.WARNING, Tone.ERROR), (0.41, 0.42, 0.43)))
+    served.tell(Screen(errors=arrows))
+    wait_for(page, "page.errors.group.children.length === 6")
+    drawn = page.evaluate(DRAWN)
+    assert [color for color, *_place in drawn] == ["3ccb7f", "ffb92e", "ff5252"]
+    assert [place for _color, *place in drawn] == [pytest.approx(list(each.end)) for each in arrows]
+    served.tell(Screen())
+    wait_for(page, "page.errors.group.children.length === 0")
+    assert page.problems == []
+    served.close()
