@@ -70,8 +70,7 @@ class Sketch {
   }
 
   /** A button or key with its name on it; `input` is what people are told it is called. */
-  button(text: string, input: string, x: number, y: number, width: number, height: number): void {
-    const isUsed = this.isUsed(input);
+  button(text: string, input: string, x: number, y: number, width: number, height: number, isUsed = this.isUsed(input)): void {
     this.slab(x, y, width, height, 14, isUsed ? COLORS.accent : COLORS.row, isUsed ? COLORS.accentEdge : COLORS.edge);
     this.label(text, x + width / 2, y + height / 2, 34, isUsed ? COLORS.text : COLORS.pale);
   }
@@ -147,7 +146,8 @@ function drawControllers(sketch: Sketch): void {
     sketch.slab(x - 75, 170, 150, 340, 70, BODY);
     sketch.disk(x, 200, 150, BODY, RIM);
     sketch.button(say("part.trigger"), say("part.trigger"), x - 110, 4, 220, 60);
-    sketch.button(say("part.grip"), say("part.grip"), x - inward * 75 - 90, 400, 180, 60);
+    // The grips are the page's own, so that no menu of the simulator names them: either moves the tip.
+    sketch.button(say("part.grip"), say("part.grip"), x - inward * 75 - 90, 400, 180, 60, true);
     const name: TextName = `part.${stick}`;
     sketch.stick(x < 500 ? "L" : "R", say(name), x - inward * 60, 200);
     sketch.face(near, x + inward * 70, 250);

@@ -1,6 +1,6 @@
 /** Paint a menu; where each of its items lies is returned, for pointing at it. */
 
-import type { Item, Menu } from "../messages";
+import type { Fact, Item, Menu } from "../messages";
 import { COLORS, TONES, type Pen } from "./pen";
 import type { Region } from "./board";
 
@@ -8,6 +8,7 @@ const PAD = 48;
 const ROW = 68;
 const GAP = 8;
 const FACT = 46;
+const GAP_OF_FACT = 24;
 const PICTURE = 300;
 const TITLE = { size: 52, color: COLORS.text, isBold: true };
 const BODY = { size: 33, color: COLORS.soft };
@@ -29,13 +30,7 @@ export function paintMenu(
   let y = PAD - 6;
   y += pen.paragraph(menu.title, PAD, y, TITLE, room) + 14;
   for (const text of menu.paragraphs) y += pen.paragraph(text, PAD, y, BODY, room) + 12;
-  for (const fact of menu.facts) {
-    pen.line(fact.label, PAD, y + FACT / 2, BODY, 0.72 * room);
-    const color = fact.tone === "plain" ? COLORS.text : TONES[fact.tone];
-    pen.lineTo(fact.value, width - PAD, y + FACT / 2, { ...VALUE, size: 32, color });
-    pen.box(PAD, y + FACT - 2, room, 2, COLORS.edge, 0);
-    y += FACT;
-  }
+  for (const fact of menu.facts) y += paintFact(pen, fact, y, width);
   y += 10;
   if (menu.trend !== null || menu.items.some((item) => item.picture !== "")) {
     if (image !== null) pen.picture(image, PAD, y, room, PICTURE);
@@ -56,6 +51,18 @@ export function paintMenu(
   return regions;
 }
 
+/** Paint a label and its value, in two lines where they do not fit in one; return the height. */
+function paintFact(pen: Pen, fact: Fact, top: number, width: number): number {
+  const room = width - 2 * PAD;
+  const value = { ...VALUE, size: 32, color: fact.tone === "plain" ? COLORS.text : TONES[fact.tone] };
+  const isOneLine = pen.width(fact.label, BODY) + pen.width(fact.value, value) + GAP_OF_FACT <= room;
+  const height = isOneLine ? FACT : 2 * FACT - 8;
+  pen.line(fact.label, PAD, top + FACT / 2, BODY, room);
+  pen.lineTo(fact.value, width - PAD, top + height - FACT / 2, value);
+  pen.box(PAD, top + height - 2, room, 2, COLORS.edge, 0);
+  return height;
+}
+
 /** Return the items that fit, the focus among them. */
 function aroundFocus(menu: Menu, most: number): readonly Item[] {
   if (menu.items.length <= most) return menu.items;
@@ -73,7 +80,7 @@ function paintItem(
   isFocus: boolean,
   isHovered: boolean,
 ): void {
-  pen.box(x, y, width, ROW, isFocus ? COLORS.accent : COLORS.row);
+  pen.box(x, y, width, ROW, isFocus && item.is_enabled ? COLORS.accent : COLORS.row);
   if (isFocus || isHovered) pen.frame(x, y, width, ROW, COLORS.accentEdge);
   const middle = y + ROW / 2 + 2;
   pen.line(item.label, x + 26, middle, item.is_enabled ? LABEL : PALE, 0.62 * width);

@@ -11,7 +11,7 @@ export const COLORS = {
   edge: "#37445a",
   text: "#f4f7fb",
   soft: "#c3cede",
-  pale: "#74839a",
+  pale: "#8695ac",
 };
 
 export const TONES: Readonly<Record<Tone, string>> = {

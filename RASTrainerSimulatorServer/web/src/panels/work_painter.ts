@@ -10,9 +10,9 @@ const HINT = { size: 32, color: COLORS.soft };
 const CAP = { size: 32, color: COLORS.text, isBold: true };
 const NOTICE = { size: 32, color: COLORS.text };
 
+/** Paint from the top on; the board is as high as what is on it. */
 export function paintWork(pen: Pen, screen: Screen, holder: string, width: number, height: number): void {
   const room = width - 2 * PAD;
-  pen.box(0, 0, width, height, COLORS.night, 40);
   let y = paintBanner(pen, screen, width);
   for (const notice of screen.warnings.slice(0, 2)) {
     const lines = pen.wrapped(notice.text, NOTICE, room - 40).length;
@@ -33,8 +33,9 @@ export function paintWork(pen: Pen, screen: Screen, holder: string, width: numbe
     if (isRowFull) y += 52;
   }
   y += x > PAD ? 72 : 20;
-  paintHints(pen, screen, y, width);
-  pen.line(holder, PAD, height - 42, HINT, room);
+  y = paintHints(pen, screen, y, width);
+  pen.line(holder, PAD, y + 28, HINT, room);
+  pen.behind(width, Math.min(height, y + 76), COLORS.night);
 }
 
 function paintBanner(pen: Pen, screen: Screen, width: number): number {
@@ -47,7 +48,8 @@ function paintBanner(pen: Pen, screen: Screen, width: number): number {
   return PAD + height + 24;
 }
 
-function paintHints(pen: Pen, screen: Screen, top: number, width: number): void {
+/** Return where they end. */
+function paintHints(pen: Pen, screen: Screen, top: number, width: number): number {
   let x = PAD;
   let y = top;
   for (const hint of screen.hints) {
@@ -63,4 +65,5 @@ function paintHints(pen: Pen, screen: Screen, top: number, width: number): void 
     pen.line(hint.action, x + cap + 14, y + 28, HINT);
     x += total;
   }
+  return screen.hints.length > 0 ? y + 66 : y;
 }

@@ -1,6 +1,6 @@
-/** The panels in the room: what is read stands beside the head, warnings go with the eyes. */
+/** The panels in the room: menus before the eyes, what is read at work beside the head, warnings above it. */
 
-import { Group, Vector3, type Object3D } from "three";
+import { Group, Vector3 } from "three";
 
 import type { ControlNews, Menu, Message, Screen } from "../messages";
 import { Board, type Region } from "../panels/board";
@@ -12,7 +12,7 @@ import { say, sayHolder, type TextName } from "../texts";
 import { trendPlot } from "../panels/trend_plot";
 import { thumbnail } from "../thumbnails";
 import { CloseUp } from "./close_up";
-import type { Placement } from "./placement";
+import type { Seating } from "./seating";
 
 /** Where a board stands: right of the head's direction and above the eyes (rad), and away (m). */
 interface Seat {
@@ -20,17 +20,28 @@ interface Seat {
   readonly above: number;
   readonly away: number;
 }
-const MENU: Seat = { aside: 0.6, above: -0.06, away: 1.1 };
-const ACTIONS: Seat = { aside: 0.6, above: 0.43, away: 1.1 };
-const PICTURE: Seat = { aside: -0.22, above: 0.2, away: 1.1 };
-const WORK: Seat = { aside: 0.6, above: 0.16, away: 1.1 };
+/** In front of the eyes, and nearer than the arm. */
+const MENU: Seat = { aside: 0, above: -0.06, away: 0.55 };
+const ACTIONS: Seat = { aside: 0, above: 0.43, away: 0.55 };
+/** Beside the drawing of the controls, which belongs to it. */
+const MENU_ASIDE = 0.41;
+const PICTURE: Seat = { aside: -0.4, above: 0, away: 0.55 };
+const WORK: Seat = { aside: 0.6, above: 0.05, away: 1.1 };
 /** Like a picture that lies on the table beside the head: the arm is seldom before it. */
 const CLOSE_UP: Seat = { aside: 0.72, above: -0.5, away: 0.85 };
+/** Below a menu. While the arm is driven, so far above the head's top that no point of it is covered. */
+const WARNING_AT_MENU: Seat = { aside: 0, above: -0.54, away: 0.55 };
+const WARNING_AWAY = 1;
+const WARNING_OVER_HEAD = 0.2;
+const HEAD_ABOVE_M = 0.16;
+/** Widths, m, where a board is so far away; a nearer one is as much smaller. */
+const FULL_SIZE_AWAY = 1.1;
 const WIDE = 0.86;
 const PICTURE_WIDE = 0.8;
-const CLOSE_UP_WIDE = 0.56;
-const WARNING_AWAY = 1.0;
-const WARNING_BELOW = 0.2;
+const CLOSE_UP_WIDE = 0.72;
+const WARNING_WIDE = 0.66;
+/** Order of drawing; what points at a board comes after it. */
+const ON_TOP = 10;
 const BUTTON = { size: 32, color: COLORS.text, isBold: true };
 const WARNING = { size: 40, color: COLORS.text, isBold: true };
 
@@ -45,26 +56,28 @@ export class Boards {
   readonly room = new Group();
   readonly closeUp = new CloseUp(CLOSE_UP_WIDE);
   private readonly menu = new Board(1024, 1024, WIDE);
-  private readonly work = new Board(1024, 560, WIDE);
+  private readonly work = new Board(1024, 760, WIDE);
   private readonly actions = new Board(1024, 236, WIDE);
   private readonly picture = new Board(PICTURE_WIDTH + 2 * PAD, PICTURE_HEIGHT + 2 * PAD, PICTURE_WIDE);
   /** What is drawn on `picture`; it is there a moment later than its address. */
   private readonly drawing = new Image();
-  private readonly warning = new Board(1024, 256, 0.6);
+  private readonly warning = new Board(1024, 256, WARNING_WIDE);
   private screen: Screen | null = null;
+  private seating: Seating | null = null;
   private control: ControlNews | null = null;
   private notice = "";
   private hovered = "";
   private mayGrab = true;
 
-  constructor(eyes: Object3D) {
-    const boards = [this.menu, this.work, this.actions, this.picture];
+  constructor() {
+    const boards = [this.menu, this.work, this.actions, this.picture, this.warning];
     this.room.add(...boards.map((board) => board.mesh), this.closeUp.mesh);
     this.drawing.onload = () => this.paint();
-    this.warning.mesh.position.set(0, -WARNING_BELOW, -WARNING_AWAY);
-    this.warning.mesh.renderOrder = 10;
-    this.warning.mesh.material.depthTest = false;
-    eyes.add(this.warning.mesh);
+    for (const [order, board] of [this.menu, this.actions, this.picture, this.warning].entries()) {
+      // The arm may stand before them.
+      board.mesh.material.depthTest = false;
+      board.mesh.renderOrder = ON_TOP + order;
+    }
   }
 
   /** Those that can be pointed at. */
@@ -77,20 +90,40 @@ export class Boards {
     return this.screen !== null && (this.screen.menu !== null || this.screen.is_stepped);
   }
 
-  /** Stand where somebody at the place of the eyes reads them well. */
-  arrange(placement: Placement): void {
-    const { menu, actions, picture, work, closeUp } = this;
-    const seats = [[menu, MENU], [actions, ACTIONS], [picture, PICTURE], [work, WORK], [closeUp, CLOSE_UP]] as const;
+  /** Whether a menu is open. */
+  get isMenu(): boolean {
+    return this.screen?.menu != null;
+  }
+
+  /** Stand where somebody who is seated so reads them well. */
+  arrange(seating: Seating): void {
+    this.seating = seating;
+    const aside = this.screen?.menu?.picture === "controls" ? MENU_ASIDE : 0;
+    const { eyes, focus } = seating;
+    const top = Math.atan2(focus.y + HEAD_ABOVE_M - eyes.y, Math.hypot(focus.x - eyes.x, focus.z - eyes.z));
+    const overHead = { aside: 0, above: top + WARNING_OVER_HEAD, away: WARNING_AWAY };
+    const { menu, actions, picture, work, closeUp, warning } = this;
+    const side = sideWithoutRobot(seating);
+    const seats = [
+      [menu, { ...MENU, aside }],
+      [actions, { ...ACTIONS, aside }],
+      [picture, PICTURE],
+      [work, { ...WORK, aside: side * WORK.aside }],
+      [closeUp, { ...CLOSE_UP, aside: side * CLOSE_UP.aside }],
+      [warning, this.isMenu ? WARNING_AT_MENU : overHead],
+    ] as const;
     for (const [{ mesh }, seat] of seats) {
-      const toBoard = mesh.position.copy(placement.forward).applyAxisAngle(UP, -seat.aside);
+      const toBoard = mesh.position.copy(seating.ahead).applyAxisAngle(UP, -seat.aside);
       toBoard.multiplyScalar(seat.away * Math.cos(seat.above)).setY(seat.away * Math.sin(seat.above));
-      toBoard.add(placement.eyes);
-      mesh.lookAt(placement.eyes);
+      toBoard.add(eyes);
+      mesh.scale.setScalar(seat.away / FULL_SIZE_AWAY);
+      mesh.lookAt(eyes);
     }
   }
 
   show(screen: Screen): void {
     this.screen = screen;
+    if (this.seating !== null) this.arrange(this.seating);
     this.paint();
   }
 
@@ -206,6 +239,11 @@ export class Boards {
 
 function isUrgent(message: Message): boolean {
   return message.tone === "warning" || message.tone === "error";
+}
+
+/** Return 1 where the robot, which stands at the origin, is left of what is looked at, else −1. */
+function sideWithoutRobot({ eyes, ahead }: Seating): number {
+  return ahead.z * eyes.x - ahead.x * eyes.z <= 0 ? 1 : -1;
 }
 
 const UP = new Vector3(0, 1, 0);

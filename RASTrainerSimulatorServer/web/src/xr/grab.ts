@@ -44,8 +44,9 @@ export class Grab {
     this.tool.getWorldPosition(this.tipBegan);
   }
 
-  end(): void {
-    this.hand = null;
+  /** Let go, if it is this hand that holds. */
+  end(hand: Object3D): void {
+    if (hand === this.hand) this.hand = null;
   }
 
   /** Push the stick, `passed` s after the last time, so that the tip follows what is grabbed. */

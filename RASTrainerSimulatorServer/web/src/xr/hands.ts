@@ -23,6 +23,8 @@ import type { Grab } from "./grab";
 const DEAD = 0.12;
 const CHANGE = 0.01;
 const YAW_CHANGE_DEG = 1;
+/** Order of drawing. */
+const AFTER_BOARDS = 20;
 const PRESSED = 0.6;
 const RELEASED = 0.4;
 const REPEAT_AFTER_S = 0.4;
@@ -158,9 +160,8 @@ export class Hands {
     if (this.pressed(hand, pad, TRIGGER) && hand.pointed !== "") this.listener.onChosen(hand.pointed);
     if (this.pressed(hand, pad, NEAR_BUTTON)) this.press(isLeft ? "menu" : "touch");
     if (this.pressed(hand, pad, FAR_BUTTON)) this.press(isLeft ? "camera" : "undo");
-    if (isLeft) return;
     if (this.pressed(hand, pad, SQUEEZE)) this.grab.begin(hand.ray);
-    if (!hand.down[SQUEEZE]) this.grab.end();
+    if (!hand.down[SQUEEZE]) this.grab.end(hand.ray);
   }
 
   /** Return whether a button has just been pressed. */
@@ -217,7 +218,8 @@ interface PulsingPad {
 function makeHand(ray: XRTargetRaySpace, parent: Object3D): Hand {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new Float32BufferAttribute([0, 0, 0, 0, 0, -1], 3));
-  const line = new Line(geometry, new LineBasicMaterial({ color: 0xbfdbff }));
+  const line = new Line(geometry, new LineBasicMaterial({ color: 0xbfdbff, depthTest: false, transparent: true }));
+  line.renderOrder = AFTER_BOARDS;
   const body = new Mesh(
     new CapsuleGeometry(0.018, 0.09, 4, 10).rotateX(Math.PI / 2),
     new MeshLambertMaterial({ color: 0x2a3444 }),

@@ -13,6 +13,7 @@ import { headsetModel } from "./device";
 import { Grab } from "./grab";
 import { Hands } from "./hands";
 import { Placement } from "./placement";
+import { Seating } from "./seating";
 
 const HIGHEST_HZ = 90;
 const MOST_FOVEATION = 1;
@@ -22,7 +23,8 @@ const STEEP = 0.9;
 export class Headset {
   private readonly camera = new PerspectiveCamera(70, 1, 0.05, 20);
   private readonly placement = new Placement();
-  private readonly boards = new Boards(this.camera);
+  private readonly boards = new Boards();
+  private readonly seating = new Seating();
   private readonly grab = new Grab();
   private readonly hands: Hands;
   private base: XRReferenceSpace | null = null;
@@ -105,7 +107,7 @@ export class Headset {
     const camera = model.news.cameras["close-up"] ?? Object.values(model.news.cameras)[0];
     if (camera === undefined) return;
     this.placement.take(camera);
-    this.boards.arrange(this.placement);
+    this.seat();
     this.grab.take(model.node("tool"));
   }
 
@@ -116,7 +118,9 @@ export class Headset {
       this.takeScene(model);
     }
     this.lookAround(frame);
+    this.camera.updateWorldMatrix(true, false);
     this.turnSticks(model.news);
+    this.bringBoards();
     this.hands.poll(Math.min(1, now - this.looked));
     this.looked = now;
     this.hear(model);
@@ -130,7 +134,21 @@ export class Headset {
     if (!pose) return;
     this.mustRecenter = false;
     this.placement.recenter(pose);
-    this.boards.arrange(this.placement);
+    this.seat();
+  }
+
+  /** Have the boards stand for somebody who is where they belong. */
+  private seat(): void {
+    const { eyes, forward, focus } = this.placement;
+    this.seating.put(eyes, forward, focus);
+    this.boards.arrange(this.seating);
+  }
+
+  /** Have the boards come after whoever has walked or turned away from them. */
+  private bringBoards(): void {
+    const eyes = this.camera.getWorldPosition(this.ears.place);
+    const hasMoved = this.seating.follow(eyes, this.ears.forward, this.boards.isMenu);
+    if (hasMoved) this.boards.arrange(this.seating);
   }
 
   /** Have the sticks, and what is grabbed, follow the eyes. */
@@ -163,7 +181,7 @@ export class Headset {
       case "higher":
       case "lower":
         this.placement.raise(name.endsWith("higher") ? 1 : -1);
-        this.boards.arrange(this.placement);
+        this.seat();
         break;
       case "grab":
         this.grab.isAllowed = !this.grab.isAllowed;

@@ -20,7 +20,8 @@ export class Placement {
   /** Horizontal, toward the head. */
   readonly forward = new Vector3(0, 0, -1);
   private rise = Number(localStorage.getItem(STORED)) || 0;
-  private readonly focus = new Vector3();
+  /** What is looked at: the middle of the patient's head. */
+  readonly focus = new Vector3();
   private readonly seen = new Vector3();
   private seenYaw = 0;
 

@@ -1,0 +1,156 @@
+"""The headset's boards: menus before the eyes, panels turned to the person, no point covered."""
+
+from __future__ import annotations
+
+import pytest
+
+from Testing.web.chromium import EYES_M, enter_headset, open_page
+from Testing.web.place import WITHOUT_GRAPHICS, Place
+
+BEHIND_M = 1.24
+"""From the place where the trainee stands to the one at the other side of the head."""
+TURNED = (0.0, 1.2, -1.2, 3.0)
+
+BOARD = """(name) => {
+  const { boards, camera } = page.headset;
+  const mesh = name === "closeUp" ? boards.closeUp.mesh : boards[name].mesh;
+  const eyes = camera.getWorldPosition(mesh.position.clone());
+  const place = mesh.getWorldPosition(mesh.position.clone());
+  const away = place.clone().sub(eyes);
+  const gaze = camera.getWorldDirection(mesh.position.clone());
+  const front = mesh.getWorldDirection(mesh.position.clone());
+  const degrees = (one, other) => one.angleTo(other) * 180 / Math.PI;
+  const level = (vector) => vector.clone().setY(0);
+  return { aside: degrees(level(gaze), level(away)), facing: degrees(front, away.clone().negate()),
+           away: away.length(), isInRoom: mesh.parent === boards.room };
+}"""
+WORK = """() => {
+  const hint = (control) => ({ control, action: "A longer action of it" });
+  page.headset.showScreen({ ...page.screen, menu: null, status: ["Task 1", "7 of 15", "03:21"],
+    instruction: { text: "P7, touch the point number 7, which is over there.", tone: "plain" },
+    warnings: [{ text: "The arm is too close to the head.", tone: "error" }],
+    hints: ["A", "B", "Trigger", "Y", "X"].map(hint) });
+}"""
+COVERED = """() => {
+  const { boards, camera } = page.headset;
+  const { mesh } = boards.warning;
+  const eyes = camera.getWorldPosition(mesh.position.clone());
+  const size = mesh.geometry.parameters;
+  const bottom = mesh.localToWorld(mesh.position.clone().set(0, -size.height / 2, 0)).sub(eyes);
+  const head = page.stage.model.node("head");
+  const model = page.stage.model;
+  const up = (vector) => Math.atan2(vector.y, Math.hypot(vector.x, vector.z));
+  const box = new (page.headset.placement.rig.constructor)();
+  let highest = -2;
+  head.traverse((node) => {
+    const places = node.geometry?.getAttribute("position");
+    if (!places) return;
+    for (let index = 0; index < places.count; index += 7) {
+      const place = mesh.position.clone().fromBufferAttribute(places, index);
+      highest = Math.max(highest, up(node.localToWorld(place).sub(eyes)));
+    }
+  });
+  return up(bottom) < highest;
+}"""
+WRITTEN = """() => {
+  const written = [];
+  const { fillText } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    if (this.canvas === page.headset.boards.work.context.canvas) written.push([text, y]);
+    return fillText.call(this, text, x, y);
+  };
+  (%s)();
+  CanvasRenderingContext2D.prototype.fillText = fillText;
+  return written;
+}"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    with Place(tmp_path_factory.mktemp("boards"), limits=WITHOUT_GRAPHICS) as place:
+        yield place
+
+
+@pytest.fixture(scope="module")
+def worn(place, browser):
+    page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest2")
+    enter_headset(page)
+    yield page
+    assert page.problems == []
+
+
+@pytest.fixture
+def menu(worn):
+    """The wearer at a menu, where they belong."""
+    worn.evaluate("page.headset.showScreen(page.screen)")
+    return stand(worn)
+
+
+@pytest.fixture
+def work(worn):
+    """The wearer at a screen of a trial, with a warning and as many hints as there are."""
+    worn.evaluate(WORK)
+    return stand(worn)
+
+
+def stand(page, forward=0.0, yaw=0.0):
+    """Have the wearer stand so far from their place, and look there."""
+    page.evaluate(
+        """async ([x, y, z, half]) => {
+          device.position.set(x, y, z);
+          device.quaternion.set(0, Math.sin(half), 0, Math.cos(half));
+          await frames_(4); }""",
+        [EYES_M[0], EYES_M[1], EYES_M[2] - forward, yaw / 2],
+    )
+    return page
+
+
+@pytest.mark.parametrize("yaw", TURNED)
+def test_a_menu_is_before_the_eyes_wherever_they_turn(menu, yaw):
+    stand(menu, yaw=yaw)
+    board = menu.evaluate(BOARD, "menu")
+    assert board["aside"] < 35.0
+    assert board["facing"] < 5.0
+    assert board["away"] < 0.7, "nearer than the arm"
+
+
+def test_a_menu_that_opens_comes_up_where_the_eyes_look(work):
+    stand(work, yaw=0.5)
+    work.evaluate("page.headset.showScreen(page.screen)")
+    work.evaluate("frames_(3)")
+    assert work.evaluate(BOARD, "menu")["aside"] < 2.0
+
+
+@pytest.mark.parametrize("name", ["work", "closeUp", "warning"])
+def test_a_panel_is_read_from_behind_the_head_too(work, name):
+    stand(work, forward=BEHIND_M, yaw=3.14159)
+    board = work.evaluate(BOARD, name)
+    assert board["facing"] < 5.0
+    assert board["aside"] < 50.0
+
+
+def test_a_banner_stands_in_the_room_above_the_head_and_not_in_the_close_up(work):
+    board = work.evaluate(BOARD, "warning")
+    assert board["isInRoom"], "the close-up is drawn without the room's boards"
+    assert not work.evaluate(COVERED)
+    before = work.evaluate("page.headset.boards.warning.mesh.position.toArray()")
+    stand(work, yaw=0.3)
+    assert work.evaluate("page.headset.boards.warning.mesh.position.toArray()") == before
+
+
+def test_hints_and_holder_are_written_on_lines_of_their_own(worn):
+    worn.evaluate("page.headset.boards.work.shown = ''")
+    written = worn.evaluate(WRITTEN % WORK)
+    (holder,) = [y for text, y in written if "robot" in text]
+    hints = [y for text, y in written if text in ("X", "A longer action of it")]
+    assert hints
+    assert all(abs(y - holder) > 40 for y in hints)
+
+
+@pytest.mark.parametrize("hand", ["left", "right"])
+def test_either_grip_moves_the_tip(worn, hand):
+    squeeze = f"device.controllers.{hand}.updateButtonValue('squeeze', %d); frames_(3)"
+    worn.evaluate(squeeze % 1)
+    assert worn.evaluate("page.headset.grab.hand !== null")
+    worn.evaluate(squeeze % 0)
+    assert worn.evaluate("page.headset.grab.hand === null")
