@@ -90,4 +90,4 @@ def test_everything_that_is_wrong_is_reported_at_once(planning, on_skin, tmp_pat
         replace(planning.scenario, target_position=np.array([0.0, 0.0, -60.0])), planning.mesh
     )
     _, wrong, _ = read(far, tmp_path, low)
-    assert "cannot touch fiducials 6, 9 where the head stands" in " ".join(wrong)
+    assert "cannot touch fiducials 6, 9 where the head is" in " ".join(wrong)

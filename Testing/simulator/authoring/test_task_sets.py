@@ -83,7 +83,7 @@ def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(planning, tasks):
     near = nearest_on_mesh(planning.mesh, run.fiducials[4] + [6.0, 0.0, 0.0]).position
     assert "fiducials 5 and 7 are" in check_tasks(planning, [moved(run, 6, near)])[0]
     low = nearest_on_mesh(planning.mesh, np.array([0.0, -30.0, -75.0])).position
-    assert "cannot touch fiducial 9 where the head stands" in " ".join(
+    assert "cannot touch fiducial 9 where the head is" in " ".join(
         check_tasks(planning, [moved(run, 8, low)])
     )
     assert "must be above" in check_tasks(planning, [first, run])[-1]
