@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import secrets
 import time
 
 import pytest
 
+from rastrainer.igtl.client import Client
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import check_arguments
@@ -22,12 +24,18 @@ from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_al
 from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
-from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.simulator_process import SimulatorProcess, ViewedSimulator
+from Testing.end_to_end.stream_trainee import WatchingView
+from Testing.end_to_end.test_replay_at_the_simulator import BRISK
+from Testing.end_to_end.window_process import wait_until
+from Testing.simulator.net.views.served import ViewClient
 
 TIMEOUT_S = 120.0
 TRIALS = 100
+OWN = "the simulator's own and is not stored in a study"
 
 
 @pytest.fixture(scope="module")
@@ -129,3 +137,40 @@ def test_slicer_that_connects_later_stores_the_trial_and_its_score_replaces_the_
         assert OWN_SCORE not in slicers["details"]
     with Study.open(tmp_path / "study.db") as study:
         assert {study.trial(trial).score.version for trial in alone.trials} == {"2"}
+
+
+def test_a_view_of_the_real_simulator_shows_its_own_score_until_slicer_scores_the_trial(
+    tmp_path, scenario, cohort, loop_thread
+):
+    key, records = secrets.token_hex(32), tmp_path / "records"
+    with ViewedSimulator(records, "--speed", "8", key=key) as simulator:
+        with Client(port=simulator.port) as client:
+            say_hello(client, "player")
+            trial = play_trial(client, scenario, "task-1", "P07", 5, BRISK).trial_id
+        with ViewClient(loop_thread, simulator.url, key) as joined:
+            view = WatchingView(joined)
+            wait_until(lambda: OWN in said(view), "the simulator's own score")
+            own = view.screen.menu
+
+            def make_logic(scene, link, open_study, work):
+                return TrialLogic(
+                    scene, link, lambda _name: scenario, open_study, work, cohort, records
+                )
+
+            slicer = SlicerSide(tmp_path / "study.db", simulator.port, make_logic)
+
+            def is_replaced():
+                slicer.run_for(5)
+                return OWN not in said(view)
+
+            wait_until(is_replaced, "Slicer's score")
+            assert view.screen.menu.facts == own.facts
+            slicer.close()
+    with Study.open(tmp_path / "study.db") as study:
+        assert study.trial(trial).score is not None
+
+
+def said(view):
+    """Return the text of the result, "" while it is not shown."""
+    menu = view.screen.menu
+    return " ".join(menu.paragraphs) if menu is not None and menu.name == "result" else ""
