@@ -1,4 +1,4 @@
-"""How often the tests of the domain draw."""
+"""Settings for random examples in the tests of the domain."""
 
 from hypothesis import settings
 

@@ -1,7 +1,5 @@
 """The environment and the packages of a child process are free of Slicer's."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -71,7 +69,7 @@ def test_without_a_private_folder_a_module_is_started_by_this_python():
 
 @pytest.fixture
 def private(tmp_path):
-    """A private folder with a program that looks around."""
+    """A private folder with a program that inspects its environment."""
     folder = tmp_path / "private"
     folder.mkdir()
     (folder / "look.py").write_text(LOOK)
@@ -81,7 +79,7 @@ def private(tmp_path):
 
 @pytest.fixture
 def libraries(tmp_path):
-    """Slicer's libraries: one that Python needs, under the name of its version, and another."""
+    """Slicer's libraries: one that Python needs, under its versioned name, and another."""
     system = sorted(Path("/usr/lib").glob("*/libz.so.1"))
     if not system:
         pytest.skip("Python has its own compression here")

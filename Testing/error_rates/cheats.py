@@ -62,9 +62,9 @@ class Scored:
 
     @property
     def competent_at(self) -> int | None:
-        """At which of thirty trials LC-CUSUM calls the trainee competent.
+        """The trial, of thirty, at which LC-CUSUM calls the trainee competent.
 
-        The trials are those that were played, over and over.
+        The played trials are repeated in order.
         """
         failures = [not _passes(one) for one in self._all()]
         return competence_of(
@@ -72,7 +72,7 @@ class Scored:
         ).competent_at
 
     def holds(self, standard_errors: float = 0.0) -> bool:  # noqa: ARG002
-        """Return whether no trial is above what is asked, and none passes."""
+        """Return whether all trials are within the limit and none passes."""
         if self.at_most is None:
             return True
         return self.highest <= self.at_most and not self.passed and self.competent_at is None
@@ -100,7 +100,7 @@ def _passes(score: TrialScore) -> bool:
 
 
 def scores_of(way: str, tasks: Sequence[str] = TASKS) -> dict[str, list[TrialScore]]:
-    """Return the scores of the trials on Colin27 that were played in a way, by task."""
+    """Return the scores of the trials played in a way on Colin27, by task."""
     scenario = load_setup().scenario
     found: dict[str, list[TrialScore]] = {task: [] for task in tasks}
     for one in stored():
@@ -110,7 +110,7 @@ def scores_of(way: str, tasks: Sequence[str] = TASKS) -> dict[str, list[TrialSco
 
 
 def played(_sets: int) -> list[Scored]:
-    """Return what each way to play was worth."""
+    """Return the scores of each way to play."""
     return [Scored(words, scores_of(way, tasks), most) for words, way, tasks, most in ROWS]
 
 
@@ -125,9 +125,9 @@ TRIALS = 30
 
 
 def competence(sets: int, seed: int = 23) -> list[Measured]:
-    """Return how often trainees are called competent who abort each trial that they have seen fail.
+    """Return how often trainees are called competent who abort trials that go badly.
 
-    Whoever passes with a probability below that of an adequate trainee is to be called so seldom.
+    Trainees below the adequate pass rate must rarely be called competent.
     """
     random = np.random.default_rng(seed)
     return [
@@ -179,7 +179,7 @@ DISTANCE_MM, TOUCHES = 80.0, 15
 
 
 def offsets(sets: int, seed: int = 8) -> list[Measured]:
-    """Return the throughput of trials with a touch a second, each `DISTANCE_MM` from the last."""
+    """Return the throughput of trials with one touch per second, `DISTANCE_MM` apart."""
     random = np.random.default_rng(seed)
     found = []
     for offset in (0.0, 0.5, 2.0, 5.0):
@@ -196,7 +196,7 @@ def offsets(sets: int, seed: int = 8) -> list[Measured]:
 
 
 def _throughputs(offset: float, random: np.random.Generator) -> tuple[float, float]:
-    """Return our throughput and the standard's, of targets on a line that is gone to and fro."""
+    """Return our throughput and the standard's, for targets alternating on a line."""
     there = DISTANCE_MM * (np.arange(TOUCHES) % 2)
     ahead = np.where(np.arange(TOUCHES) % 2, 1.0, -1.0)
     beside = (offset + random.normal(0, 0.05, TOUCHES)) * ahead

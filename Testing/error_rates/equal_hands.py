@@ -1,4 +1,4 @@
-"""Whether the same hands get the same score on every task of three heads."""
+"""Whether equal skill gets equal scores on every task of three heads."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ HEADER = (
 
 @dataclass(frozen=True)
 class EqualScore:
-    """The mean score of the same hands on one task, and by how much it is off that on all tasks."""
+    """The mean score of equal skill on one task, and its deviation from that on all tasks."""
 
     case: str
     off: float
@@ -49,7 +49,7 @@ class EqualScore:
     at_least: None = None
 
     def holds(self, standard_errors: float = 0.0) -> bool:
-        """Return whether it is off by what is asked at most, or a point more with few sets."""
+        """Return whether the deviation is within the limit, or a point more with few sets."""
         return self.at_most is None or abs(self.off) <= self.at_most + (standard_errors > 0)
 
     def cells(self) -> list[str]:
@@ -69,17 +69,17 @@ class EqualScore:
 
 
 def usual(sets: int) -> list[EqualScore]:
-    """Return the usual hands' scores, on each task with so many registrations."""
+    """Return the usual hands' scores, with `sets` registrations per task."""
     return scores(USUAL, sets, MOST_OFF)
 
 
 def slow(sets: int) -> list[EqualScore]:
-    """Return the scores of slower hands that are less exact."""
+    """Return the scores of slower, less accurate hands."""
     return scores(SLOW, sets, MOST_OFF_SLOW)
 
 
 def scores(way: str, sets: int, at_most: float | None, seed: int = 22) -> list[EqualScore]:
-    """Return the mean scores of the same hands on every task of every head."""
+    """Return the mean scores of equal skill on every task of every head."""
     random = np.random.default_rng(seed)
     found = []
     for head, task in ((head, task) for head in HEADS for task in TASKS):
@@ -155,7 +155,7 @@ def scenario_of(head: str) -> Scenario:
 
 @functools.cache
 def setup(head: str) -> SimulationSetup:
-    """Return the setup of one of the three heads, whose files stay until the program ends."""
+    """Return the setup of one of the three heads; its files remain until the program ends."""
     return setup_of(head, Path(_folder().name))
 
 

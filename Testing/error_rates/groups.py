@@ -1,4 +1,4 @@
-"""Groups of trainees: how often one population is taken for several, and which are found."""
+"""Groups of trainees: how often one population is split, and which groups are found."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ METRICS = 4
 
 
 def one_population(sets: int, seed: int = 3) -> list[Measured]:
-    """Return how often groups are told of a single population; below 12 trainees never."""
+    """Return how often groups are reported for one population; never below 12 trainees."""
     found = []
     for kind in POPULATIONS:
         for trainees in SIZES:

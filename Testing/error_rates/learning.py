@@ -1,4 +1,4 @@
-"""Whether trainees get better: false alarms in constant series, and what is found."""
+"""Whether trainees improve: false alarms in constant series, and detected trends."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One figure of a simulation, with what is asked of it."""
+"""One figure of a simulation and its limit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Measured:
     beside: tuple[str, ...] = ()
 
     def holds(self, standard_errors: float = 0.0) -> bool:
-        """Return whether the share is as asked, give or take so many of its standard errors."""
+        """Return whether the share is within the limit, with a tolerance in standard errors."""
         limit = self.at_most if self.at_most is not None else self.at_least
         if limit is None:
             return True
@@ -51,7 +51,7 @@ class Measured:
 
 
 def share_of(happened: Sequence[bool] | np.ndarray) -> float:
-    """Return the share of what is true."""
+    """Return the share of true values."""
     return float(np.mean(happened))
 
 
@@ -61,16 +61,16 @@ def share_text(share: float, digits: int = 1) -> str:
 
 
 class Row(Protocol):
-    """What a table is made of."""
+    """A row of a table."""
 
     at_most: float | None
     at_least: float | None
 
     def holds(self, standard_errors: float = 0.0) -> bool:
-        """Return whether the figure is as asked, give or take so many standard errors."""
+        """Return whether the figure is within the limit, with a tolerance in standard errors."""
 
     def cells(self) -> list[str]:
-        """Return case, figure, what is asked of it, and further figures."""
+        """Return case, figure, limit, and further figures."""
 
 
 def markdown(header: Sequence[str], found: Sequence[Row]) -> str:

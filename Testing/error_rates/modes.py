@@ -25,7 +25,7 @@ MODES = ("desktop", "hmd")
 
 
 def sequences(sets: int, seed: int = 5) -> list[Measured]:
-    """Return the shares of differences of modes that are found, by the analysis."""
+    """Return the shares of differences of modes that are found, by analysis."""
     cases = [
         ("6 and 6, true 6 s", 6, 6, 6.0, 10.0, "normal", None, 0.8),
         ("6 and 6, true 6 s, no effect of the period", 6, 6, 6.0, 0.0, "normal", None, 0.8),
@@ -76,7 +76,7 @@ def _sequences(
 
 
 def studies(sets: int, seed: int = 6) -> list[Measured]:
-    """Return what `rastrainer simulate-cohort --power` tells of the published protocol."""
+    """Return the result of `rastrainer simulate-cohort --power` for the published protocol."""
     found = []
     orders = [MODES, MODES[::-1]] * 6
     for words, time, error in (("equal modes", 1.0, 1.0), ("headset 8 %/20 % worse", 1.08, 1.2)):
@@ -115,7 +115,7 @@ COMPUTED = 20
 
 
 def coverage(sets: int, seed: int = 7) -> list[Measured]:
-    """Return the coverage without an order, and of four and twelve in two sequences."""
+    """Return the coverage without an order, and for four and twelve trainees in two sequences."""
     random = np.random.default_rng(seed)
     cases = [(n, truth, False) for n in (3, 4, 8, 20) for truth in TRUTHS]
     cases += [(4, 0.5, True), (12, 1.5, True)]
@@ -140,7 +140,7 @@ def _coverage(
 
 
 def _holds(t: np.ndarray, dof: int, noncentrality: float) -> np.ndarray:
-    """Return whether the interval of the noncentrality holds this one."""
+    """Return whether the interval contains a noncentrality."""
     below = scipy_module("stats").nct.cdf(t, dof, noncentrality)
     # Far out in a tail, scipy gives no number.
     below = np.where(np.isnan(below), noncentrality < t, below)

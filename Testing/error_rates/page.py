@@ -1,4 +1,4 @@
-"""The tables of docs/error-rates.md, computed, and where they stand in it."""
+"""The tables of docs/error-rates.md."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def computed(name: str, sets: int = SETS) -> str:
 
 
 def printed(name: str, text: str) -> str:
-    """Return the table that a page's text holds under this name."""
+    """Return the table with this name from the text of a page."""
     return _place(name).search(text)[2].strip()
 
 
 def with_table(name: str, text: str, table: str) -> str:
-    """Return the text with another table under this name."""
+    """Return the text with the table of this name replaced."""
     replaced, places = _place(name).subn(lambda found: f"{found[1]}{table}\n{found[3]}", text)
     if places != 1:
         raise ValueError(f"The page must have one place for the table {name!r}, not {places}.")

@@ -22,13 +22,13 @@ from rastrainer_simulator.virtual.population import pseudonym
 def draw_protocol_study(
     model: OutcomeModel, protocol: StudyProtocol, trainees: int, random: np.random.Generator
 ) -> StudyData:
-    """Return a study whose modes and tasks come in the protocol's orders.
+    """Return a simulated study whose modes and tasks follow the protocol's orders.
 
     Args:
-        model: The truth; its tasks are those of the protocol.
-        protocol: What each trainee does.
-        trainees: How many.
-        random: Of the draws.
+        model: The true parameters; its tasks are those of the protocol.
+        protocol: The protocol.
+        trainees: Number of trainees.
+        random: Random generator.
     """
     rounds = protocol.repetitions
     repeated = replace(
@@ -47,7 +47,7 @@ def draw_protocol_study(
 
 
 def _trials(protocol: StudyProtocol, trainee: int) -> Iterator[tuple[int, int, Step]]:
-    """Yield mode and place in the last axis of each trial of a trainee, in their order."""
+    """Yield mode index, slot and step of each trial of a trainee, in order."""
     for step in steps_for(protocol, trainee):
         if step.kind is StepKind.TRIAL:
             slot = (step.round - 1) * len(protocol.tasks) + protocol.tasks.index(step.task)
@@ -100,7 +100,7 @@ MODEL = OutcomeModel(
 
 @dataclass(frozen=True)
 class Recovered:
-    """One parameter: its truth, and the mean of its estimates over all data sets."""
+    """One parameter: its true value, and the mean of its estimates over all data sets."""
 
     case: str
     truth: float
@@ -111,11 +111,11 @@ class Recovered:
 
     @property
     def off(self) -> float:
-        """By how many standard errors the mean is off the truth."""
+        """Deviation of the mean from the true value, in standard errors."""
         return abs(self.mean - self.truth) / self.standard_error
 
     def holds(self, standard_errors: float = 0.0) -> bool:
-        """Return whether it is off by at most 3 standard errors, or so many if they are more."""
+        """Return whether it is at most 3 standard errors, or `standard_errors` if larger."""
         return self.off <= max(self.at_most, standard_errors)
 
     def cells(self) -> list[str]:
@@ -126,7 +126,7 @@ class Recovered:
 
 
 def parameters(sets: int, seed: int = 9) -> list[Recovered]:
-    """Return every parameter of the model, estimated from so many studies."""
+    """Return every parameter of the model, estimated from `sets` studies."""
     random = np.random.default_rng(seed)
     drawn = (draw_protocol_study(MODEL, PROTOCOL, TRAINEES, random) for _ in range(sets))
     found = np.array([list(_estimates(study).values()) for study in drawn])
@@ -141,7 +141,7 @@ def parameters(sets: int, seed: int = 9) -> list[Recovered]:
 
 
 def _truths() -> dict[str, float]:
-    """Return what each estimate is of; squares, since a standard deviation's root is biased."""
+    """Return the true value of each estimate; squared, because standard deviations are biased."""
     of_residual = float(scipy_module("special").polygamma(1, DOF / 2)) / 4
     haste = MODEL.trial_time_sd
     return {
@@ -178,7 +178,7 @@ def _estimates(study: StudyData) -> dict[str, float]:
 
 
 def _squared_bias(study: StudyData, mode: str) -> float:
-    """Return the squared common offset: true error, less what FRE says of the scatter."""
+    """Return the squared common offset: true error minus the scatter estimated from FRE."""
     trials = study.of_mode(mode)
     true, fre = (
         np.mean([trial.values[name] ** 2 for trial in trials])

@@ -1,4 +1,4 @@
-"""Whether the interval of the expected TRE holds the true one, and what it cannot see."""
+"""Whether the interval of the expected TRE contains the true one, and its blind spots."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ Errors = Callable[[np.ndarray, np.random.Generator], np.ndarray]
 
 
 def intervals(sets: int, seed: int = 10) -> list[Measured]:
-    """Return how often the true TRE lies inside, each time on another head and at another target.
+    """Return how often the true TRE is in the interval, for random heads and targets.
 
-    Fiducials lie on one side of a ball, the target within; the localization error is 1 mm.
+    Fiducials are on one side of a ball, the target is inside; the localization error is 1 mm.
     """
     common = f"independent, equal, with a common offset of SD {COMMON_BIAS_SD_MM:g} mm on each axis"
     cases: list[tuple[str, Errors, float | None]] = [
@@ -58,7 +58,7 @@ def one_side(random: np.random.Generator) -> np.ndarray:
 
 
 def localization_errors(normals: np.ndarray) -> np.ndarray:
-    """Return the localization errors of points, a third of them three times as large, (n,) mm."""
+    """Return the localization errors of points, (n,) mm; a third is three times as large."""
     is_aside = normals[:, 0] > np.quantile(normals[:, 0], 2 / 3)
     return FLE_MM * np.where(is_aside, 3.0, 1.0)
 

@@ -1,6 +1,4 @@
-"""The statistics of a report err as seldom as docs/error-rates.md says, and find what it says."""
-
-from __future__ import annotations
+"""The error rates of the statistics are those in docs/error-rates.md."""
 
 import dataclasses
 import json
@@ -24,7 +22,7 @@ from Testing.error_rates.played import SEEDS, SLOW, TASKS, USUAL, all_keys, play
 from Testing.simulator.authoring import planned_heads
 
 FEW = {"several groups": 40, "target errors": 50, "learning": 100}
-"""Fewer data sets of what is costly."""
+"""Fewer data sets for costly tables."""
 
 
 @pytest.mark.parametrize("name", TABLES)
@@ -113,7 +111,7 @@ def test_the_heads_have_the_tasks_that_the_planner_proposes(head):
 
 
 def assert_is_as_stored(key):
-    """Other versions of the libraries may round otherwise, and hands meet the skin elsewhere."""
+    """Compare with tolerances: other versions of the libraries round differently."""
     kept = {one.key: one for one in stored()}[key]
     again = play(setup(key[0]), *key)
     assert again.measures.completion_time_s == pytest.approx(

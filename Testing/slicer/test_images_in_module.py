@@ -104,7 +104,7 @@ def test_unusable_images_are_reported_beside_the_scenario(host):
     host.press("showScenarioButton")
     told = "There are no images in the slice views: "
     host.wait_until(lambda: told in host.text("scenarioText"), "it is told")
-    assert "volume.nrrd must begin as NRRD files do" in host.text("scenarioText")
+    assert "volume.nrrd must start as NRRD files do" in host.text("scenarioText")
     assert images(host) is None
     assert host.messages == []
 

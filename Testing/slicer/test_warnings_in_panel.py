@@ -67,7 +67,7 @@ def onto(row, other):
     [
         (rows(0, 1, 3, 2, *range(4, 15)), "Points 3 and 4 seem to be exchanged", "Put in order"),
         (rows(*range(14, -1, -1)), f"({ALL}) are in reverse order", "Put in order"),
-        (rows(*range(1, 15), 0), f"({ALL}) begin elsewhere", "Put in order"),
+        (rows(*range(1, 15), 0), f"({ALL}) start elsewhere", "Put in order"),
         (onto(9, 4), "Points 5 and 10 of the moving points", "Leave out 10"),
         (moved(6, [9.0, -6.0, 5.0]), "Point 7 lies", "Leave out 7"),
     ],

@@ -1,4 +1,4 @@
-"""Answers and versions leave a study as they were stored: as tables, as xAPI and in the report."""
+"""Exports of answers, scores and versions as tables, as xAPI and in the report."""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""Points and trials from CSV files, good and bad."""
+"""Points and trials from valid and invalid CSV files."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Files are hostile until read, and whole once written."""
+"""Files are untrusted when read, and written as a whole."""
 
 import json
 import os

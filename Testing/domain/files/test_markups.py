@@ -1,4 +1,4 @@
-"""Markups files: what Slicer writes we read, what we write Slicer reads."""
+"""Markups files are compatible with Slicer's, in both directions."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Volumes as NRRD files: what is written is read back, and what is made to do harm is refused."""
+"""Volumes as NRRD files are written and read back, and malicious ones are refused."""
 
 import gzip
 import tracemalloc
@@ -17,7 +17,7 @@ def grays(kind=np.uint8, shape=(5, 6, 7)):
 
 
 def good_file(values=None):
-    """The parts of a file that can be used: its fields and its voxels."""
+    """The fields and voxels of a valid file."""
     values = grays() if values is None else values
     fields = {
         "type": "uint8",
@@ -39,7 +39,7 @@ def write(path, fields, voxels, end="\n"):
 
 
 def changed(path, voxels=None, **changes):
-    """Write a file with some fields otherwise, or left out where they are None."""
+    """Write a file with changed fields, or without those that are None."""
     fields, good = good_file()
     fields |= {name.replace("_", " "): value for name, value in changes.items()}
     kept = {name: value for name, value in fields.items() if value is not None}
@@ -186,7 +186,7 @@ def test_damaged_or_truncated_voxels_are_refused(tmp_path):
 @pytest.mark.parametrize("content", [b"NRRD", b"NRRD0004\ntype: uint8\n", b"\x93NUMPY", bytes(99)])
 def test_a_file_that_is_not_nrrd_is_refused(tmp_path, content):
     (tmp_path / "bad.nrrd").write_bytes(content)
-    with pytest.raises(InputError, match=r"bad\.nrrd must (begin as NRRD files do|have a header)"):
+    with pytest.raises(InputError, match=r"bad\.nrrd must (start as NRRD files do|have a header)"):
         read_nrrd(tmp_path / "bad.nrrd")
 
 

@@ -1,4 +1,4 @@
-"""Lists of points: what they may hold and how two of them are paired."""
+"""Point lists and how two of them are paired."""
 
 import numpy as np
 import pytest

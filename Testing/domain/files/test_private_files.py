@@ -1,4 +1,4 @@
-"""What is recorded of people is for its user alone; what is shared on purpose stays so."""
+"""Recordings are private to their user; files shared on purpose stay shared."""
 
 import logging
 import os
@@ -21,7 +21,7 @@ ENTRY = {"type": "header", "trainee": "T-001"}
 
 @pytest.fixture(autouse=True)
 def generous():
-    """The umask by which all may read and the group may write."""
+    """A umask that lets others read and the group write."""
     before = os.umask(0o002)
     yield
     os.umask(before)
@@ -32,7 +32,7 @@ def mode(path):
 
 
 def use(home):
-    """Do all that leaves something behind of people, in the user's folders."""
+    """Create all private files in the user's folders."""
     Study.open(home / "RASTrainer" / "study.db", make_folder=True).close()
     records = RecordsFolder(home / "RASTrainer" / "trials")
     journal = Journal(home / "RASTrainer" / "trials" / f"{uuid.uuid4()}.journal")

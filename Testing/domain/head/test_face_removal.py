@@ -1,4 +1,4 @@
-"""The face goes, and nothing else of the head."""
+"""Only the face is removed from a head."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ BASE = -75.0
 
 
 def head(nose_mm=22.0, brow_mm=4.0):
-    """A ball with a flat base, a nose, and brows that could tell who it is."""
+    """A ball with a flat base, a nose, and recognizable brows."""
     sphere = sphere_mesh(5)
     vertices = sphere.vertices.copy()
     direction = NOSE / np.linalg.norm(NOSE)

@@ -1,7 +1,5 @@
 """Nearest points, normals and visibility on a surface, and distances along it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import trimesh

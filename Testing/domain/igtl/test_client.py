@@ -1,4 +1,4 @@
-"""The plain client against a server of a few lines, good and bad."""
+"""The plain client with a minimal server."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SUCCESS = {"Status": "SUCCESS"}
 
 
 class Peer:
-    """A server for one client that does to each message what `answer` says."""
+    """A server for one client that handles each message with `answer`."""
 
     def __init__(self, answer=lambda _peer, _message: None, greeting: bytes = b""):
         self._answer = answer
@@ -52,7 +52,7 @@ class Peer:
 
 @pytest.fixture
 def peer():
-    """Makes servers, and ends them."""
+    """Makes servers and closes them."""
     peers = []
 
     def make(*arguments, **options):

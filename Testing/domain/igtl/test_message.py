@@ -1,4 +1,4 @@
-"""Whole messages against bytes that were worked out by hand, and what can never be sent."""
+"""Messages against bytes computed by hand, and messages that cannot be sent."""
 
 from __future__ import annotations
 

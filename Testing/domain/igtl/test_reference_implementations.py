@@ -1,7 +1,5 @@
 """Our bytes are those of pyigtl and fastcrc, independent implementations."""
 
-from __future__ import annotations
-
 import random
 
 import fastcrc

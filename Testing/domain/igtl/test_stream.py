@@ -1,4 +1,4 @@
-"""The reader of byte streams: whole messages out of any pieces, nothing else out of any bytes."""
+"""The stream reader returns complete messages from any pieces, and nothing from other bytes."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def test_reader_finds_the_next_message_after_a_truncated_body(reader):
 def test_a_stream_that_does_not_begin_with_a_message_is_not_searched_for_one(reader, beginning):
     assert reader.feed(beginning + bytes(60)) == []
     assert reader.feed(pack(CALL)) == []
-    assert reader.refusal == "It does not begin with an OpenIGTLink message."
+    assert reader.refusal == "It does not start with an OpenIGTLink message."
 
 
 def test_endless_garbage_ends_the_stream_and_takes_no_memory(reader):

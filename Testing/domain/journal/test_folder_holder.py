@@ -1,4 +1,4 @@
-"""Who records in a folder is read from the lock that it holds, and only while it does."""
+"""The simulator that records in a folder is read from the lock while it is held."""
 
 import os
 
@@ -13,7 +13,7 @@ HOLDER = FolderHolder(
 
 @pytest.fixture
 def held(tmp_path):
-    """A lock that is held, by its descriptor."""
+    """The descriptor of a held lock."""
     descriptor = os.open(tmp_path / LOCK_NAME, os.O_RDWR | os.O_CREAT)
     lock(descriptor)
     yield descriptor

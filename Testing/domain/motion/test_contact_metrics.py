@@ -1,6 +1,4 @@
-"""Contact that was not meant and pressing: on made-up movements, with numbers by hand."""
-
-from __future__ import annotations
+"""Unintended contact and pressing depth, compared with values computed by hand."""
 
 from dataclasses import replace
 
@@ -23,7 +21,7 @@ SEEDS = range(20)
 
 
 def straight(touches=(), contacts=(), **more):
-    """Return a way of 100 mm along x in 10 s, at an even speed."""
+    """Return a path of 100 mm along x in 10 s, at constant speed."""
     times = np.arange(0.0, 10.0 + 1e-9, 1 / RATE_HZ)
     tip = np.column_stack([10.0 * times, 0 * times, 0 * times])
     depth = np.zeros(len(times))
@@ -85,7 +83,7 @@ def test_contact_after_the_last_sample_is_at_the_last_tip_position():
 
 
 def fifteen(depths_mm, further=()):
-    """Return fifteen touches, each in a contact of its own, and further contacts."""
+    """Return fifteen touches in separate contacts, and further contacts."""
     touches = [touch(str(i + 1), 5.0 * i, 0.5 * i + 0.1) for i in range(15)]
     contacts = [
         Interval(0.5 * i, 0.5 * i + 0.2, greatest_depth_mm=depth)
@@ -134,7 +132,7 @@ def test_an_unknown_depth_is_omitted_and_not_zero():
 
 
 def drawn(seed, has_touches=True):
-    """Return a random movement with touches at random places of it and five contacts."""
+    """Return a random movement with random touches and five contacts."""
     random = np.random.default_rng(seed)
     times = np.arange(501) / RATE_HZ
     tip = np.cumsum(random.normal(0.0, 1.0, (501, 3)), axis=0)
@@ -206,7 +204,7 @@ def entry(kind, time, **more):
 
 
 def recorded(**of_each):
-    """Return the entries of one contact with a touch in it; `of_each` is told by every entry."""
+    """Return the entries of one contact with a touch in it, each with `of_each`."""
     return [
         entry("header", 0.01, tickS=0.01),
         entry("sample", 0.02, tipMm=[0, 0, 0], clearanceMm=1.0, **of_each),

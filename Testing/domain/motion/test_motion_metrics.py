@@ -1,4 +1,4 @@
-"""Motion metrics agree with values that others computed or that follow by hand."""
+"""Motion metrics agree with published values or values computed by hand."""
 
 import numpy as np
 import pytest

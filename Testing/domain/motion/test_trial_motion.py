@@ -1,4 +1,4 @@
-"""Motion metrics of a whole trial, on movements whose numbers follow by hand."""
+"""Motion metrics of a whole trial, compared with values computed by hand."""
 
 import itertools
 from dataclasses import replace
@@ -17,7 +17,7 @@ from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
 
 def reaches(corners_mm, duration_s=2.0, rest_s=1.0, rate_hz=50.0):
-    """Minimum-jerk reaches from corner to corner with rests, touched in the middle of each rest."""
+    """Minimum-jerk reaches between corners with rests, touched in the middle of each rest."""
     t = np.arange(0, duration_s, 1 / rate_hz) / duration_s
     shape = 10 * t**3 - 15 * t**4 + 6 * t**5
     rest = int(rest_s * rate_hz)
@@ -57,7 +57,7 @@ def test_path_speed_and_rest_of_minimum_jerk_reaches(trajectory):
 
 
 def whole(trajectory, **more):
-    """The trajectory of a trial in which the last fiducial was touched, and its task is known."""
+    """A complete trial of a known task."""
     known = {str(i + 1): point + 0.1 * i**2 for i, point in enumerate(CORNERS)}
     return replace(trajectory, fiducials_mm=known, shortest_path_mm=350.0, **more)
 

@@ -1,4 +1,4 @@
-"""The expected TRE allows for an offset that all touches share, and says what it cannot see."""
+"""The expected TRE allows for an offset common to all touches."""
 
 import json
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Registrations and their residuals, and the points that cannot be registered."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import vtk

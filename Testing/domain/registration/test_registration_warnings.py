@@ -1,4 +1,4 @@
-"""Points that look wrong are registered all the same, with a sentence that names them."""
+"""Suspicious points are registered with a warning that names them."""
 
 import numpy as np
 import pytest

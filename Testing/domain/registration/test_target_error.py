@@ -1,4 +1,4 @@
-"""Expected target error: Fitzpatrick's formula, and intervals that hold the true error."""
+"""The expected target error agrees with Fitzpatrick's formula and holds the true error."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def fiducials(count, seed=0):
 
 
 def simulated(fixed, target, kind, deviation, trials, seed=1):
-    """FRE and length of TRE of many noisy registrations, the true transform being known."""
+    """FRE and length of TRE of many noisy registrations with a known transform."""
     rng = np.random.default_rng(seed)
     true = transforms.rigid(Rotation.random(random_state=seed).as_matrix(), [10, 700, -40])
     exact = transforms.apply(transforms.inverse(true), fixed)
@@ -130,7 +130,7 @@ def ball_cap(count, seed):
 
 
 def slipping(normals, along, across, rng):
-    """Errors of touches that the skin stops: `along` it and `across` it, mm each coordinate."""
+    """Errors of touches stopped by the skin: `along` and `across` it, mm per coordinate."""
     errors = rng.normal(size=normals.shape) * along
     part = (errors * normals).sum(axis=1)
     return errors + (rng.normal(size=len(normals)) * across - part)[:, None] * normals

@@ -1,4 +1,4 @@
-"""Weighted registration: the fit, its expected FRE and TRE, and the command that offers it."""
+"""Weighted registration: the fit, its expected FRE and TRE, and the command."""
 
 import json
 
@@ -188,7 +188,7 @@ def test_invalid_weights_are_refused_with_a_message(weights, kind, told):
 
 @pytest.fixture
 def files(tmp_path):
-    """Moving points with a column of their own for FLE, and fixed points in another order."""
+    """Moving points with a column for FLE, and fixed points in another order."""
     rng = np.random.default_rng(8)
     fixed, fle = fiducials(6), localization_errors(6)
     moving = posed(fixed)[0] + rng.normal(size=fixed.shape) * fle[:, None] / np.sqrt(3)

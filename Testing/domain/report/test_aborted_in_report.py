@@ -1,4 +1,4 @@
-"""Report and exports tell of aborted trials; whoever aborts what went wrong is not competent."""
+"""Aborted trials in reports and exports; aborting bad trials does not show competence."""
 
 import csv
 import io
@@ -26,7 +26,7 @@ REASON = "the head had slipped from its stand"
 
 @pytest.fixture
 def path(tmp_path):
-    """A study of which B aborted a trial and said why it is repeated, A another one."""
+    """A study in which B explained an aborted trial, and A aborted another one."""
     path = tmp_path / "study.db"
     study_with_trials(path)
     with Study.open(path) as study:

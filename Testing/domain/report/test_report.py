@@ -1,4 +1,4 @@
-"""A study's report: the paper's tables to the digit, self-contained, honest, safe."""
+"""The report of a study: the paper's tables, self-contained, escaped and complete."""
 
 import csv
 import re
@@ -33,7 +33,7 @@ VOID = {"meta", "br", "img", "hr", "link", "input"}
 
 
 class Balanced(HTMLParser):
-    """Fails on tags that do not match."""
+    """Fails on unbalanced tags."""
 
     def __init__(self):
         super().__init__()
@@ -175,7 +175,7 @@ def test_negative_numbers_have_a_minus_sign_not_a_hyphen(page):
 
 
 def mean_ctps_of_tasks(mode):
-    """Return the CTPS of each task by the printed tables alone."""
+    """Return the CTPS of each task from the printed tables."""
     with PUBLISHED.open() as file:
         rows = [row for row in csv.DictReader(file) if row["mode"] == mode]
     times, errors = (np.array([float(row[name]) for row in rows]) for name in ("ct", "rmse"))

@@ -1,4 +1,4 @@
-"""A scenario on a ball of a head, for tests of files and packages."""
+"""A scenario on a spherical head, for tests of files and packages."""
 
 import struct
 import zlib
@@ -34,7 +34,7 @@ def ball_head(radius=90.0):
 
 
 def ball_volume(radius=90.0, spacing=4.0):
-    """The images of a ball of a head: 100 in it, 0 around it."""
+    """The images of a spherical head: 100 inside, 0 outside."""
     count = int(2 * (radius + 20.0) / spacing)
     matrix = np.diag([spacing, spacing, spacing, 1.0])
     matrix[:3, 3] = -spacing * (count - 1) / 2.0

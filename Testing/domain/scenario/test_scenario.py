@@ -57,7 +57,7 @@ def write(folder, content):
 
 
 def changed(path, value):
-    """The scenario with one field replaced, given by its path such as cameras.far.viewUp."""
+    """The scenario with one field replaced, given by a path such as cameras.far.viewUp."""
     content = json.loads(json.dumps(SCENARIO))
     *parents, last = path.split(".")
     place = content

@@ -1,4 +1,4 @@
-"""Writing scenarios, listing them, and their set-ups."""
+"""Writing and listing scenarios, and their set-ups."""
 
 import json
 

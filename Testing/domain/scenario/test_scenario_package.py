@@ -1,4 +1,4 @@
-"""Scenarios as zip files, and zip files that are up to no good."""
+"""Scenarios as zip files, and malicious zip files."""
 
 import io
 import json

@@ -1,7 +1,5 @@
 """Tasks in files, and the order in which placed fiducials are touched."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

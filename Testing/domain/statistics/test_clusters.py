@@ -1,4 +1,4 @@
-"""Groups of trainees are found where they are, and refused where they are not."""
+"""Groups of trainees are found only if they exist."""
 
 import contextlib
 

@@ -1,4 +1,4 @@
-"""Modes done one after the other: the effect of the period is told from that of the mode."""
+"""The effect of the period is separated from that of the mode."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""Where nothing is true, each statistic of a report says so in about 95 of 100 studies."""
+"""Without any effect, each statistic of a report is negative in about 95 of 100 studies."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ LEAST = 0.05 - 3 * np.sqrt(0.05 * 0.95 / STUDIES)
 
 @pytest.fixture
 def quick(monkeypatch):
-    """Leave the effect size's interval out: it is costly, and no test depends on it."""
+    """Omit the interval of the effect size, which is costly and not tested here."""
     monkeypatch.setattr(paired, "noncentrality_interval", lambda *_values: (0.0, 0.0))
 
 

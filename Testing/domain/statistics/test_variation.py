@@ -1,4 +1,4 @@
-"""What the trials of a study vary by is told without bias, or not at all."""
+"""Estimates of the variation of trials are unbiased."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""A small study that was led by a protocol, with trials, answers and steps that were left out."""
+"""A small study with a protocol, trials, answers and skipped steps."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +14,7 @@ STUDIES = Path(__file__).parents[3] / "assets" / "studies"
 
 
 def study_with_trials(path, consent=True):
-    """A has done all, B the first trial only; A has also played the last task once more."""
+    """A has done all steps and repeated the last task, B only the first trial."""
     with Study.open(path) as study:
         progress = StudyProgress(study)
         published = read_study_protocol(STUDIES / "published-protocol.json")

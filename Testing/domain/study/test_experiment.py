@@ -1,4 +1,4 @@
-"""A study's protocol: read with clear sentences, balanced, resumed, never skipped silently."""
+"""A study's protocol: read with clear errors, balanced, resumed, never skipped silently."""
 
 import itertools
 import json

@@ -1,4 +1,4 @@
-"""Questionnaires are scored as their authors say."""
+"""Questionnaires are scored as published."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Who reads a study changes nothing of it: not its rows, not its bytes, not its time."""
+"""Reading a study changes neither its rows nor its bytes nor its time."""
 
 import argparse
 import os
@@ -34,7 +34,7 @@ def run(*words):
 
 @pytest.fixture
 def path(tmp_path):
-    """A study in mid-protocol: B has played a trial that nobody has counted yet."""
+    """A study with a stored trial of B that is not counted yet."""
     path = tmp_path / "study" / "study.db"
     path.parent.mkdir()
     study_with_trials(path)
@@ -54,7 +54,7 @@ def path(tmp_path):
 
 
 def seen(path):
-    """Everything that could tell of a write: the files there, their bytes and times."""
+    """The files with bytes and times, which any write would change."""
     return {
         each.name: (each.read_bytes(), each.stat().st_mtime_ns) for each in path.parent.iterdir()
     }

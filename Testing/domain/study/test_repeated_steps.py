@@ -1,4 +1,4 @@
-"""A step of a study that was aborted is played again only with a reason, as none is skipped."""
+"""An aborted step is repeated only with a reason."""
 
 from dataclasses import replace
 from datetime import datetime, timezone

@@ -1,4 +1,4 @@
-"""The study keeps what it is given: once, whole, and only as long as the trainee wants."""
+"""The study stores trials once and completely, until their trainee is deleted."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""The study's file under several processes, kills, damage and other programs."""
+"""The study's file with concurrent processes, kills, damage and foreign files."""
 
 import json
 import multiprocessing
@@ -63,7 +63,7 @@ def test_concurrent_writers_lose_and_duplicate_nothing(tmp_path):
 
 
 def write_until_killed(path, first, acknowledged):
-    """Store trials of rising number and tell each once it is stored."""
+    """Store numbered trials and report each one."""
     record = make_record()
     with Study.open(path) as study:
         for number in range(first, 100_000):
@@ -73,7 +73,7 @@ def write_until_killed(path, first, acknowledged):
 
 
 class KilledWriter:
-    """A process that stores trials as fast as it can, until it is killed in the middle."""
+    """A process that stores trials as fast as possible until it is killed."""
 
     def __init__(self, path, first):
         context = multiprocessing.get_context("fork")
@@ -83,7 +83,7 @@ class KilledWriter:
         os.close(telling)
 
     def kill(self):
-        """Kill it and return the numbers of the trials that it was told are stored."""
+        """Kill it and return the numbers of the trials reported as stored."""
         self._process.kill()
         self._process.join()
         with os.fdopen(self._told) as lines:
@@ -269,7 +269,7 @@ def test_a_full_disk_is_reported_and_stored_data_remain(tmp_path):
 
 @pytest.fixture
 def locked(tmp_path):
-    """The path of a study that another program has locked."""
+    """The path of a study locked by another program."""
     path = tmp_path / "study.db"
     Study.open(path).close()
     other = sqlite3.connect(path, isolation_level=None)
@@ -284,7 +284,7 @@ def test_a_study_locked_by_another_program_is_reported(locked):
 
 
 class CountedLockWait(LockWait):
-    """Notes how long SQLite is allowed to wait each time."""
+    """Records how long SQLite may wait each time."""
 
     def __init__(self):
         super().__init__(0.05, rest_s=1.0, clock=lambda: self.now)

@@ -1,4 +1,4 @@
-"""True against expected target error: what counts, what is said, and the report's section."""
+"""Calibration of expected target errors, and its section in the report."""
 
 import numpy as np
 import pytest

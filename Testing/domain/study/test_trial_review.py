@@ -1,4 +1,4 @@
-"""A trial is reviewed as its study's protocol says, with its place among the trainee's own."""
+"""A trial is reviewed with its study's protocol and the trainee's history."""
 
 import json
 import uuid
@@ -34,7 +34,7 @@ TRUTH = RevealedTruth(tuple(np.eye(4).ravel().tolist()), 0.0)
 
 
 def exact_touches(number, task="task-1"):
-    """The record of a trial in which every fiducial was touched exactly, as JSON."""
+    """The JSON record of a trial with exact touches."""
     record = make_record(
         trialId=str(uuid.UUID(int=number)),
         task=task,
@@ -48,7 +48,7 @@ def exact_touches(number, task="task-1"):
 
 
 def reviewed(study, number, task="task-1"):
-    """Such a trial, stored with its results."""
+    """A trial with exact touches, stored with its results."""
     record = exact_touches(number, task)
     registered = analyze_trial(TrialRecord.from_json(record), SCENARIO)
     analysis = review(registered, TRUTH, SCENARIO, study)

@@ -1,4 +1,4 @@
-"""An aborted trial is kept as it was delivered, counts as tried, and goes with its trainee."""
+"""An aborted trial is stored as delivered, counts as an attempt, and can be deleted."""
 
 import json
 import sqlite3

@@ -1,4 +1,4 @@
-"""CTPS: the paper's own numbers, and how it behaves."""
+"""CTPS: the paper's own numbers, and its properties."""
 
 from dataclasses import replace
 from pathlib import Path

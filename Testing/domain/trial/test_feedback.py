@@ -1,4 +1,4 @@
-"""After a trial the trainee learns what it was worth, what hurt and why, and what to improve."""
+"""Feedback on a trial: score, inaccurate touches and their reasons, advice."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ TANGENTS /= np.linalg.norm(TANGENTS, axis=1, keepdims=True)
 
 
 def registered(errors, seed=0):
-    """A registration of touches that are off by (15, 3) errors and a little noise."""
+    """A registration of touches with (15, 3) errors and a little noise."""
     noise = np.random.default_rng(seed).normal(0, 0.15, (15, 3))
     return register(FIXED + errors + noise, FIXED, labels=LABELS)
 
@@ -34,7 +34,7 @@ EVEN = touch_findings(registered(np.zeros((15, 3))))
 
 
 def recording(hurried=(), shaking=()):
-    """Two seconds a point, the tip resting at the point for the second half."""
+    """Two seconds per point, with the tip at rest in the second half."""
     rng = np.random.default_rng(1)
     times = np.arange(0, 30, 0.02)
     tip = np.zeros((len(times), 3))

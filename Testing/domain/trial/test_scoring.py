@@ -1,4 +1,4 @@
-"""Our score keeps each word it promises."""
+"""The score has the documented properties."""
 
 import inspect
 import json

@@ -1,4 +1,4 @@
-"""The trial record: what the simulator may deliver and the study may keep."""
+"""The trial record: what the simulator may deliver and the study may store."""
 
 import json
 

@@ -64,12 +64,12 @@ REFERENCE = ScoreReference(time_s=105.0, tre_mm=0.4)
 
 
 def gentle_score(time_s: float, tre_mm: float, reference: ScoreReference = REFERENCE) -> TrialScore:
-    """Return the score of a trial without unintended contact in which nothing was pressed."""
+    """Return the score of a trial without unintended contact or pressing."""
     return score_trial(ScoreMeasures(time_s, tre_mm, 0.0, 0.0, 0.0), reference)
 
 
 def first_score(time_s: float, tre_mm: float) -> TrialScore:
-    """Return a score as version 1 made them: of time and expected TRE alone."""
+    """Return a score of version 1: of time and expected TRE."""
     return replace(
         gentle_score(time_s, tre_mm),
         safety_desirability=None,

@@ -118,7 +118,7 @@ def _read_header(path: Path, content: bytes) -> tuple[_Header, int]:
     text, separator, _ = head.partition(b"\n\n")
     magic, _, rest = text.decode("latin-1").partition("\n")
     if not _MAGIC.fullmatch(magic):
-        raise _wrong(path, "begin as NRRD files do")
+        raise _wrong(path, "start as NRRD files do")
     if not separator:
         raise _wrong(path, f"have a header of at most {_MAX_HEADER_BYTES // 1024} KiB")
     fields = _fields(path, rest)

@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 MAX_BYTES = 64_000_000
 MAX_TRIANGLES = 1_000_000
 RAS_LIMIT_MM = 2000.0
-"""Of every place in a patient: scanners may count from far away."""
+"""Limit of coordinates; scanners may have a distant origin."""
 
 
 _HEADER = """ply

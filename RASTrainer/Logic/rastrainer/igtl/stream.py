@@ -128,7 +128,7 @@ class MessageReader:
 
     def _find_next_header(self) -> bool:
         if not self.taken:
-            self.refusal = "It does not begin with an OpenIGTLink message."
+            self.refusal = "It does not start with an OpenIGTLink message."
             return False
         if not self._garbage:
             self.errors[StreamError.GARBAGE] += 1

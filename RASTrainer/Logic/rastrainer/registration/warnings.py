@@ -154,8 +154,8 @@ def _order(
         )
     else:
         fault = (
-            f"The moving points ({', '.join(labels)}) begin elsewhere in the list: the one "
-            f"at {labels[order[0]]} belongs to the fixed point {labels[0]}; begin both lists alike"
+            f"The moving points ({', '.join(labels)}) start elsewhere in the list: the one "
+            f"at {labels[order[0]]} belongs to the fixed point {labels[0]}; start both lists alike"
         )
     message = f"{fault} (rigid FRE {before:.1f} mm, in the right order {after:.1f} mm)."
     return RegistrationWarning("order", moved, message)

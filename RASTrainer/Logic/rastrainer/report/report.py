@@ -19,9 +19,8 @@ from rastrainer.report.sections.learning import learning
 from rastrainer.report.sections.methods import limits, methods
 from rastrainer.report.sections.mode_comparison import distributions, mode_comparison, motion
 from rastrainer.report.sections.paired_statistics import findings, order_caveat, paired_statistics
-from rastrainer.report.sections.passing import passing
+from rastrainer.report.sections.passing import passing, started_trials
 from rastrainer.report.sections.published_tables import paper_notes, published_tables
-from rastrainer.report.sections.started_trials import started_trials
 from rastrainer.report.sections.trainees import groups, questionnaires
 from rastrainer.report.sections.variation import variation
 from rastrainer.statistics.few_subjects import FEW_SUBJECTS

@@ -25,7 +25,7 @@ LENGTH_UNIT_MM = 100.0
 ANGLE_UNIT_DEG = 90.0
 
 GRAZING_DEG = 75.0
-"""A fiducial whose normal is farther than this from the direction to the eye cannot be read."""
+"""A fiducial at a larger angle between normal and eye is unreadable."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Trials on their way into the study and out of it: stored, analyzed, with feedback."""
+"""Storing, registering and scoring delivered trials, with feedback."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from rastrainer.trial.trainee_progress import PastTrial, progress_of
 
 @dataclass(frozen=True)
 class DeliveredTrial:
-    """A trial that is safe in the study.
+    """A trial that is stored in the study.
 
     Attributes:
         record: the trial.
-        analysis: its registration; None where it is not to be scored now, or cannot be.
-        problem: why it cannot be registered, a sentence; empty otherwise.
+        analysis: its registration, or None if not to be scored now.
+        problem: why it cannot be registered; empty otherwise.
     """
 
     record: TrialRecord
@@ -43,16 +43,16 @@ def store_delivered(
     analyze: Callable[[TrialRecord], TrialAnalysis],
     is_being_scored: bool = False,
 ) -> DeliveredTrial:
-    """Store a trial with its registration, once; what is known already is not scored again.
+    """Store a trial with its registration, once; known trials are not scored again.
 
     Args:
-        value: the trial as it was delivered.
-        study: in which it is stored.
-        analyze: registers a record; `InputError` where that cannot be.
+        value: the trial as delivered.
+        study: the study.
+        analyze: registers a record; may raise `InputError`.
         is_being_scored: whether its registration or score is being sent to the simulator.
 
     Raises:
-        InputError: it is no record of a trial, or cannot be stored.
+        InputError: the record is invalid, or cannot be stored.
         DeletedTrialError: it was deleted with its trainee.
     """
     record = TrialRecord.from_json(value)
@@ -117,19 +117,17 @@ def scored_with_journal(
 def trajectory_of(
     record: TrialRecord, records: Path | None, pause: Callable[[], None] = lambda: None
 ) -> Trajectory | None:
-    """Return a trial's trajectory from its journal; None where there is no folder or journal."""
+    """Return a trial's trajectory from its journal, or None."""
     if records is None or not records.is_dir():
         return None
     return read_trajectory(records, record.trial_id, pause)
 
 
 def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
-    """Return the analysis of a stored trial, with its place among the trainee's own trials.
-
-    A trial run is for getting to know everything: it passes nothing.
+    """Return the analysis of a stored trial with the trainee's progress; trial runs have none.
 
     Raises:
-        InputError: the study has no such trial.
+        InputError: an unknown trial.
     """
     record = analysis.record
     if record.task == TRIAL_RUN or study.trial(record.trial_id).score is None:

@@ -27,11 +27,11 @@ from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
 
 @dataclass(frozen=True)
 class RevealedTruth:
-    """Where the head was.
+    """The true pose of the head.
 
     Attributes:
         head_to_world: 16 numbers, row by row, mm, from MRI RAS to World.
-        true_tre_mm: how far the registration put the target from where it is.
+        true_tre_mm: true error of the registration at the target.
     """
 
     head_to_world: tuple[float, ...]
@@ -44,10 +44,10 @@ class RevealedTruth:
 
     @classmethod
     def from_json(cls, answer: Mapping[str, Any]) -> RevealedTruth:
-        """Return what the answer to SubmitRegistration or GetTrial reveals.
+        """Return the truth in an answer to SubmitRegistration or GetTrial.
 
         Raises:
-            InputError: it reveals nothing, or not numbers.
+            InputError: it is missing or invalid.
         """
         try:
             return cls(
@@ -62,12 +62,12 @@ class RevealedTruth:
 
 @dataclass(frozen=True)
 class PublishedScore:
-    """CTPS of a trial against a cohort; see `rastrainer.trial.ctps` for what speaks against it.
+    """CTPS of a trial within a cohort; `rastrainer.trial.ctps` describes its weaknesses.
 
     Attributes:
-        published: 100·(CT score − RMSE penalty), from which the paper's tables follow.
+        published: 100·(CT score − RMSE penalty), as in the paper's tables.
         equation_3: the paper's equation 3 as printed: half of it.
-        reference: what the cohort gave to compare with.
+        reference: of the cohort.
     """
 
     published: float
@@ -77,17 +77,17 @@ class PublishedScore:
 
 @dataclass(frozen=True)
 class TrialAnalysis:
-    """The numbers of one trial.
+    """The results of one trial.
 
     Attributes:
         record: the trial.
-        target_name: of the scenario's target, at which the target errors are computed.
-        fits: the registration of each kind that the points allow; rigid is always there.
-        target_errors: by kind, the error to expect at the target.
-        truth: what the simulator has revealed; None before.
-        score: ours, of the rigid registration; None without the truth.
-        published_score: CTPS of the rigid registration; None where no cohort was given.
-        feedback: for the trainee, on this trial alone.
+        target_name: of the scenario's target, at which target errors are computed.
+        fits: possible registrations by kind; rigid is always included.
+        target_errors: expected error at the target, by kind.
+        truth: revealed by the simulator; None before.
+        score: of the rigid registration; None without the truth.
+        published_score: CTPS of the rigid registration; None without a cohort.
+        feedback: on this trial alone.
     """
 
     record: TrialRecord
@@ -106,7 +106,7 @@ class TrialAnalysis:
 
     @property
     def expected_tre(self) -> TargetError:
-        """The error to expect at the target with the registration that is scored."""
+        """The expected target error of the scored registration."""
         return self.target_errors[RIGID]
 
     def scored(
@@ -116,16 +116,16 @@ class TrialAnalysis:
         references: Mapping[str, ScoreReference] | None = None,
         trajectory: Trajectory | None = None,
     ) -> TrialAnalysis:
-        """Return the analysis with the truth and the score that is made of it.
+        """Return the analysis with the truth and its score.
 
-        The score is made of the true error of the rigid registration of all touches.
+        The score uses the true error of the rigid registration of all touches.
 
         Args:
-            scenario: in which the trial was played.
-            truth: what the simulator has revealed.
-            references: of the score, by task, as a study's protocol sets them; those of the
-                scenario for tasks that it leaves out.
-            trajectory: of the trial, from its journal; it explains why a touch was off.
+            scenario: of the trial.
+            truth: revealed by the simulator.
+            references: of the score, by task, from a study's protocol; the scenario's for other
+                tasks.
+            trajectory: from the journal; it explains inaccurate touches.
 
         Raises:
             InputError: the trial's contacts were not measured.
@@ -141,7 +141,7 @@ class TrialAnalysis:
         return replace(self, truth=truth, score=score, feedback=feedback)
 
     def scored_as(self, score: TrialScore | None) -> TrialAnalysis:
-        """Return the analysis with the score that was once made of the trial, in its version."""
+        """Return the analysis with a stored score, in its version."""
         advice = advise(score, self.feedback.touches, self.record.motion)
         return replace(
             self, score=score, feedback=replace(self.feedback, score=score, advice=advice)
@@ -207,7 +207,7 @@ def _normals_at(scenario: Scenario, task_name: str, labels: Sequence[str]) -> np
 def published_score(
     record: TrialRecord, fre_mm: float, cohort: Sequence[ctps.Trial]
 ) -> PublishedScore | None:
-    """Return the CTPS of a trial with this FRE; None where its mode has no peers to divide by."""
+    """Return the CTPS of a trial with this FRE, or None without a reference."""
     try:
         reference = ctps.CohortReference.of([t for t in cohort if t.mode == record.mode])
     except InputError:

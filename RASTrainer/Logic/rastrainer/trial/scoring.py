@@ -1,18 +1,18 @@
-"""RASTrainer's own score of a trial: 0 to 100, from completion time, true target error and safety.
+"""RASTrainer's score of a trial: 0 to 100, from completion time, true target error and safety.
 
-Each is a desirability (Harrington 1965, Derringer and Suich 1980) that falls strictly: faster, more
+Each is a strictly decreasing desirability (Harrington 1965, Derringer and Suich 1980): faster, more
 accurate and gentler are better. The score is the geometric mean of time and accuracy, times the
-square root of safety, which is 1 for a trial without unintended contact. What is beyond a limit of
-acceptance is cut so far that no such trial, however good otherwise, reaches any acceptable one.
+square root of safety, which is 1 without unintended contact. Exceeding a limit reduces the score so
+far that no such trial reaches any acceptable one.
 
-Accuracy is the true error, which only a simulator knows, over the region that the registration has
-to be right in (`rastrainer.trial.score_reference`): neither an FRE nor an expected TRE can see an
-offset that all touches share. The references come from the scenario
-(`rastrainer.trial.score_reference`), and the mode plays no part.
+Accuracy is the true error over the region in which the registration has to be right
+(`rastrainer.trial.score_reference`), which only a simulator knows: neither FRE nor expected TRE can
+detect an offset common to all touches. The references come from the scenario and do not depend on
+the mode.
 
-A pause is no completion time: the arm stands still, and a trainee who is called away shall not lose
-for it. But it is time to think that is not scored. So its length stands beside the score, and
-pauses longer in all than `LONG_PAUSE_S` are reported with it.
+Pauses are not part of the completion time: the arm is still, and interruptions should not cost
+points. But they give time to think, so pauses longer in total than `LONG_PAUSE_S` are reported with
+the score.
 """
 
 from __future__ import annotations
@@ -254,7 +254,7 @@ def _safety(contact_time_s: float, contact_path_mm: float, depth_mm: float) -> f
 
 
 def _worst_acceptable(reference: ScoreReference) -> float:
-    """Return the product of the desirabilities of a trial at all limits that takes for ever.
+    """Return the product of the desirabilities at all limits and infinite time.
 
     As a factor it brings every trial beyond a limit below every acceptable one.
     """

@@ -1,15 +1,15 @@
-"""Which trials reached the pass mark, and which trainees are competent by LC-CUSUM."""
+"""Started, aborted and passed trials, and which trainees are competent by LC-CUSUM."""
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from datetime import datetime
 
 import numpy as np
 
-from rastrainer.number_text import percent
+from rastrainer.number_text import counted, percent
 from rastrainer.report.elements.charts import learning_curves
-from rastrainer.report.elements.markup import figure, paragraph, section, table
+from rastrainer.report.elements.markup import bullets, figure, heading, paragraph, section, table
 from rastrainer.report.elements.scores import compared_version, versions_note
 from rastrainer.report.elements.svg import mode_color
 from rastrainer.statistics.competence import (
@@ -19,8 +19,9 @@ from rastrainer.statistics.competence import (
     fewest_trials,
     lc_cusum_limit,
 )
+from rastrainer.study.database.aborted_trials import StoredAborted
 from rastrainer.study.database.values import moment
-from rastrainer.study.outcomes import mode_title
+from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -37,6 +38,84 @@ from rastrainer.trial.trainee_progress import (
     TRAINING_TRIALS,
     competence_of,
 )
+
+STARTED_HEADER = [
+    *("trainee", "mode", "task", "started (n)", "finished"),
+    *("aborted before all touches", "aborted after all touches"),
+]
+
+
+def started_trials(data: StudyData) -> str:
+    """Return the section; "" if only finished trials are known, as in a CSV file."""
+    if not data.has_order:
+        return ""
+    scored = [stored for stored in data.aborted if not stored.record.is_trial_run]
+    runs = len(data.aborted) - len(scored)
+    total = len(data.trials) + len(scored)
+    parts = [paragraph(f"{len(data.trials)} of {total} started trials were finished.")]
+    if scored:
+        parts.append(table([STARTED_HEADER], _started_rows(data, scored)))
+        failed = sum(stored.record.counts_as_failed for stored in scored)
+        parts.append(
+            paragraph(
+                "Tasks of trainees who aborted none are left out of the table. An aborted trial "
+                f"with a touch ({failed} of {len(scored)}) counts as not passed in the pass mark's "
+                "LC-CUSUM; it has no score and no time for anything else here, so that what "
+                "follows is about the finished trials.",
+                "small",
+            )
+        )
+    if runs:
+        parts.append(
+            paragraph(
+                f"{counted(runs, 'trial run')} {'was' if runs == 1 else 'were'} ended without "
+                "being registered, as is usual; none counts."
+            )
+        )
+    if repeats := _repeats(scored):
+        parts += [heading("Steps of the protocol that were played again"), bullets(repeats)]
+    silent = sum(not stored.repeat_reason for stored in scored)
+    if data.protocol is not None and silent:
+        parts.append(
+            paragraph(
+                f"For {counted(silent, 'aborted trial')} no reason of a repeat is stored: the step "
+                "was not played again, was left out, or its repeat had arrived before.",
+                "small",
+            )
+        )
+    return section("Started trials", *parts)
+
+
+def _started_rows(data: StudyData, aborted: list[StoredAborted]) -> list[list[str]]:
+    finished = Counter((trial.trainee, trial.mode, trial.task) for trial in data.trials)
+    early: Counter[tuple[str, str, str]] = Counter()
+    late: Counter[tuple[str, str, str]] = Counter()
+    for stored in aborted:
+        record = stored.record
+        counter = late if record.is_after_all_touches else early
+        counter[record.trainee, record.mode, record.task] += 1
+    keys = sorted({*early, *late})
+    rows = [
+        [who, mode_title(mode), task_title(task), *_counts(finished[key], early[key], late[key])]
+        for key in keys
+        for who, mode, task in [key]
+    ]
+    whole = _counts(len(data.trials), sum(early.values()), sum(late.values()))
+    return [*rows, ["all trials of the study", "", "", *whole]]
+
+
+def _counts(finished: int, early: int, late: int) -> list[str]:
+    return [str(finished + early + late), str(finished), str(early), str(late)]
+
+
+def _repeats(aborted: list[StoredAborted]) -> list[str]:
+    return [
+        f"{stored.record.trainee}, {stored.step}, aborted with {len(stored.record.points)} points "
+        f"touched ({stored.record.reason}): {stored.repeat_reason}"
+        for stored in aborted
+        if stored.repeat_reason
+    ]
+
 
 HEADER = [
     *("mode", "trials", "passed", "trainees competent", "shown at trial (median)"),

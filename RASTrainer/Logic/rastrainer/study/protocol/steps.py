@@ -25,14 +25,14 @@ class Step:
     """One step.
 
     Attributes:
-        name: Unique on the trainee's way, such as `desktop/2/task-3`; it is stored.
-        kind: What is done.
-        mode: In which it is done; "" for what belongs to none.
-        task: That is played; "" where none is.
-        round: Of the task in this mode, from 1; 0 where none is played.
-        questionnaire: That is asked; "" where none is.
-        minutes: How long it takes (trial run) or at least takes (break); 0 where that is open.
-        guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
+        name: Unique for the trainee, such as `desktop/2/task-3`; it is stored.
+        kind: Of the step.
+        mode: Display mode; "" if none.
+        task: To be played; "" if none.
+        round: Of the task in this mode, from 1; 0 if none.
+        questionnaire: To be answered; "" if none.
+        minutes: Duration of a trial run, or minimum of a break; 0 if unlimited.
+        guidance: A `Guidance` to the next point; "" for the simulator's setting.
     """
 
     name: str

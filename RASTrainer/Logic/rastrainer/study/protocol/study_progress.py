@@ -57,7 +57,7 @@ class StudyProgress:
             elif stored != protocol:
                 raise InputError(
                     f"This study was started with another protocol, {stored.title!r}. Changing it "
-                    "half-way would spoil the study: begin a new one for the new protocol."
+                    "half-way would spoil the study: start a new one for the new protocol."
                 )
 
     def protocol(self) -> StudyProtocol | None:
@@ -261,7 +261,7 @@ def _protocol(connection: sqlite3.Connection) -> StudyProtocol | None:
 def _require_protocol(connection: sqlite3.Connection) -> StudyProtocol:
     protocol = _protocol(connection)
     if protocol is None:
-        raise InputError("The study has no protocol yet; begin it with a protocol's file.")
+        raise InputError("The study has no protocol yet; start it with a protocol file.")
     return protocol
 
 

@@ -20,17 +20,16 @@ class StudyStep:
 
     Attributes:
         trainee: Pseudonym.
-        kind: A `StepKind`, `REPEAT` where an aborted trial waits for a reason, `ALL_DONE` after
-            the last step, or `FREE` where no study leads.
-        number: Of the step, from 1; 0 where there is none.
-        count: Of all steps; 0 where there are none.
-        task: That is played; "" where none is.
-        mode: In which it is done; "" for what belongs to none.
-        questionnaire: That is asked; "" where none is.
-        minutes: How long it takes; 0 where that is open.
-        over: How many of these minutes are over when it is sent. It is not compared: a step is the
-            same step whenever it is sent.
-        guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
+        kind: A `StepKind`, `REPEAT` if an aborted trial needs a reason, `ALL_DONE` after the last
+            step, or `FREE` without a study.
+        number: Of the step, from 1; 0 if none.
+        count: Of all steps; 0 if none.
+        task: To be played; "" if none.
+        mode: Display mode; "" if none.
+        questionnaire: To be answered; "" if none.
+        minutes: Duration; 0 if unlimited.
+        over: Minutes elapsed when sent; not compared, since a step is the same whenever it is sent.
+        guidance: A `Guidance` to the next point; "" for the simulator's setting.
     """
 
     trainee: str
