@@ -190,7 +190,7 @@ def test_a_protocol_may_set_the_guidance_to_the_next_point(study):
     own = protocol(guidance="arrow")
     assert study_protocol_from_json(json.loads(protocol_text(own))) == own
     progress = StudyProgress(study)
-    progress.begin(own)
+    progress.set_protocol(own)
     progress.enroll("T001")
     progress.skip("T001", "hmd/before/ssq", "questionnaire sheets were missing")
     step = StudyStep.of("T001", progress.progress("T001"), datetime.now(timezone.utc))
