@@ -4,8 +4,6 @@ Exit status 0: asked, and nothing is known. 1: something is, or an answer cannot
 could be asked, because the service cannot be reached from here.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -4,8 +4,6 @@ Made from the lock files alone, so the same locks give the same bills. Needs `cy
 Python packages and npm for those of the page.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

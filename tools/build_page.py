@@ -5,8 +5,6 @@ installs is fixed by hashes in web/package-lock.json and installed once; the pag
 elsewhere when it runs. With `--check` the page's types are checked instead.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -6,8 +6,6 @@ The reference has a page for each folder of the packages, made of the docstrings
 reads the sources and runs none of them.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

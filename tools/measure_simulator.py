@@ -8,8 +8,6 @@ runs on; elsewhere it is what the wheels hold, less what is never opened. Writes
 RASTrainer/Resources/RASTrainerSimulator/sizes.json, which the module shows.
 """
 
-from __future__ import annotations
-
 import json
 import platform
 import subprocess

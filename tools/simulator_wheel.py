@@ -4,8 +4,6 @@ With it stands its SHA-256, by which the module knows it. Neither is kept in git
 them, and CMake refuses to package the extension without them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import subprocess
 import sys

@@ -4,8 +4,6 @@ Only Linux needs any: the wheels for Windows and macOS bring all. Nothing is ins
 there; where the machine is not Debian's or the user not root, what is missing is named.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import shutil

@@ -4,8 +4,6 @@ It is made from what is installed: the packages that requirements.lock names, as
 and license files tell, and the packages that go into the browser page.
 """
 
-from __future__ import annotations
-
 import importlib.metadata
 import json
 import re
@@ -54,11 +52,7 @@ def python_notices(lock: Path = LOCK) -> Iterator[Notice]:
             continue  # The lock is for every system; this package belongs to another.
         told = package.metadata
         yield Notice(
-            told["Name"],
-            package.version,
-            _license(told),
-            _home(told),
-            tuple(_legal_files(package)),
+            told["Name"], package.version, _license(told), _home(told), tuple(_legal_files(package))
         )
 
 

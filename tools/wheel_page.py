@@ -4,8 +4,6 @@ With it come the notices of what the page is made of. Python's packages are not 
 brings its own when it is installed.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any

@@ -6,8 +6,6 @@ in a function `long_rows() -> list[dict]`, which `--long` adds. Before each stan
 how fast the machine is.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib
 import json

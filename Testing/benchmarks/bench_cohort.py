@@ -1,7 +1,5 @@
 """Virtual trainees: time a trial, and how much faster a cohort is on all cores."""
 
-from __future__ import annotations
-
 import functools
 import os
 import time

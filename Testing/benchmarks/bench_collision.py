@@ -1,7 +1,5 @@
 """All clearances of a tick, beside coal's on the same shapes; and how deep a thousand rams get."""
 
-from __future__ import annotations
-
 import gc
 import time
 from collections.abc import Callable, Iterator

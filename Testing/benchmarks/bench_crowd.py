@@ -1,7 +1,5 @@
 """A hundred OpenIGTLink clients and twenty views at once: what each still gets, and the loop."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import multiprocessing
@@ -206,8 +204,7 @@ def rows(quick: bool) -> list[dict]:
         results = begin.Queue()
         # The crowd is a process of its own: it must not wait for its own measurement.
         crowd = begin.Process(
-            target=serve_crowd,
-            args=(simulator.port, simulator.view_port, key, seconds, results),
+            target=serve_crowd, args=(simulator.port, simulator.view_port, key, seconds, results)
         )
         crowd.start()
         time.sleep(SETTLE_S)

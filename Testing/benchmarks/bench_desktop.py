@@ -4,8 +4,6 @@ The window is 1920 × 1080 on a display in memory, so the processor draws: the w
 opened with its own settings, as a trainee would.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import tempfile

@@ -5,8 +5,6 @@ steps around the head. A time is the median of the runs of one target; Pinocchio
 ours within 1 nm and inside the limits, the peers within 0.1 mm.
 """
 
-from __future__ import annotations
-
 import gc
 import time
 from collections.abc import Sequence

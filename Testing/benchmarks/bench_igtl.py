@@ -1,7 +1,5 @@
 """The link's delay beside pyigtl's, and what the server's process costs."""
 
-from __future__ import annotations
-
 import socket
 import subprocess
 import sys

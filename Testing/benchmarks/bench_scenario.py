@@ -1,7 +1,5 @@
 """From a volume to a scenario: time the head of a phantom, and whole scenarios of real heads."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tempfile

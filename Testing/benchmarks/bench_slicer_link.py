@@ -4,8 +4,6 @@ In the host of the tests, which counts what Slicer would render and draws nothin
 simulator's process.
 """
 
-from __future__ import annotations
-
 import tempfile
 import time
 from collections.abc import Callable

@@ -3,8 +3,6 @@
 The host plays Slicer, whose main thread keeps Python's lock while it waits for events.
 """
 
-from __future__ import annotations
-
 import tempfile
 import uuid
 from collections.abc import Callable

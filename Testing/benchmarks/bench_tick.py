@@ -1,7 +1,5 @@
 """One whole tick of the simulation, and how punctual 250 of them a second are in the server."""
 
-from __future__ import annotations
-
 import dataclasses
 import gc
 import os

@@ -1,7 +1,5 @@
 """What a view costs: the stream, the scene, and the simulator's process while one watches."""
 
-from __future__ import annotations
-
 import secrets
 import tempfile
 import time

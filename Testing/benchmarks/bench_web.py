@@ -1,7 +1,5 @@
 """What the browser page costs: bytes, triangles, draw calls, memory, and the way to the pixel."""
 
-from __future__ import annotations
-
 import tempfile
 import time
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """What users would pick instead of FABRIK, set up to solve the same questions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pink
 import pinocchio as pin

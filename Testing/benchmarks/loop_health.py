@@ -1,7 +1,5 @@
 """How punctual the control loop of a running simulator is, as its heartbeat tells."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The speed of this machine at the moment, and what a process costs (Linux)."""
 
-from __future__ import annotations
-
 import os
 import time
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A row of the bench's table, with what it is compared with if there is such a thing."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

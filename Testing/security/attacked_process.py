@@ -1,7 +1,5 @@
 """What an attack costs the process that is attacked: memory, descriptors, punctuality."""
 
-from __future__ import annotations
-
 import re
 import time
 from collections import Counter

@@ -5,8 +5,6 @@
 `FOLDER` keeps the inputs that reached something new. Any exception ends it with status 77.
 """
 
-from __future__ import annotations
-
 import contextlib
 import struct
 import sys

@@ -1,7 +1,5 @@
 """What an input file may hold that is made to do harm."""
 
-from __future__ import annotations
-
 import json
 import random
 import struct

@@ -1,7 +1,5 @@
 """OpenIGTLink messages that are not quite what they should be, drawn from a seed."""
 
-from __future__ import annotations
-
 import json
 import random
 import struct

@@ -1,7 +1,5 @@
 """Views that send what they should not: mutated messages in mutated WebSocket frames."""
 
-from __future__ import annotations
-
 import json
 import random
 import socket

@@ -1,7 +1,5 @@
 """Whatever is sent to the OpenIGTLink port ends at worst the connection on which it came."""
 
-from __future__ import annotations
-
 import pytest
 
 from rastrainer.igtl.client import Client
@@ -10,13 +8,7 @@ from rastrainer.igtl.message import Message
 from rastrainer.protocol import COMMAND_ARGUMENTS, check_arguments
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.security.attacked_process import (
-    check_unharmed,
-    cost_of,
-    counted_in_log,
-    settled,
-    told,
-)
+from Testing.security.attacked_process import check_unharmed, cost_of, counted_in_log, settled, told
 from Testing.security.link_attack import LinkAttack
 from Testing.security.mutated_messages import COMMANDS, MutatedMessages, valid_messages
 from Testing.security.wire_police import SENT_TYPES

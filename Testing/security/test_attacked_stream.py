@@ -1,7 +1,5 @@
 """Whatever a view sends ends at worst that view."""
 
-from __future__ import annotations
-
 import secrets
 
 import pytest

@@ -1,7 +1,5 @@
 """A search by coverage finds no bytes that break the decoder."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 import subprocess

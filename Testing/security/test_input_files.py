@@ -1,7 +1,5 @@
 """Input files that are made to do harm are refused with a sentence, whichever loader gets them."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

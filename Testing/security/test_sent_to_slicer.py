@@ -1,7 +1,5 @@
 """Nothing that would crash or upset 3D Slicer can be sent: all that is sent passes one gate."""
 
-from __future__ import annotations
-
 import ast
 import struct
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 The rules are measured: see "Sent to Slicer" in SECURITY.md.
 """
 
-from __future__ import annotations
-
 import struct
 
 SENT_TYPES = {b"TRANSFORM", b"STRING", b"POINT", b"STATUS", b"COMMAND", b"RTS_COMMAND"}

@@ -1,7 +1,5 @@
 """What the simulator's tests share."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

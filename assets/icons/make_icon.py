@@ -3,8 +3,6 @@
 python assets/icons/make_icon.py      writes RASTrainer/Resources/Icons/RASTrainer.png
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -9,8 +9,6 @@ over the point open. From each of these the distance to the nearest point of the
 taken. The tool is left out: it is ours.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The base of the iiwa 7: flared column, mounting lugs, connector box and panel, in mm."""
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 from iiwa7_sections import BASE_FLARE

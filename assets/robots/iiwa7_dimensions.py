@@ -3,8 +3,6 @@
 Metres, kilograms, degrees (turned into radians by the URDF writer), at the joint angles zero.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 Vector = tuple[float, float, float]

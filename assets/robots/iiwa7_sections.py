@@ -5,8 +5,6 @@ joint's axis along y. Each line is one `Station`: inner and outer point of the o
 width across, place of the widest point, exponents of the inner and outer half.
 """
 
-from __future__ import annotations
-
 from solids import Station
 
 ARM_RADIUS = 68.0

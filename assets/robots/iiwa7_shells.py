@@ -1,21 +1,11 @@
 """The iiwa 7's links 1 to 7: closed parts by color, each in its link's frame, in mm."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np
 import trimesh
 from iiwa7_dimensions import JOINTS
-from iiwa7_sections import (
-    ARM,
-    ARM_RADIUS,
-    ARM_SEAM,
-    FLANGE_PROFILE,
-    HAND,
-    HAND_SEAM,
-    WRIST,
-)
+from iiwa7_sections import ARM, ARM_RADIUS, ARM_SEAM, FLANGE_PROFILE, HAND, HAND_SEAM, WRIST
 from solids import Station, box, cylinder, difference, enclosing, hull, loft, moved, revolve, trim
 
 from rastrainer.transforms import MM_PER_M

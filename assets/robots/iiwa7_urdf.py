@@ -1,7 +1,5 @@
 """Write the URDF of the iiwa 7 with its pointer tool."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

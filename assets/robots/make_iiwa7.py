@@ -3,8 +3,6 @@
 python assets/robots/make_iiwa7.py [--output FOLDER]
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 The tool's frame sits on the flange with z along the A7 axis; the tip's frame at the very tip.
 """
 
-from __future__ import annotations
-
 import trimesh
 from iiwa7_dimensions import TOOL_LENGTH
 from solids import enclosing, revolve

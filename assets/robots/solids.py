@@ -1,7 +1,5 @@
 """Closed solids: revolved outlines, boxes, prisms, their cuts and unions, and lofted shells."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

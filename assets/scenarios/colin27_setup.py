@@ -1,7 +1,5 @@
 """Where the default head stands, how it is looked at and where it comes from."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,8 +7,6 @@ The same MRI gives the same bytes with the library versions of requirements.lock
 voxels are compared, since other versions of zlib pack the same voxels otherwise.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import sys
@@ -51,9 +49,7 @@ def make(mri: Path, check: bool) -> int:
     if hashlib.sha256(mri.read_bytes()).hexdigest() != MRI_SHA256:
         print(f"{mri} is not the MRI that the committed files were made of.", file=sys.stderr)
     draft, _ = makeDraft(
-        readVolume(mri),
-        hasSkull=False,
-        progress=lambda step, share: print(f"{share:4.0%}  {step}"),
+        readVolume(mri), hasSkull=False, progress=lambda step, share: print(f"{share:4.0%}  {step}")
     )
     if check:
         return 0 if all([_is_same_head(draft.head), _is_same_volume(draft.volume)]) else 1

@@ -3,8 +3,6 @@
 python assets/scenarios/make_preview.py        writes colin27/preview.png and colin27-tasks.png
 """
 
-from __future__ import annotations
-
 import sys
 from itertools import pairwise
 from pathlib import Path

@@ -6,8 +6,6 @@ Takes about two minutes. The same head, robot, seed and program give the same ta
 shipped stay as they are though the proposer has changed since: recorded trials refer to them.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from pathlib import Path

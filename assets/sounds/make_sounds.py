@@ -4,8 +4,6 @@ Every sound is a sum of struck or blown notes, so that all of them belong togeth
 pitch, direction and rhythm, which can also be told apart by who hears high tones badly.
 """
 
-from __future__ import annotations
-
 import wave
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -64,10 +62,7 @@ SOUNDS = {
         0.55,
     ),
     "on-skin": Sound((Note(587.33, 0.0, 0.28),), 0.30),
-    "error": Sound(
-        (Note(311.13, 0.0, 0.22, WOOD), Note(233.08, 0.15, 0.36, WOOD)),
-        0.65,
-    ),
+    "error": Sound((Note(311.13, 0.0, 0.22, WOOD), Note(233.08, 0.15, 0.36, WOOD)), 0.65),
     "finish": Sound(
         (
             Note(523.25, 0.0, 0.5),

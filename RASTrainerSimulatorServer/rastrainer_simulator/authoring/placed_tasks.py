@@ -26,10 +26,7 @@ _DECIMALS = 4
 
 
 def read_placed_tasks(
-    planning: PlanningSetup,
-    files: tuple[Path, ...],
-    progress: Progress,
-    warn: Warn,
+    planning: PlanningSetup, files: tuple[Path, ...], progress: Progress, warn: Warn
 ) -> tuple[tuple[Task, ...], list[str]]:
     """Return the tasks of markups files, and what is wrong with them, one sentence each.
 

@@ -93,10 +93,7 @@ def _untouchable(planning: PlanningSetup, task: Task, first_seed: int) -> list[s
     nominal = planning.touchable(task.fiducials, normals, poses[:1])
     always = nominal & planning.touchable(task.fiducials, normals, poses[1:])
     sentences = []
-    for can_be, where in (
-        (nominal, "where the head is"),
-        (always | ~nominal, "in every trial"),
-    ):
+    for can_be, where in ((nominal, "where the head is"), (always | ~nominal, "in every trial")):
         missed = [label for label, can in zip(task.labels, can_be, strict=True) if not can]
         if missed:
             sentences.append(

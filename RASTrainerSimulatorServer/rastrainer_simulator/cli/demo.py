@@ -127,10 +127,7 @@ def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
     words = ["rastrainer_headless.main", "--port", str(port), "--output", str(output)]
     words += ["--scenario", str(asset_path(*DEFAULT_SCENARIO)), "--trials", str(len(TASKS))]
     words += ["--cohort", str(asset_path("studies", "published.csv"))]
-    with (
-        (output / "slicer.log").open("w") as log,
-        _process(words, log, stdout=log) as process,
-    ):
+    with (output / "slicer.log").open("w") as log, _process(words, log, stdout=log) as process:
         yield process
 
 

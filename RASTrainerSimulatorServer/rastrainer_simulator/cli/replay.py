@@ -30,10 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument("--json", action="store_true", help="print the report of --verify as JSON")
     parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
     parser.add_argument(
-        "--window",
-        action=argparse.BooleanOptionalAction,
-        default=True,
-        help="open the window",
+        "--window", action=argparse.BooleanOptionalAction, default=True, help="open the window"
     )
     parser.set_defaults(run=run)
 

@@ -127,10 +127,7 @@ class DistanceBounds:
         return rows
 
     def nearest(
-        self,
-        travelled: float,
-        distance: Callable[[int], float],
-        rough: Callable[[], np.ndarray],
+        self, travelled: float, distance: Callable[[int], float], rough: Callable[[], np.ndarray]
     ) -> tuple[float, int | None]:
         """Return the least distance, m, and its row; FAR and None where all are farther.
 

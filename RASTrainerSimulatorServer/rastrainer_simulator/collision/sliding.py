@@ -108,10 +108,9 @@ def slide(
 
     `here` is the head's surface nearest to the tip, `others` what limits the tip besides. At each
     step the tip moves toward the point nearest to its goal that is on the free side of the
-    surface's
-    tangent planes: at the tip, and wherever a trial ended inside. In a groove two planes hold it,
-    in a pit three, so that it comes to rest there instead of jumping from wall to wall (the god
-    object of Zilles and Salisbury 1995, 10.1109/IROS.1995.525876).
+    surface's tangent planes: at the tip, and wherever a trial ended inside. In a groove two planes
+    hold it, in a pit three, so that it comes to rest there instead of jumping from wall to wall
+    (the god object of Zilles and Salisbury 1995, 10.1109/IROS.1995.525876).
     """
     goal = add(tip, displacement)
     rest = min(REST, here.distance_m + RECOVERY)

@@ -46,11 +46,7 @@ TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenari
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
 
-_OF_ANY_TRIAL = (
-    CommandName.GET_TRIAL,
-    CommandName.ACKNOWLEDGE_TRIAL,
-    *ENDING_A_TRIAL,
-)
+_OF_ANY_TRIAL = (CommandName.GET_TRIAL, CommandName.ACKNOWLEDGE_TRIAL, *ENDING_A_TRIAL)
 _PASSING = frozenset(
     {
         CommandName.JOG,

@@ -91,10 +91,7 @@ class Listener:
             # Else a small message waits for 40 ms until the peer has acknowledged the one before.
             peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             await loop.connect_accepted_socket(
-                self._make_protocol,
-                peer,
-                ssl=self._tls,
-                ssl_handshake_timeout=self._handshake_s,
+                self._make_protocol, peer, ssl=self._tls, ssl_handshake_timeout=self._handshake_s
             )
         except OSError:
             # It left, or could not agree on a key in time.

@@ -43,9 +43,7 @@ _OF_PACKAGES = _of_packages()
 
 
 def setup_of(
-    header: Mapping[str, Any],
-    scenario_folder: Path | None = None,
-    robot_meshes: Path | None = None,
+    header: Mapping[str, Any], scenario_folder: Path | None = None, robot_meshes: Path | None = None
 ) -> SimulationSetup:
     """Return the setup that a journal's header describes.
 

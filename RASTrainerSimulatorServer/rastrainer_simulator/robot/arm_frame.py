@@ -180,11 +180,7 @@ class ArmFrame:
     def _turned(self, vector: Vector) -> Vector:
         x, y, z = vector
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._base
-        return (
-            ax * x + ay * y + az * z,
-            bx * x + by * y + bz * z,
-            cx * x + cy * y + cz * z,
-        )
+        return (ax * x + ay * y + az * z, bx * x + by * y + bz * z, cx * x + cy * y + cz * z)
 
 
 def _three(values: Sequence[float], name: str) -> Vector:

@@ -81,9 +81,7 @@ def elbow_circle(arm: CanonicalArm, wrist: Vector, guess: Vector) -> ElbowCircle
     # A radius that rounding alone could make is that of a stretched arm: it has no direction.
     factor = sqrt(square) / size if square > _ROUNDING * upper * upper else 0.0
     return ElbowCircle(
-        (along * wx, along * wy, along * wz),
-        (factor * gx, factor * gy, factor * gz),
-        (wx, wy, wz),
+        (along * wx, along * wy, along * wz), (factor * gx, factor * gy, factor * gz), (wx, wy, wz)
     )
 
 
@@ -191,10 +189,7 @@ def _pan_waves(
     }
     if roll:
         x, y = roll
-        pans[6] = (
-            circle.wave(scale(y, -1.0), dot(wrist, y)),
-            circle.wave(x, -dot(wrist, x)),
-        )
+        pans[6] = (circle.wave(scale(y, -1.0), dot(wrist, y)), circle.wave(x, -dot(wrist, x)))
     return pans
 
 

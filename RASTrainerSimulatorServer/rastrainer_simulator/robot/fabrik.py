@@ -30,12 +30,7 @@ from rastrainer_simulator.robot.goal import (
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
 from rastrainer_simulator.robot.prediction import follow, predict
-from rastrainer_simulator.robot.reaching import (
-    Reached,
-    Start,
-    reach_position,
-    reach_wrist,
-)
+from rastrainer_simulator.robot.reaching import Reached, Start, reach_position, reach_wrist
 from rastrainer_simulator.vectors import Vector
 
 # A warm start that would move a joint farther than this (rad) looks for an elbow that avoids it.

@@ -104,12 +104,7 @@ def _between(
 
 
 def _turned(
-    skin: Skin,
-    start: np.ndarray,
-    goal: np.ndarray,
-    others: np.ndarray,
-    turn: float,
-    longest: float,
+    skin: Skin, start: np.ndarray, goal: np.ndarray, others: np.ndarray, turn: float, longest: float
 ) -> tuple[Arrow, bool]:
     """Return the arrow that starts at `turn` (rad) from the straight path, and whether it is whole.
 

@@ -86,9 +86,7 @@ def _around(height: Span, out: float, material: Material) -> list[Surface]:
 def _door() -> list[Surface]:
     """Return a double sliding door with two windows in the far wall."""
     y, top = Y[1], 1.32
-    made = [
-        soft_box((-2.36, -0.94), (y - 0.04, y), (FLOOR_HEIGHT, top + 0.07), STEEL, 0.015),
-    ]
+    made = [soft_box((-2.36, -0.94), (y - 0.04, y), (FLOOR_HEIGHT, top + 0.07), STEEL, 0.015)]
     for left in (-2.29, -1.645):
         right = left + 0.635
         made.append(

@@ -88,8 +88,7 @@ WORLD_TO_GLTF = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1
 def to_glb(nodes: list[Node]) -> bytes:
     """Return the GLB of nodes in World.
 
-    A node of one surface carries it; one of several has a child for each, named
-    `NODE_MATERIAL`.
+    A node of one surface carries it; one of several has a child for each, named `NODE_MATERIAL`.
     """
     scene = trimesh.Scene(base_frame=ROOT)
     scene.graph.update(frame_from=ROOT, frame_to=WORLD, matrix=WORLD_TO_GLTF)

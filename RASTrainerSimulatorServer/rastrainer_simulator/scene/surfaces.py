@@ -75,9 +75,7 @@ def _rounded(x: Span, y: Span, radius: float, inset: float) -> np.ndarray:
 
 
 def _stack(
-    rings: Sequence[tuple[np.ndarray, float]],
-    material: Material,
-    pose: np.ndarray | None = None,
+    rings: Sequence[tuple[np.ndarray, float]], material: Material, pose: np.ndarray | None = None
 ) -> Surface:
     """Return the solid through rings (n, 2) at rising heights, each counterclockwise and convex."""
     count = len(rings[0][0])
@@ -124,10 +122,7 @@ CREASE_DEG = 22.0
 
 
 def shaded(
-    vertices: np.ndarray,
-    triangles: np.ndarray,
-    material: Material,
-    crease_deg: float = CREASE_DEG,
+    vertices: np.ndarray, triangles: np.ndarray, material: Material, crease_deg: float = CREASE_DEG
 ) -> Surface:
     """Return (n, 3) float vertices, m, and (m, 3) int triangles with their normals.
 

@@ -174,9 +174,7 @@ class SimulatorServer:
                 on_ready(f"computes the robot's kinematics by {kinematics_name()}")
                 if self._options.has_desktop and views is not None:
                     window = DesktopProcess(
-                        page,
-                        views.sessions.open(),
-                        self._options.logs or log_folder(),
+                        page, views.sessions.open(), self._options.logs or log_folder()
                     )
                     tasks.append(loop.create_task(window.run(stop.set, on_ready)))
                 await self._until(stop)
@@ -281,10 +279,7 @@ class SimulatorServer:
         return Simulation(setup, next(self._seeds))
 
     async def _open(
-        self,
-        link: SimulatorLink,
-        tasks: list[asyncio.Task[None]],
-        on_ready: Callable[[str], None],
+        self, link: SimulatorLink, tasks: list[asyncio.Task[None]], on_ready: Callable[[str], None]
     ) -> int:
         """Listen and return the port; or connect to a listening Slicer and return 0."""
         if self._options.connect_to is None:

@@ -15,10 +15,7 @@ RECORDING_FAILED = "RecordingFailed"
 INTERRUPTED = "Interrupted"
 """Pauses a trial that a server's end has cut short; clients cannot send it."""
 
-_AFTER_REGISTRATION = {
-    Phase.IDLE: "no trial",
-    **dict.fromkeys(OPEN_PHASES, "not registered"),
-}
+_AFTER_REGISTRATION = {Phase.IDLE: "no trial", **dict.fromkeys(OPEN_PHASES, "not registered")}
 _IN_A_TRIAL = {Phase.IDLE: "no trial", **dict.fromkeys(FINISHED_PHASES, "is registered")}
 _NOT_PAUSED = {Phase.PAUSED: "is paused"}
 
@@ -36,11 +33,7 @@ REFUSALS: Mapping[str, Mapping[Phase, str]] = {
         Phase.PAUSED: "already paused",
         Phase.COMPLETE: "all touched",
     },
-    CommandName.RESUME: {
-        **_IN_A_TRIAL,
-        Phase.RUNNING: "not paused",
-        Phase.COMPLETE: "all touched",
-    },
+    CommandName.RESUME: {**_IN_A_TRIAL, Phase.RUNNING: "not paused", Phase.COMPLETE: "all touched"},
     CommandName.SET_CAMERA: {},
     CommandName.SUBMIT_REGISTRATION: _AFTER_REGISTRATION,
     CommandName.TRIAL_SCORED: _AFTER_REGISTRATION,

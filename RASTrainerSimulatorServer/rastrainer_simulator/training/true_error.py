@@ -50,9 +50,7 @@ class Truth:
         }
 
     def revealed(
-        self,
-        world_to_head: np.ndarray,
-        touches: Iterable[tuple[str, tuple[float, float, float]]],
+        self, world_to_head: np.ndarray, touches: Iterable[tuple[str, tuple[float, float, float]]]
     ) -> dict[str, Any]:
         """Return the data of the answer to TrialScored, ready for JSON."""
         return {

@@ -90,11 +90,7 @@ def camera_pose(camera: Camera, orbit: Orbit = FRONT) -> CameraPose:
     elevation = place.elevation + math.radians(orbit.elevation_deg)
     away = place.distance * orbit.zoom
     level = away * math.cos(elevation)
-    offset = (
-        level * math.cos(azimuth),
-        level * math.sin(azimuth),
-        away * math.sin(elevation),
-    )
+    offset = (level * math.cos(azimuth), level * math.sin(azimuth), away * math.sin(elevation))
     return CameraPose(add(focal_point, offset), focal_point, (0.0, 0.0, 1.0), camera.view_angle_deg)
 
 

@@ -3,8 +3,6 @@
 `python -m Testing.simulator.authoring.planned_heads` proposes them again, in some minutes.
 """
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

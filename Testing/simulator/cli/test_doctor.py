@@ -1,7 +1,5 @@
 """`rastrainer doctor` finds what is missing and says what to do."""
 
-from __future__ import annotations
-
 import json
 import os
 import socket

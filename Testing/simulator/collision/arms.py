@@ -1,7 +1,5 @@
 """The arm of the tests: put somewhere, and driven tick by tick as the simulation does it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from rastrainer_simulator.collision.collision import Collision

@@ -1,7 +1,5 @@
 """Distances found by looking at every triangle, to check the fast ones against."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Closed surfaces whose shape is known: heads, plates and grooves to bump into; metres."""
 
-from __future__ import annotations
-
 import numpy as np
 import trimesh
 

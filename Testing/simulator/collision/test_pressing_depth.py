@@ -1,7 +1,5 @@
 """How far the tool is pressed in: in the simulation's states and events, journal and replay."""
 
-from __future__ import annotations
-
 import copy
 
 import numpy as np

@@ -61,10 +61,7 @@ def test_the_point_is_the_one_that_scipy_finds(count):
             for plane in planes
         ]
         expected = minimize(
-            lambda x, goal=goal: ((x - goal) ** 2).sum(),
-            found,
-            constraints=limits,
-            tol=1e-12,
+            lambda x, goal=goal: ((x - goal) ** 2).sum(), found, constraints=limits, tol=1e-12
         )
         np.testing.assert_allclose(found, expected.x, atol=1e-5)
         assert all(np.dot(plane.normal, found) >= plane.bound - 1e-9 for plane in planes)

@@ -12,11 +12,7 @@ from rastrainer_simulator.robot.model import load_robot
 
 CENTER = np.array([0.50, 0.0, 0.30])
 RADIUS = 0.08
-OUTWARD = {
-    "top": (0.0, 0.0, 1.0),
-    "front": (0.0, -0.9, 0.44),
-    "far side": (0.8, 0.0, 0.6),
-}
+OUTWARD = {"top": (0.0, 0.0, 1.0), "front": (0.0, -0.9, 0.44), "far side": (0.8, 0.0, 0.6)}
 
 
 @pytest.fixture(scope="module")

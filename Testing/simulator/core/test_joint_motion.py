@@ -1,7 +1,5 @@
 """From the tip's way to the joints': exact for the tip, within limits, without wandering."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The simulation tick by tick: deterministic, stopped by the head, ready for a trial."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

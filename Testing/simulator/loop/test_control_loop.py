@@ -1,7 +1,5 @@
 """The control loop: owns the time, tells nothing that is not on the disk, loses nothing."""
 
-from __future__ import annotations
-
 import errno
 import os
 import signal
@@ -422,9 +420,7 @@ with ControlLoop(Simulation(setup, 1), Path(sys.argv[1]), speed=None) as loop:
 
 def test_kill_9_in_the_middle_of_trials_loses_no_acknowledged_touch(tmp_path):
     process = subprocess.Popen(
-        [sys.executable, "-c", KILLED, str(tmp_path / "records")],
-        stdout=subprocess.PIPE,
-        text=True,
+        [sys.executable, "-c", KILLED, str(tmp_path / "records")], stdout=subprocess.PIPE, text=True
     )
     with process:
         told = [process.stdout.readline().strip() for _ in range(40)]

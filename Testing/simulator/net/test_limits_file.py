@@ -1,7 +1,5 @@
 """A site's own limits: what the file may set, and that the simulator keeps to it."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 

@@ -1,7 +1,5 @@
 """Settings are where each system's users look for them."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Logs are lines of JSON, never grow too big, and never stand in the way."""
 
-from __future__ import annotations
-
 import errno
 import io
 import json

@@ -1,7 +1,5 @@
 """Every sentence is there in every language, and can be said again in another."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from string import Formatter

@@ -1,7 +1,5 @@
 """An aborted trial is kept and offered until somebody has it: no touch disappears."""
 
-from __future__ import annotations
-
 import json
 import random
 import shutil

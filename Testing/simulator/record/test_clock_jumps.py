@@ -1,7 +1,5 @@
 """The computer's clock may be set while a trial runs: durations and the record do not mind."""
 
-from __future__ import annotations
-
 import time
 from datetime import datetime, timedelta
 from types import SimpleNamespace

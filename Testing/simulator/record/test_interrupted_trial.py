@@ -1,7 +1,5 @@
 """A trial whose server has ended is taken up where it was, and written on in the same journal."""
 
-from __future__ import annotations
-
 import errno
 import os
 import random

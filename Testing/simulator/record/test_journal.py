@@ -1,7 +1,5 @@
 """The journal of a trial: nothing lost, nothing altered unnoticed."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

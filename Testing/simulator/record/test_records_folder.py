@@ -1,7 +1,5 @@
 """One simulator at a time records in a folder, and says why it cannot."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

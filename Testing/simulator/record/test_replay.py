@@ -1,7 +1,5 @@
 """`rastrainer verify` and `rastrainer replay` on journals of real trials, honest and forged."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The archive of registered trials: what is to be delivered, and the truth kept until scored."""
 
-from __future__ import annotations
-
 import gc
 import json
 

@@ -1,7 +1,5 @@
 """A trial's motion metrics are the same while it runs, in its record and from its journal."""
 
-from __future__ import annotations
-
 import json
 import threading
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """What the first trial needs is there before it begins: a tick has no time to load anything."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

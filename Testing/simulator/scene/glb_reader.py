@@ -1,7 +1,5 @@
 """Read a GLB without the program that wrote it: header, JSON, and where each node stands."""
 
-from __future__ import annotations
-
 import json
 import struct
 

@@ -1,7 +1,5 @@
 """LoadScenario: which folders may be named, and what is said when one cannot be used."""
 
-from __future__ import annotations
-
 from concurrent.futures import Future
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The sticks and commanded motions as the trainee feels them."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """A registration of some touches only is refused, or changes no score."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 

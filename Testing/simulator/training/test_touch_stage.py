@@ -1,7 +1,5 @@
 """Contact is the goal at the next point, and an error everywhere else."""
 
-from __future__ import annotations
-
 import pytest
 
 from rastrainer.protocol import Phase, Proximity

@@ -1,7 +1,5 @@
 """The trial's state machine: what each command does in each phase, and what is said."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np
@@ -21,11 +19,7 @@ from rastrainer_simulator.training.training import Training
 ANY_MATRIX = tuple(float(v) for v in np.eye(4).ravel())
 REGISTRATION = {"matrix": ANY_MATRIX, "freMm": 1.2, "expectedTreMm": 0.9}
 SCORE = {"score": 81.0, "details": {}}
-NAMING_A_TRIAL = (
-    CommandName.SUBMIT_REGISTRATION,
-    CommandName.TRIAL_SCORED,
-    CommandName.GET_TRIAL,
-)
+NAMING_A_TRIAL = (CommandName.SUBMIT_REGISTRATION, CommandName.TRIAL_SCORED, CommandName.GET_TRIAL)
 
 
 class Trial:

@@ -4,8 +4,6 @@ Each function plays one task from its start to `Register`, by the protocol's com
 returns the trial's record with its motion metrics, and the truth.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -69,10 +67,7 @@ def play_honestly(
 
 
 def aim_beside(
-    setup: SimulationSetup,
-    task: str,
-    seed: int,
-    bias_mm: tuple[float, float, float] | None = None,
+    setup: SimulationSetup, task: str, seed: int, bias_mm: tuple[float, float, float] | None = None
 ) -> PlayedTrial:
     """Play honestly, but aim beside every fiducial by the same vector of World, mm.
 

@@ -1,7 +1,5 @@
 """What the motion metrics and the score say of honest play and of each way to cheat."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

@@ -89,7 +89,7 @@ def test_xapi_statements_have_what_the_specification_requires(exported):
     for statement in statements:
         uuid.UUID(statement["id"])
         assert set(statement) <= {
-            *("id", "version", "actor", "verb", "object", "result", "context", "timestamp"),
+            *("id", "version", "actor", "verb", "object", "result", "context", "timestamp")
         }
         assert set(statement["actor"]["account"]) == {"homePage", "name"}
         for iri in (statement["verb"]["id"], statement["object"]["id"]):

@@ -70,10 +70,7 @@ def check_settings(config: Path) -> Iterator[CheckResult]:
     except InputError as error:
         remedy = "Fix the file, or delete it to use the default limits."
         yield CheckResult("settings", CheckStatus.PROBLEM, f"No simulator starts: {error}", remedy)
-    readers = {
-        PREFERENCES_FILE: read_preferences,
-        BINDINGS_FILE: read_bindings,
-    }
+    readers = {PREFERENCES_FILE: read_preferences, BINDINGS_FILE: read_bindings}
     for name, read in readers.items():
         try:
             if (config / name).exists():

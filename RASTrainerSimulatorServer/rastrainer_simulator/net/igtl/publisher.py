@@ -25,11 +25,7 @@ from rastrainer_simulator.state import SimulationState, TrainingState
 
 def tool_tip(state: SimulationState, seq: int) -> Message:
     """Return the tool tip's pose, with what Slicer cannot read from a header in its metadata."""
-    metadata = {
-        "seq": str(seq),
-        "simTime": f"{state.sim_time:.6f}",
-        "TransformStatus": "OK",
-    }
+    metadata = {"seq": str(seq), "simTime": f"{state.sim_time:.6f}", "TransformStatus": "OK"}
     return Message(DeviceName.TOOL_TIP_TO_WORLD, _transform(state.tool_tip_to_world), metadata)
 
 

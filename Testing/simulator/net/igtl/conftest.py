@@ -1,7 +1,5 @@
 """Servers on real sockets, and a client of them."""
 
-from __future__ import annotations
-
 import pytest
 
 from rastrainer.igtl.client import Client

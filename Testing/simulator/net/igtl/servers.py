@@ -1,7 +1,5 @@
 """Servers on real sockets, in an event loop of their own, and the simulation's state by hand."""
 
-from __future__ import annotations
-
 import asyncio
 import socket
 import threading

@@ -1,7 +1,5 @@
 """Commands over real sockets: each is answered once, with what would have been right."""
 
-from __future__ import annotations
-
 import json
 import struct
 from concurrent.futures import Future

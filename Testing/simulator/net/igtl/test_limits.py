@@ -1,7 +1,5 @@
 """What a client may cost: memory, time, connections; and who is no client at all."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import itertools
@@ -94,11 +92,7 @@ def test_commands_wait_only_up_to_so_many_bytes(start):
     server = start(LinkServer, commands_at_once=0, waiting_command_bytes=100_000)
     server.simulated.answer = lambda _name, _arguments: Answer(0, True)
     details = {"text": "x" * 30_000}
-    scored = {
-        "trialId": "6b8f2f1e-6a60-4c0e-9a37-111111111111",
-        "score": 1,
-        "details": details,
-    }
+    scored = {"trialId": "6b8f2f1e-6a60-4c0e-9a37-111111111111", "score": 1, "details": details}
     reader, replies = MessageReader(), []
     with socket.create_connection((HOST, server.port), 10) as peer:
         for number in range(6):

@@ -1,7 +1,5 @@
 """What is published, how often in simulated time, and in millimeters."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections import Counter

@@ -4,8 +4,6 @@ It has no COMMAND and no STATUS; those are made here from its base class, which 
 the metadata and the checksum.
 """
 
-from __future__ import annotations
-
 import asyncio
 import json
 import signal

@@ -1,7 +1,5 @@
 """The C++ reference library, as a client of ours: every type, both ways, and as a hostile one."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import shutil
@@ -100,10 +98,7 @@ def test_reference_library_gets_the_echo_of_its_transform(exchange):
 
 
 def test_reference_library_reads_the_tip_in_millimeters(exchange):
-    assert exchange[1]["ToolTipToWorld"][::2] == [
-        "TRANSFORM",
-        "0 -1 0 500 1 0 0 -250 0 0 1 125",
-    ]
+    assert exchange[1]["ToolTipToWorld"][::2] == ["TRANSFORM", "0 -1 0 500 1 0 0 -250 0 0 1 125"]
 
 
 def test_reference_library_reads_the_touched_points(exchange):

@@ -1,7 +1,5 @@
 """The server on real sockets: good clients are served whatever bad ones do."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import logging

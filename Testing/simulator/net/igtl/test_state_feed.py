@@ -1,7 +1,5 @@
 """The newest state crosses to the event loop's thread; old ones never pile up."""
 
-from __future__ import annotations
-
 import asyncio
 import threading
 

@@ -1,7 +1,5 @@
 """A finished trial is offered again and again until a client acknowledges it."""
 
-from __future__ import annotations
-
 import json
 from types import SimpleNamespace
 
