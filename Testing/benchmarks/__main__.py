@@ -12,7 +12,7 @@ import json
 from itertools import chain
 from pathlib import Path
 
-from Testing.benchmarks.machine import host_row
+from Testing.benchmarks.row import host_row
 
 COLUMNS = ("name", "median", "p99", "unit", "peer", "peer_median", "peer_p99", "success", "n")
 HERE = Path(__file__).parent

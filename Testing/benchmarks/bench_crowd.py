@@ -18,8 +18,7 @@ from rastrainer.igtl.content import Command, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName
 from Testing.benchmarks.loop_health import health_of
-from Testing.benchmarks.machine import cpu_share, resident_mb
-from Testing.benchmarks.row import row
+from Testing.benchmarks.row import cpu_share, resident_mb, row
 from Testing.end_to_end.simulator_process import ViewedSimulator
 
 CLIENTS, VIEWS = 100, 20

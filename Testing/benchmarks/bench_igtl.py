@@ -14,8 +14,7 @@ from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
 from rastrainer.protocol import PROTOCOL_VERSION
-from Testing.benchmarks.machine import cpu_share, resident_mb
-from Testing.benchmarks.row import row
+from Testing.benchmarks.row import cpu_share, resident_mb, row
 from Testing.end_to_end.simulator_process import SimulatorProcess
 
 PROBE = Message("Echo", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 10, 20, 30)))

@@ -21,8 +21,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.state import Motion
 from Testing.benchmarks.loop_health import Punctuality
-from Testing.benchmarks.machine import resident_mb
-from Testing.benchmarks.row import row, row_of_figures
+from Testing.benchmarks.row import resident_mb, row, row_of_figures
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
 

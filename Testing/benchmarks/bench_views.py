@@ -10,8 +10,7 @@ import numpy as np
 
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.scene.scene_glb import scene_glb
-from Testing.benchmarks.machine import cpu_share, resident_mb
-from Testing.benchmarks.row import row
+from Testing.benchmarks.row import cpu_share, resident_mb, row
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient

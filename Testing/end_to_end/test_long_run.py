@@ -19,7 +19,7 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.record.trial_archive import SUFFIX
-from Testing.benchmarks.machine import resident_mb
+from Testing.benchmarks.row import resident_mb
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE
 from Testing.end_to_end.lab import SlicerProcess
 from Testing.end_to_end.simulator_process import ViewedSimulator

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rastrainer.igtl.client import Client
 from Testing.benchmarks.loop_health import next_health
-from Testing.benchmarks.machine import resident_mb
+from Testing.benchmarks.row import resident_mb
 from Testing.benchmarks.watched_loop import WatchedLoop
 
 MOST_GROWTH_MB = 8.0

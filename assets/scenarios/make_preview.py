@@ -14,7 +14,7 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.scenario.scenario import PREVIEW_NAME, load_scenario
 from rastrainer.scenario.tasks import Task
-from rastrainer_simulator.authoring.preview import draw_preview
+from rastrainer_simulator.rendering.picture import draw_preview
 
 FOLDER = Path(__file__).parent / "colin27"
 TILE = (300, 270)

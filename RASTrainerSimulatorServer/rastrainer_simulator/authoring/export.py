@@ -24,8 +24,8 @@ from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
 from rastrainer.scenario.package import checked_scenario, pack
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario
 from rastrainer.scenario.writer import scenario_name, write_scenario
-from rastrainer_simulator.authoring.preview import draw_preview
 from rastrainer_simulator.authoring.task_check import ON_SKIN_MM
+from rastrainer_simulator.rendering.picture import draw_preview
 from rastrainer_simulator.scene.surfaces import surface
 
 

@@ -17,12 +17,11 @@ from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, loa
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.tasks import PlannedTarget, PlannedTrajectory, Task
 from rastrainer.scenario.writer import HeadDraft, new_folder, scenario_name, write_scenario
-from rastrainer_simulator.authoring.placed_tasks import read_placed_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.preview import draw_preview
 from rastrainer_simulator.authoring.scenario_check import check_plan, start_clearance_mm
-from rastrainer_simulator.authoring.task_check import check_tasks
+from rastrainer_simulator.authoring.task_check import check_tasks, read_placed_tasks
 from rastrainer_simulator.authoring.task_set import TaskSetProposer
+from rastrainer_simulator.rendering.picture import draw_preview
 
 CENTER = "Center of the head"
 LEAST_START_CLEARANCE_MM = 30.0

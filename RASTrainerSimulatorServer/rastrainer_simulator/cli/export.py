@@ -24,7 +24,7 @@ from rastrainer.report.elements.scores import with_ctps
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer_simulator.cli.incomplete import add_incomplete, read_known_study
+from rastrainer_simulator.cli.shared import add_incomplete, read_known_study
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 

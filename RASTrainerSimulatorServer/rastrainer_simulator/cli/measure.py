@@ -10,7 +10,7 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer_simulator.cli.text_table import text_table
+from rastrainer_simulator.cli.shared import text_table
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

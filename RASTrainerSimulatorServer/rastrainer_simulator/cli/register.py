@@ -22,7 +22,7 @@ from rastrainer.registration.localization_error import (
 )
 from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
-from rastrainer_simulator.cli.text_table import text_table
+from rastrainer_simulator.cli.shared import text_table
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."

@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 
 from rastrainer.report.report import write_report
-from rastrainer_simulator.cli.incomplete import add_incomplete, read_known_study
 from rastrainer_simulator.cli.score import mean_times
+from rastrainer_simulator.cli.shared import add_incomplete, read_known_study
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

@@ -175,7 +175,7 @@ def _tasks(arguments: argparse.Namespace) -> int:
 def _preview(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.head_process import head_process
     from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
-    from rastrainer_simulator.authoring.preview import draw_preview
+    from rastrainer_simulator.rendering.picture import draw_preview
 
     options = [*_head_options(arguments), "--no-skull", "--no-volume"]
     with head_process(arguments.volume, options) as process:

@@ -14,7 +14,7 @@ from rastrainer.trial.ctps import (
     score_cohort,
     trials_by_mode,
 )
-from rastrainer_simulator.cli.text_table import text_table
+from rastrainer_simulator.cli.shared import text_table
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

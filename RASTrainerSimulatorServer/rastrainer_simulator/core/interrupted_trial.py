@@ -21,8 +21,7 @@ from rastrainer.protocol import CommandName, Proximity, check_arguments
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.state import StartingPoint
-from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED
-from rastrainer_simulator.training.touch_rule import TouchMoment
+from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TouchMoment
 from rastrainer_simulator.vectors import Vector, vector
 
 _OVER = frozenset({"registered", "aborted", "attempt"})

@@ -13,7 +13,7 @@ from rastrainer_simulator.collision.proximity import ProximitySettings
 from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
-from rastrainer_simulator.training.touch_rule import TrainingSettings
+from rastrainer_simulator.training.rules import TrainingSettings
 
 T = TypeVar("T")
 

@@ -34,8 +34,7 @@ from rastrainer_simulator.state import (
 from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.teleoperation.commanded_motion import MotionOutcome, commanded_motion
 from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
-from rastrainer_simulator.training.phase_rules import refusal
-from rastrainer_simulator.training.touch_rule import TouchMoment
+from rastrainer_simulator.training.rules import TouchMoment, refusal
 from rastrainer_simulator.training.touch_stage import touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
 from rastrainer_simulator.training.true_error import Truth

@@ -35,7 +35,7 @@ from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.record.view_report import NotedReport
 from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
-from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
+from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 from rastrainer_simulator.training.true_error import Truth
 
 CATCH_UP_S = 0.1

@@ -19,7 +19,7 @@ from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.record.view_report import NotedReport
 from rastrainer_simulator.state import SimulationState, StepResult
-from rastrainer_simulator.training.phase_rules import ENDING_A_TRIAL, RECORDING_FAILED
+from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 
 if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation

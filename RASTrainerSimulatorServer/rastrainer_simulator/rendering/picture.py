@@ -1,4 +1,4 @@
-"""Render the robot at the head, in its room, at one moment of a simulation."""
+"""Render the robot at the head, in its room, at one moment; and a scenario's preview."""
 
 from __future__ import annotations
 
@@ -10,12 +10,16 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty, vtkRenderer
 
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
-from rastrainer.scenario.scenario import Camera
+from rastrainer.scenario.scenario import Camera, Scenario
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.arm import start_joints
+from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 from rastrainer_simulator.rendering.offscreen import OffscreenWindow, write_png
-from rastrainer_simulator.robot.model import RobotModel
+from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.robot.model import RobotModel, load_robot
 from rastrainer_simulator.scene.nodes import (
     NEXT,
     TIP_FREE,
@@ -25,7 +29,7 @@ from rastrainer_simulator.scene.nodes import (
     Node,
     Surface,
 )
-from rastrainer_simulator.scene.scene_glb import TIP_MARKER, TOOL, link_node_name
+from rastrainer_simulator.scene.scene_glb import TIP_MARKER, TOOL, link_node_name, scene_nodes
 from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 
@@ -161,3 +165,27 @@ def _lay_in_corner(pixels: np.ndarray, inset: np.ndarray) -> None:
     pixels[margin : margin + height + 2 * frame, left : left + width + 2 * frame] = 255
     top, left = margin + frame, left + frame
     pixels[top : top + height, left : left + width] = inset
+
+
+SIZE = (640, 480)
+
+
+def draw_preview(path: Path, scenario: Scenario, head: HeadMesh) -> None:
+    """Draw the head as a trainee first sees it, with the first task if there is one.
+
+    Raises:
+        InputError: the picture cannot be written.
+    """
+    robot = load_robot()
+    q = start_joints(robot, scenario, SimulationSettings().start_height)
+    moment = SceneMoment(
+        link_to_world=make_kinematics(robot).links(q),
+        head_to_world=scenario.head_to_world,
+        head_base=head.base,
+        touched=frozenset(),
+        proximity=Proximity.FREE,
+    )
+    task = scenario.tasks[0] if scenario.tasks else None
+    nodes = scene_nodes(scenario, robot, head, task)
+    camera = scenario.cameras["close-up"]
+    render_picture(path, nodes, robot, moment, camera, size=SIZE, shadows=Shadows.SMALL)

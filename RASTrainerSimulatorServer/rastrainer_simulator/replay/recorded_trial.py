@@ -30,7 +30,7 @@ from rastrainer_simulator.state import (
     TouchState,
     TrainingState,
 )
-from rastrainer_simulator.training.touch_rule import TouchMoment
+from rastrainer_simulator.training.rules import TouchMoment
 from rastrainer_simulator.training.touch_stage import touch_stage
 from rastrainer_simulator.vectors import Vector
 

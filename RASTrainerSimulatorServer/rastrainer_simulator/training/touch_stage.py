@@ -6,7 +6,7 @@ from rastrainer.motion.trajectory import RELEASED_MM
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import TouchStage, TrainingState
-from rastrainer_simulator.training.touch_rule import TouchMoment, TrainingSettings
+from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
 from rastrainer_simulator.vectors import Vector, distance
 
 TOO_DEEP_MM = 0.5

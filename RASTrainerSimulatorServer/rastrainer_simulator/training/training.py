@@ -21,8 +21,14 @@ from rastrainer_simulator.state import (
     TrainingState,
     TrialResult,
 )
-from rastrainer_simulator.training.phase_rules import INTERRUPTED, RECORDING_FAILED, refusal
-from rastrainer_simulator.training.touch_rule import TouchMoment, TrainingSettings, refused_touch
+from rastrainer_simulator.training.rules import (
+    INTERRUPTED,
+    RECORDING_FAILED,
+    TouchMoment,
+    TrainingSettings,
+    refusal,
+    refused_touch,
+)
 from rastrainer_simulator.training.trial_clock import TrialClock, trial_id, trial_seed
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, vector

@@ -11,8 +11,8 @@ from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
-from rastrainer_simulator.authoring.placed_tasks import read_placed_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.task_check import read_placed_tasks
 from Testing.simulator.authoring.heads import egg
 from Testing.slicer.head.placed import fiducials
 

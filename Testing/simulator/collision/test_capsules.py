@@ -13,8 +13,7 @@ from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import SHAFT_START, capsules_along, robot_shape
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import load_robot
-from Testing.simulator.collision.arms import KINEMATICS, ROBOT
-from Testing.simulator.collision.heads import ball
+from Testing.simulator.collision.heads_and_arms import KINEMATICS, ROBOT, ball
 
 SHAPE = robot_shape(ROBOT)
 MESHES = load_meshes(ROBOT, "collision")

@@ -5,13 +5,19 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.collision.clearance import FAR, SHAFT_NEAR
 from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.robot_shape import ArmCapsules
-from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, at, posture
 from Testing.simulator.collision.brute_force import (
     segment_to_segments,
     segment_to_triangles,
     vtk_distance,
 )
-from Testing.simulator.collision.heads import bumpy_head
+from Testing.simulator.collision.heads_and_arms import (
+    KINEMATICS,
+    ROBOT,
+    SHAPE,
+    at,
+    bumpy_head,
+    posture,
+)
 
 FIVE_HUNDREDTHS_MM = 5e-5
 CENTER = (0.5, 0.0, 0.25)

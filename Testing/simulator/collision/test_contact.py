@@ -11,9 +11,20 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.sliding import REST
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
-from Testing.simulator.collision.arms import KINEMATICS, ROBOT, SHAPE, TICK, Driver, at, posture
 from Testing.simulator.collision.brute_force import vtk_distance
-from Testing.simulator.collision.heads import ball, box, groove, together
+from Testing.simulator.collision.heads_and_arms import (
+    KINEMATICS,
+    ROBOT,
+    SHAPE,
+    TICK,
+    Driver,
+    at,
+    ball,
+    box,
+    groove,
+    posture,
+    together,
+)
 
 DEEPEST = 1e-4
 TOUCHING = 5e-5

@@ -11,7 +11,7 @@ from Testing.simulator.collision.brute_force import (
     segment_to_triangles,
     vtk_distance,
 )
-from Testing.simulator.collision.heads import ball, box, bumpy_head, together
+from Testing.simulator.collision.heads_and_arms import ball, box, bumpy_head, together
 
 MICROMETRE = 1e-6
 

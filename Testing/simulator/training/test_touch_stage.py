@@ -4,7 +4,7 @@ import pytest
 
 from rastrainer.protocol import Phase, Proximity
 from rastrainer_simulator.state import TouchStage, TouchState, TrainingState
-from rastrainer_simulator.training.touch_rule import TouchMoment, TrainingSettings
+from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
 from rastrainer_simulator.training.touch_stage import touch_stage
 
 RUNNING = TrainingState(phase=Phase.RUNNING, next_point="2")

@@ -12,8 +12,12 @@ from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.english import ENGLISH
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import EventKind
-from rastrainer_simulator.training.phase_rules import RECORDING_FAILED, REFUSALS
-from rastrainer_simulator.training.touch_rule import TouchMoment, TrainingSettings
+from rastrainer_simulator.training.rules import (
+    RECORDING_FAILED,
+    REFUSALS,
+    TouchMoment,
+    TrainingSettings,
+)
 from rastrainer_simulator.training.training import Training
 
 ANY_MATRIX = tuple(float(v) for v in np.eye(4).ravel())

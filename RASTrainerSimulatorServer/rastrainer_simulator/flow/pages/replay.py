@@ -10,8 +10,8 @@ from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.feedback_event import feedback_event
 from rastrainer_simulator.net.views.screen import Hint, Menu, Screen
 from rastrainer_simulator.replay.playback import Playback
-from rastrainer_simulator.replay.player import ACTIONS, Player, PlayerAction
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
+from rastrainer_simulator.replay.replay_presenter import ACTIONS, Player, PlayerAction
 from rastrainer_simulator.state import StepResult
 
 _WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}

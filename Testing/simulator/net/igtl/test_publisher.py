@@ -1,7 +1,9 @@
 """What is published, how often in simulated time, and in millimeters."""
 
+import asyncio
 import json
 import math
+import threading
 from collections import Counter
 from dataclasses import replace
 
@@ -14,7 +16,8 @@ from rastrainer.igtl.points import Points
 from rastrainer.protocol import DeviceName, Phase, Proximity
 from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
-from rastrainer_simulator.state import TouchState, TrainingState
+from rastrainer_simulator.net.state_feed import StateFeed
+from rastrainer_simulator.state import StepResult, TouchState, TrainingState
 from Testing.simulator.net.igtl.servers import at_rest
 
 TICK_S = 0.004
@@ -235,3 +238,38 @@ def test_pacer_makes_no_burst_after_a_gap():
     pacer = Pacer(10)
     assert pacer.is_due(0.0)
     assert [pacer.is_due(t) for t in (50.0, 50.001, 50.002, 50.11)] == [True, False, False, True]
+
+
+def test_event_loop_gets_only_the_newest_of_the_states_that_came_while_it_was_busy(loop_thread):
+    delivered = []
+    feed = StateFeed(lambda _state: True, delivered.append, loop_thread.loop)
+
+    async def be_busy():
+        for tick in range(1000):
+            feed(StepResult(at_rest(tick=tick)))
+
+    loop_thread.run(be_busy())
+    loop_thread.run(asyncio.sleep(0))
+    assert [state.tick for state in delivered] == [999]
+
+
+def test_states_are_delivered_in_the_thread_of_the_event_loop(loop_thread):
+    threads = []
+    done = threading.Event()
+
+    def deliver(_state):
+        threads.append(threading.current_thread())
+        done.set()
+
+    StateFeed(lambda _state: True, deliver, loop_thread.loop)(StepResult(at_rest()))
+    assert done.wait(10)
+    assert threads != [threading.current_thread()]
+
+
+def test_state_that_is_not_due_is_not_delivered(loop_thread):
+    delivered = []
+    feed = StateFeed(lambda state: state.tick == 3, delivered.append, loop_thread.loop)
+    for tick in range(6):
+        feed(StepResult(at_rest(tick=tick)))
+        loop_thread.run(asyncio.sleep(0))
+    assert [state.tick for state in delivered] == [3]

@@ -1,11 +1,26 @@
-"""The option `--incomplete` of the commands that read a whole study."""
+"""What several commands share: tables for people, and reading studies that may be incomplete."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 
 from rastrainer.study.database.cohort_store import IncompleteStudyError
 from rastrainer.study.study_data import StudyData, read_study_data
+
+
+def text_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return lines of aligned columns: the first to the left, the others to the right."""
+    lines = [header, *rows]
+    widths = [max(len(line[column]) for line in lines) for column in range(len(header))]
+    aligned = [
+        "  ".join(
+            cell.rjust(width) if column else cell.ljust(width)
+            for column, (cell, width) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in lines
+    ]
+    return "\n".join([aligned[0], "-" * (sum(widths) + 2 * len(widths) - 2), *aligned[1:]])
 
 
 def add_incomplete(parser: argparse.ArgumentParser) -> None:
