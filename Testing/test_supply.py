@@ -164,14 +164,14 @@ def answering(monkeypatch, stdout: str) -> None:
             1,
             "a 1: CVE-1, mended in 2",
         ),
-        ("", 3, "not asked"),
+        ("", 3, "not checked"),
         (
             '{"dependencies": [{"name": "a", "skip_reason": "not found"}, '
             '{"name": "b", "version": "1", "vulns": []}]}',
             3,
-            "not asked",
+            "not checked",
         ),
-        ('{"error": "ENOTFOUND"}', 3, "not asked"),
+        ('{"error": "ENOTFOUND"}', 3, "not checked"),
     ],
 )
 def test_an_audit_tells_what_is_known_and_whether_anybody_was_asked(
@@ -185,7 +185,7 @@ def test_an_audit_tells_what_is_known_and_whether_anybody_was_asked(
 
 def test_an_audit_that_could_not_ask_is_no_success(monkeypatch, capsys):
     monkeypatch.setattr(audit_packages, "audit_python", lambda _lock: (0, "well"))
-    monkeypatch.setattr(audit_packages, "audit_page", lambda: (3, "not asked"))
+    monkeypatch.setattr(audit_packages, "audit_page", lambda: (3, "not checked"))
     assert audit_packages.main() == 3
     monkeypatch.setattr(audit_packages, "audit_python", lambda _lock: (1, "known"))
     assert audit_packages.main() == 1

@@ -1,7 +1,7 @@
-"""Ask whether anything in the lock files is known to be vulnerable.
+"""Check the lock files for known vulnerabilities.
 
-Exit status 0: asked, and nothing is known. 1: something is, or an answer cannot be read. 3: nobody
-could be asked, because the service cannot be reached from here.
+Exit status 0: nothing is known. 1: something is, or an answer cannot be read. 3: the service cannot
+be reached from here.
 """
 
 import json
@@ -14,19 +14,19 @@ import build_page
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCKS = tuple(sorted(path.name for path in ROOT.glob("requirements*.lock")))
-PATIENCE_S = 300
-NOTHING_KNOWN, VULNERABLE, NOT_ASKED = 0, 1, 3
+TIMEOUT_S = 300
+NOTHING_KNOWN, VULNERABLE, NOT_CHECKED = 0, 1, 3
 
 
 def audit_python(lock: Path) -> tuple[int, str]:
-    """Ask about the packages of a lock; return the status and a sentence."""
+    """Check the packages of a lock; return the status and a sentence."""
     words = ["--require-hashes", "--disable-pip", "--progress-spinner=off", "--format=json"]
     command = [sys.executable, "-m", "pip_audit", *words, "-r", str(lock), "--timeout", "15"]
     return _judged(lock.name, command, _python_findings)
 
 
 def audit_page() -> tuple[int, str]:
-    """Ask about the packages of the page; return the status and a sentence."""
+    """Check the packages of the page; return the status and a sentence."""
     node, npm = build_page.node_and_npm()
     path = os.pathsep.join([str(Path(node).parent), os.environ.get("PATH", "")])
     command = [*npm, "audit", "--package-lock-only", "--json", "--fetch-retries=0"]
@@ -37,14 +37,14 @@ def audit_page() -> tuple[int, str]:
 def _judged(name: str, command: list[str], findings: object, **others: object) -> tuple[int, str]:
     try:
         done = subprocess.run(
-            command, capture_output=True, text=True, timeout=PATIENCE_S, check=False, **others
+            command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False, **others
         )
         found = findings(json.loads(done.stdout))
     except (subprocess.TimeoutExpired, ValueError, KeyError, TypeError):
-        return NOT_ASKED, f"{name}: not asked; the service cannot be reached from here."
+        return NOT_CHECKED, f"{name}: not checked; the service cannot be reached from here."
     if found:
         return VULNERABLE, "\n".join(f"{name}: {finding}" for finding in found)
-    return NOTHING_KNOWN, f"{name}: nothing is known against any of its packages."
+    return NOTHING_KNOWN, f"{name}: nothing is known about any of its packages."
 
 
 def _python_findings(answer: dict) -> list[str]:
@@ -53,7 +53,7 @@ def _python_findings(answer: dict) -> list[str]:
         # An index that answers and knows none of them is a mirror without the advisories.
         raise ValueError(f"{len(skipped)} packages could not be looked up")
     return [
-        f"{package['name']} {package['version']}: {known['id']}, mended in "
+        f"{package['name']} {package['version']}: {known['id']}, fixed in "
         f"{', '.join(known['fix_versions']) or 'no version yet'}"
         for package in answer["dependencies"]
         for known in package.get("vulns", ())
@@ -66,7 +66,7 @@ def _page_findings(answer: dict) -> list[str]:
 
 
 def main() -> int:
-    """Ask about everything, tell the answers, and return the worst status."""
+    """Check everything, print the results, and return the worst status."""
     answers = [audit_python(ROOT / lock) for lock in LOCKS] + [audit_page()]
     for _status, sentence in answers:
         print(sentence)

@@ -45,12 +45,12 @@ def write_page_bill(output: Path = PAGE_BILL) -> int:
     path = os.pathsep.join([str(Path(node).parent), os.environ.get("PATH", "")])
     words = ["sbom", "--package-lock-only", "--omit=dev", "--sbom-format=cyclonedx"]
     with tempfile.TemporaryDirectory() as temporary:
-        # Its name stands in the bill.
+        # Its name is part of the bill.
         folder = Path(temporary) / "rastrainer-page"
         _with_a_version(build_page.WEB, folder)
         text = _run([*npm, *words], cwd=folder, env={**os.environ, "PATH": path})
     bill = json.loads(text)
-    # What differs from run to run says nothing of the page.
+    # Differs from run to run.
     bill.pop("serialNumber", None)
     bill["metadata"].pop("timestamp", None)
     output.write_text(json.dumps(bill, indent=2) + "\n", encoding="utf-8")
@@ -58,14 +58,14 @@ def write_page_bill(output: Path = PAGE_BILL) -> int:
 
 
 def _with_a_version(web: Path, folder: Path) -> None:
-    """Copy what npm has to know; of a package without a version, as the page, it makes no bill."""
+    """Copy the package files with a version, which npm needs for a bill and the page lacks."""
     folder.mkdir()
     for name in ("package.json", "package-lock.json"):
-        told = json.loads((web / name).read_text(encoding="utf-8"))
-        told["version"] = NO_VERSION
-        if "packages" in told:
-            told["packages"][""]["version"] = NO_VERSION
-        (folder / name).write_text(json.dumps(told), encoding="utf-8")
+        content = json.loads((web / name).read_text(encoding="utf-8"))
+        content["version"] = NO_VERSION
+        if "packages" in content:
+            content["packages"][""]["version"] = NO_VERSION
+        (folder / name).write_text(json.dumps(content), encoding="utf-8")
 
 
 def _count(bill: Path) -> int:

@@ -1,6 +1,6 @@
 """Build the simulator's wheel and put it beside the module, which sets the simulator up from it.
 
-With it stands its SHA-256, by which the module knows it. Neither is kept in git: a release builds
+With it comes its SHA-256, by which the module checks it. Neither is kept in git: a release builds
 them, and CMake refuses to package the extension without them.
 """
 
@@ -40,7 +40,7 @@ def put_beside_module(wheel: Path, folder: Path = RESOURCES) -> Path:
 
 
 def main() -> None:
-    """Build the wheel, put it there and say where."""
+    """Build the wheel, put it beside the module and print its path."""
     with tempfile.TemporaryDirectory() as temporary:
         try:
             wheel = put_beside_module(build_wheel(Path(temporary)))

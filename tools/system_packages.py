@@ -1,7 +1,7 @@
-"""Install the system packages that a make target needs, or say in one sentence which are missing.
+"""Install the system packages that a make target needs, or name the missing ones.
 
-Only Linux needs any: the wheels for Windows and macOS bring all. Nothing is installed that is
-there; where the machine is not Debian's or the user not root, what is missing is named.
+Only Linux needs any: the wheels for Windows and macOS are complete. On a
+system other than Debian, or without root, the missing packages are only named.
 """
 
 import ctypes
@@ -35,7 +35,7 @@ WAIT = ("-o", "DPkg::Lock::Timeout=300")
 
 
 def missing_packages(target: str) -> list[str]:
-    """Return the Debian packages that `target` needs and that are not there."""
+    """Return the Debian packages that `target` needs and that are missing."""
     wanted = []
     if not _loads("libgomp.so.1"):
         wanted += ["libgomp1"]
@@ -51,7 +51,7 @@ def missing_packages(target: str) -> list[str]:
 
 
 def _for_tests() -> list[str]:
-    """Return what the tests miss: compiler, CMake, a display in memory, browser, Qt's libraries."""
+    """Return the missing packages of the tests."""
     wanted = []
     if shutil.which("g++") is None:
         wanted += ["g++", "libc6-dev"]
@@ -79,7 +79,7 @@ def _loads(library: str) -> bool:
 
 
 def _runs(script: str, **environment: str) -> bool:
-    """Tell by trying: which libraries something needs depends on the machine."""
+    """Return whether a script runs: which libraries it needs depends on the machine."""
     attempt = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, env={**os.environ, **environment}
     )
@@ -87,7 +87,7 @@ def _runs(script: str, **environment: str) -> bool:
 
 
 def main() -> int:
-    """Install what the target named on the command line misses; 0 where all is there."""
+    """Install the missing packages of the target on the command line; 0 if none is missing."""
     wanted = missing_packages(sys.argv[1]) if sys.platform.startswith("linux") else []
     if not wanted:
         return 0

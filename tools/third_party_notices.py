@@ -1,7 +1,7 @@
-"""Write build/third-party-notices.txt: whose work comes with ours, and under which license.
+"""Write build/third-party-notices.txt: the packages that come with RASTrainer, and their licenses.
 
-It is made from what is installed: the packages that requirements.lock names, as their own metadata
-and license files tell, and the packages that go into the browser page.
+It is made from what is installed: the packages that requirements.lock names, with their metadata
+and license files, and the packages that go into the browser page.
 """
 
 import importlib.metadata
@@ -18,7 +18,7 @@ WEB = ROOT / "RASTrainerSimulatorServer" / "web"
 OUTPUT = ROOT / "build" / "third-party-notices.txt"
 LONGEST_FILE = 200_000
 MOST_FILES = 24
-"""Of one package; those nearest to its top tell what it is under."""
+"""Of one package; those nearest to its top have its license."""
 RULE = "=" * 100
 INTRODUCTION = """RASTrainer is under the MIT license (LICENSE.txt).
 It is installed with the packages below, each under its own license; none is in its repository.
@@ -30,7 +30,7 @@ _LOCKED = re.compile(r"^([A-Za-z0-9][A-Za-z0-9._-]*)==", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Notice:
-    """What one package says of itself."""
+    """The notice of one package."""
 
     name: str
     version: str
@@ -44,20 +44,24 @@ class Notice:
 
 
 def python_notices(lock: Path = LOCK) -> Iterator[Notice]:
-    """Give the notice of each package of a lock that is installed here, by name."""
+    """Yield the notice of each package of a lock that is installed here, by name."""
     for name in sorted(set(_LOCKED.findall(lock.read_text(encoding="utf-8")))):
         try:
             package = importlib.metadata.distribution(name)
         except importlib.metadata.PackageNotFoundError:
             continue  # The lock is for every system; this package belongs to another.
-        told = package.metadata
+        metadata = package.metadata
         yield Notice(
-            told["Name"], package.version, _license(told), _home(told), tuple(_legal_files(package))
+            metadata["Name"],
+            package.version,
+            _license(metadata),
+            _home(metadata),
+            tuple(_legal_files(package)),
         )
 
 
 def page_notices(web: Path = WEB) -> Iterator[Notice]:
-    """Give the notice of each package that goes into the page, not of what only builds it."""
+    """Yield the notice of each package that goes into the page, not of what only builds it."""
     lock = json.loads((web / "package-lock.json").read_text(encoding="utf-8"))
     for place, entry in sorted(lock["packages"].items()):
         folder = web / place
@@ -70,7 +74,7 @@ def page_notices(web: Path = WEB) -> Iterator[Notice]:
 
 
 def write_notices(output: Path = OUTPUT) -> int:
-    """Write all notices and return of how many packages they are."""
+    """Write all notices and return the number of packages."""
     notices = [*python_notices(), *page_notices()]
     output.parent.mkdir(parents=True, exist_ok=True)
     output.write_text(INTRODUCTION + "\n" + "\n".join(map(str, notices)), encoding="utf-8")
@@ -89,19 +93,19 @@ def write_page_notices(output: Path) -> None:
     output.write_text("\n".join(map(str, notices)), encoding="utf-8")
 
 
-def _license(told: importlib.metadata.PackageMetadata) -> str:
-    expression = told.get("License-Expression") or told.get("License") or ""
+def _license(metadata: importlib.metadata.PackageMetadata) -> str:
+    expression = metadata.get("License-Expression") or metadata.get("License") or ""
     if expression and len(expression) < 80 and "\n" not in expression:
         return expression
-    classifiers = told.get_all("Classifier") or []
+    classifiers = metadata.get_all("Classifier") or []
     return "; ".join(
         line.rpartition(" :: ")[2] for line in classifiers if line.startswith("License ::")
     )
 
 
-def _home(told: importlib.metadata.PackageMetadata) -> str:
-    links = [entry.partition(", ")[2] for entry in told.get_all("Project-URL") or []]
-    return told.get("Home-page") or (links[0] if links else "")
+def _home(metadata: importlib.metadata.PackageMetadata) -> str:
+    links = [entry.partition(", ")[2] for entry in metadata.get_all("Project-URL") or []]
+    return metadata.get("Home-page") or (links[0] if links else "")
 
 
 def _legal_files(package: importlib.metadata.Distribution) -> Iterator[str]:

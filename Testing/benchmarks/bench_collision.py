@@ -119,7 +119,7 @@ def _times(check: Callable[[dict], object], tour: list[dict]) -> np.ndarray:
 
 
 class CoalArm:
-    """The same shapes in coal, asked for every pair.
+    """The same shapes in coal, queried for every pair.
 
     It gets our trick too, thin capsules whose radius is subtracted: with their real radius it
     takes a hundred times longer.

@@ -32,9 +32,9 @@ TIMEOUT_S = 20.0
 
 
 class Delay(NamedTuple):
-    """From a push of the stick, s, until the stream tells of it and until a picture shows it."""
+    """From a push of the stick, s, until the stream and until a picture shows it."""
 
-    told: float
+    streamed: float
     shown: float
 
 
@@ -64,9 +64,9 @@ def rows(quick: bool) -> list[dict]:
         drawn = len(window.frames())
         beside = _swing(lab, slicer, seconds)
         rate = (len(window.frames()) - drawn) / beside.seconds
-    told, shown = 1e3 * np.array(delays).T
+    streamed, shown = 1e3 * np.array(delays).T
     return [
-        row("desktop.stick to stream", told, "ms"),
+        row("desktop.stick to stream", streamed, "ms"),
         row("desktop.stick to picture", shown, "ms"),
         row("desktop.pictures", [rate], "1/s"),
         _on_time_row("window", beside),
@@ -93,7 +93,7 @@ def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Dela
     while np.linalg.norm(lab.view.pose("tool")[:3, 3] - start) < enough:
         lab.view.next_state()
         assert time.monotonic() < begin + TIMEOUT_S, "the arm has not moved"
-    told, tick = time.monotonic(), lab.view.state["tick"]
+    streamed, tick = time.monotonic(), lab.view.state["tick"]
     shown: list[float] = []
 
     def is_shown() -> bool:
@@ -105,7 +105,7 @@ def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Dela
     _push(lab, 0.0)
     # So that pushes fall anywhere between two ticks, two messages and two pictures.
     time.sleep(random.uniform(*REST_S))
-    return Delay(told - begin, shown[0] - begin)
+    return Delay(streamed - begin, shown[0] - begin)
 
 
 def _swing(lab: Lab, slicer: Client, seconds: int) -> Swing:
@@ -136,6 +136,6 @@ def _pixel(lab: Lab, place: np.ndarray) -> float:
 
 def _on_time_row(name: str, swing: Swing) -> dict:
     """Return a row like `loop.on_time`: p99 is the share that 99 of 100 seconds exceed."""
-    told, bare = swing.watched.told, swing.watched.bare
-    others = {"success": told.on_time, "n": told.ticks, "worst": 1}
-    return row(f"loop.on_time.{name}", told.shares, "%", "bare loop", bare.shares, **others)
+    measured, bare = swing.watched.measured, swing.watched.bare
+    others = {"success": measured.on_time, "n": measured.ticks, "worst": 1}
+    return row(f"loop.on_time.{name}", measured.shares, "%", "bare loop", bare.shares, **others)

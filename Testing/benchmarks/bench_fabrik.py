@@ -51,7 +51,7 @@ class Solver(Protocol):
 
 
 class Ours:
-    """FABRIK, asked as the control loop asks it: with plain floats."""
+    """FABRIK, called as by the control loop: with plain floats."""
 
     name = "FABRIK"
 
@@ -85,19 +85,19 @@ def rows(quick: bool = True) -> list[dict]:
 
 
 def _wide(robot: Pinocchio, ours: Ours, sizes: Sizes) -> dict:
-    """Return how far the joints are asked to move by 1 mm anywhere, past singularities and edges.
+    """Return how far the joints have to move by 1 mm anywhere, past singularities and edges.
 
     `success` is the share of ticks in which they then move, the velocity limiter in between, by at
     most 2 ° and no faster than their limits.
     """
     path = _path(30 * sizes.timed, *WIDE_BOX)
     fastest = robot.velocity * TICK_S
-    asked, q = np.array(ours.home), np.array(ours.home)
+    q_next, q = np.array(ours.home), np.array(ours.home)
     steps, kept = [], 0
     for target in path:
         question = ours.question(target, "position")
-        before, asked = asked, np.array(ours.solve(question, asked))
-        steps.append(np.degrees(np.abs(asked - before).max()))
+        before, q_next = q_next, np.array(ours.solve(question, q_next))
+        steps.append(np.degrees(np.abs(q_next - before).max()))
         limited = np.array(limit_step(q, ours.solve(question, q), robot.velocity, TICK_S).q)
         moved = np.abs(limited - q)
         kept += bool(np.all(moved <= fastest * (1.0 + 1e-9)) and np.degrees(moved).max() <= 2.0)

@@ -148,15 +148,15 @@ def _on_time(duration_s: float) -> list[dict]:
     growth = (np.median(late) - np.median(early), max(late) - max(early))
     still = watched.undisturbed
     return [
-        _share_row("loop.on_time", watched.told),
+        _share_row("loop.on_time", watched.measured),
         _share_row("loop.on_time.bare", watched.bare),
         *([] if still is None else [_share_row("loop.on_time.undisturbed", still)]),
         row_of_figures("loop.memory", growth, "MB", n=len(memory)),
     ]
 
 
-def _share_row(name: str, told: Punctuality) -> dict:
-    return row(name, told.shares, "%", success=told.on_time, n=told.ticks, worst=1)
+def _share_row(name: str, measured: Punctuality) -> dict:
+    return row(name, measured.shares, "%", success=measured.on_time, n=measured.ticks, worst=1)
 
 
 def _jog_for_a_second(client: Client) -> None:

@@ -1,4 +1,4 @@
-"""How punctual the control loop of a running simulator is, as its heartbeat tells."""
+"""How punctual the control loop of a running simulator is, by its heartbeat."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -31,7 +31,7 @@ class Punctuality:
 
 
 def health_of(beat: Mapping[str, Any]) -> LoopStatistics:
-    """Return what a heartbeat tells of the loop."""
+    """Return the loop statistics of a heartbeat."""
     return LoopStatistics(beat["ticks"], beat["lateTicks"], beat["skippedTicks"])
 
 
@@ -60,8 +60,8 @@ def undisturbed(
     such second.
 
     Args:
-        healths: each with the moment at which it was told (`time.monotonic`, s).
-        was_never_late: tells it of the time between two such moments.
+        healths: each with the time of its arrival (`time.monotonic`, s).
+        was_never_late: whether a bare loop was never late between two such times.
     """
     parts = [
         later.since(earlier)

@@ -16,10 +16,10 @@ HEALTHS = [
 
 
 def test_only_seconds_count_in_which_the_machine_took_nothing_away():
-    told = undisturbed(HEALTHS, lambda start, _end: start > 10.0)
-    assert told.ticks == 500
-    assert told.on_time == pytest.approx((250 - 1 + 240 - 4) / 500)
-    np.testing.assert_allclose(told.shares, [99.6, 100 * 236 / 250])
+    result = undisturbed(HEALTHS, lambda start, _end: start > 10.0)
+    assert result.ticks == 500
+    assert result.on_time == pytest.approx((250 - 1 + 240 - 4) / 500)
+    np.testing.assert_allclose(result.shares, [99.6, 100 * 236 / 250])
 
 
 def test_where_there_is_no_such_second_nothing_is_said():

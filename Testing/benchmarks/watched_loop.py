@@ -35,7 +35,7 @@ class BareLoop:
     """A process for each of the machine's processors while the `with` statement lasts.
 
     What takes one processor away may leave the others alone, and ours runs on any of them. After
-    the statement `punctuality` tells of all together, and `was_never_late` of any stretch of time.
+    the statement `punctuality` covers all together, and `was_never_late` any stretch of time.
     """
 
     def __init__(self) -> None:
@@ -73,41 +73,41 @@ class BareLoop:
         self.punctuality = Punctuality(shares, float(1.0 - self._late.mean()), ticks)
 
     def was_never_late(self, start: float, end: float) -> bool:
-        """Tell whether no tick was late between two moments of `time.monotonic`, s."""
+        """Return whether no tick was late between two moments of `time.monotonic`, s."""
         first, last = (max(0, round((moment - self._start) / TICK_S)) for moment in (start, end))
         return not self._late[:, first : last + 1].any()
 
 
 def _processors() -> list[int | None]:
-    """Return the processors that may be used here; [None] where the system does not tell."""
+    """Return the processors that may be used here; [None] where the system does not report them."""
     if not hasattr(os, "sched_getaffinity"):
         return [None]
     return sorted(os.sched_getaffinity(0))[:MOST_PROCESSORS]
 
 
-def _loop(told: Connection, processor: int | None) -> None:
+def _loop(pipe: Connection, processor: int | None) -> None:
     if processor is not None:
         os.sched_setaffinity(0, {processor})
     is_late = bytearray()
     with precise_timing(is_first_in_line=True):
         if hasattr(os, "SCHED_FIFO"):
             set_real_time(FIRST + 1)  # To wait for the machine alone, not for the loop beside it.
-        told.send("ready")
-        due = told.recv()
-        while not told.poll():
+        pipe.send("ready")
+        due = pipe.recv()
+        while not pipe.poll():
             due += TICK_S
             sleep_until(due)
             is_late.append(time.monotonic() - due > ON_TIME_S)
-    told.send(bytes(is_late))
+    pipe.send(bytes(is_late))
 
 
 class WatchedLoop:
     """Listens to a simulator's heartbeats while the `with` statement lasts.
 
-    After it, of what was told from the first heartbeat to the last:
+    After it, from the first heartbeat to the last:
 
     Attributes:
-        told: how punctual the simulator's loop was.
+        measured: how punctual the simulator's loop was.
         bare: the same of a loop on each processor that does nothing: none can do better there and
             then.
         undisturbed: of the simulator's, in those seconds in which none of these was late; None
@@ -115,7 +115,7 @@ class WatchedLoop:
     """
 
     def __init__(self, client: Client) -> None:
-        self.told: Punctuality | None = None
+        self.measured: Punctuality | None = None
         self.bare: Punctuality | None = None
         self.undisturbed: Punctuality | None = None
         self._client = client
@@ -133,7 +133,7 @@ class WatchedLoop:
         self._listener.shutdown()
         self._bare_loop.__exit__(*exception)
         healths = self._heard.result()
-        self.told = punctuality([health for _, health in healths])
+        self.measured = punctuality([health for _, health in healths])
         self.bare = self._bare_loop.punctuality
         self.undisturbed = undisturbed(healths, self._bare_loop.was_never_late)
 

@@ -31,7 +31,7 @@ class Cost:
 
 
 def cost_of(pid: int, client: Client) -> Cost:
-    """Return what a simulator costs, as Linux tells it, once its next heartbeat has come."""
+    """Return what a simulator costs, by Linux, after its next heartbeat."""
     next_health(client)
     descriptors = len(list(Path(f"/proc/{pid}/fd").iterdir()))
     return Cost(resident_mb(pid), descriptors)
@@ -46,11 +46,11 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
             return cost
 
 
-def told(before: Cost, after: Cost, watched: WatchedLoop) -> str:
+def summary(before: Cost, after: Cost, watched: WatchedLoop) -> str:
     """Return in words what has changed, and how punctual the loop was meanwhile."""
     still = watched.undisturbed
     return (
-        f"{100.0 * watched.told.on_time:.3f} % of {watched.told.ticks} ticks on time "
+        f"{100.0 * watched.measured.on_time:.3f} % of {watched.measured.ticks} ticks on time "
         f"({100.0 * watched.bare.on_time:.3f} % of a loop that does nothing; "
         + (
             "that was late in every second), "
@@ -66,11 +66,11 @@ def check_unharmed(before: Cost, after: Cost, watched: WatchedLoop) -> None:
     """Check that an attack has left nothing behind and has not kept the loop from its ticks."""
     assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
     assert after.resident_mb - before.resident_mb <= MOST_GROWTH_MB
-    assert watched.told.on_time >= watched.bare.on_time - MOST_MORE_MISSED
+    assert watched.measured.on_time >= watched.bare.on_time - MOST_MORE_MISSED
 
 
 def counted_in_log(said: str) -> Counter[str]:
-    """Return how often the link's log tells of each trouble."""
+    """Return how often the link's log reports each problem."""
     counts: Counter[str] = Counter()
     for times, trouble in COUNTED.findall(said):
         counts[trouble] += int(times)

@@ -189,6 +189,6 @@ class MutatedMessages:
 
 
 def _sealed(header: bytearray, body: bytes) -> bytes:
-    """Return a message whose header tells the true size and checksum of its body."""
+    """Return a message whose header has the true size and checksum of its body."""
     header[42:58] = struct.pack(">QQ", len(body), crc64(body))
     return bytes(header) + body

@@ -8,7 +8,13 @@ from rastrainer.igtl.message import Message
 from rastrainer.protocol import COMMAND_ARGUMENTS, check_arguments
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.security.attacked_process import check_unharmed, cost_of, counted_in_log, settled, told
+from Testing.security.attacked_process import (
+    check_unharmed,
+    cost_of,
+    counted_in_log,
+    settled,
+    summary,
+)
 from Testing.security.link_attack import LinkAttack
 from Testing.security.mutated_messages import COMMANDS, MutatedMessages, valid_messages
 from Testing.security.wire_police import SENT_TYPES
@@ -38,7 +44,7 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> None:
                 f"\n{attacked.mutated} mutated messages of {attacked.sent} on "
                 f"{attacked.connections} connections ({attacked.ended} ended early), "
                 f"{attacked.decoded} decoded, {attacked.refused.total()} refused: "
-                f"{told(before, after, watched)}"
+                f"{summary(before, after, watched)}"
             )
         check_unharmed(before, after, watched)
         good.send(PROBE)

@@ -7,7 +7,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import ViewedSimulator
-from Testing.security.attacked_process import check_unharmed, cost_of, settled, told
+from Testing.security.attacked_process import check_unharmed, cost_of, settled, summary
 from Testing.security.stream_attack import StreamAttack
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
@@ -32,7 +32,7 @@ def attack(folder, warm_up: int, count: int, capsys) -> None:
         after = settled(simulator.pid, slicer, before)
         with capsys.disabled():
             messages = f"{attacked.mutated} damaged and {attacked.good} good messages"
-            print(f"\n{messages}: {told(before, after, watched)}")
+            print(f"\n{messages}: {summary(before, after, watched)}")
         assert attacked.closed == attacked.mutated == warm_up + count
         check_unharmed(before, after, watched)
         assert view.next("state")["type"] == "state"

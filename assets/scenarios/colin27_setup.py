@@ -17,7 +17,7 @@ CLOSE_UP_MM = np.array([480.0, -600.0, 440.0])
 """The eye of the default view, in World."""
 
 WINDOW, LEVEL = 188.0, 94.0
-"""Of the volume's values, as make_colin27.py tells them."""
+"""Of the volume's values, as make_colin27.py determines them."""
 
 NOTICE = (
     "Copyright (C) 1993–2009 Louis Collins, McConnell Brain Imaging Centre, Montreal Neurological "

@@ -1,7 +1,7 @@
 """Make the sounds of the simulator: `python assets/sounds/make_sounds.py`.
 
 Every sound is a sum of struck or blown notes, so that all of them belong together; they differ in
-pitch, direction and rhythm, which can also be told apart by who hears high tones badly.
+pitch, direction and rhythm, which people who hear high tones badly can also distinguish.
 """
 
 import wave

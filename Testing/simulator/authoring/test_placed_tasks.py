@@ -37,8 +37,8 @@ def read(planning, folder, points, labels=LABELS, count=1):
     path, warnings = folder / "mine.mrk.json", []
     write_markups(path, PointList(labels, points))
     files = (path,) * count
-    told = read_placed_tasks(planning, files, lambda _step, _share: None, warnings.append)
-    return *told, warnings
+    result = read_placed_tasks(planning, files, lambda _step, _share: None, warnings.append)
+    return *result, warnings
 
 
 def test_clicks_within_five_millimeters_of_the_skin_are_moved_onto_it_and_that_is_reported(

@@ -56,9 +56,9 @@ def scenario_of(setup):
     ],
 )
 def test_what_is_not_on_the_table_is_reported(setup, sentence):
-    told = standing(setup)
-    assert sentence in told[0]
-    assert "\n" not in told[0]
+    sentences = standing(setup)
+    assert sentence in sentences[0]
+    assert "\n" not in sentences[0]
 
 
 def test_the_usual_set_up_and_the_scenario_that_comes_with_it_are_on_the_table():
@@ -75,13 +75,13 @@ def test_the_check_of_the_plan_reports_the_table():
 def test_no_trial_brings_the_head_lower_than_reported():
     setup = SetUp(perturbation=Perturbation(20.0, 30.0, 25.0))
     scenario, head = scenario_of(setup), egg()
-    told = lowest_in_trials_mm(scenario, head)
+    reported = lowest_in_trials_mm(scenario, head)
     lowest = [
         transforms.apply(scenario.perturbed_head_to_world(seed), head.vertices)[:, 2].min()
         for seed in range(400)
     ]
-    assert told <= min(lowest)
-    assert told > min(lowest) - 15.0
+    assert reported <= min(lowest)
+    assert reported > min(lowest) - 15.0
     still = replace(scenario, perturbation=Perturbation(0.0, 0.0, 0.0))
     world = transforms.apply(still.head_to_world, head.vertices)
     assert lowest_in_trials_mm(still, head) == pytest.approx(np.min(world[:, 2]))

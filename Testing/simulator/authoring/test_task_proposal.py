@@ -68,17 +68,17 @@ def test_where_it_is_wanted_the_first_task_is_the_easiest_of_many(proposer):
 def test_places_that_turn_out_useless_are_replaced(mesh, places, proposer):
     plan = PLANS[2]
     useless = proposer.propose(plan, 5).fiducials[:4]
-    asked = []
+    counts = []
 
     def usable(positions):
-        asked.append(len(positions))
+        counts.append(len(positions))
         return ~(positions[:, None] == useless[None]).all(axis=2).any(axis=1)
 
     picky = TaskProposer(mesh, places, EYE, TARGET, usable=usable)
     found = picky.propose(plan, 5)
     assert usable(found.fiducials).all()
     assert found.complexity.hidden_points == plan.hidden
-    assert 2 < len(asked) < 8
+    assert 2 < len(counts) < 8
     assert np.array_equal(picky.propose(plan, 5).fiducials, found.fiducials)
 
 

@@ -88,9 +88,9 @@ def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(planning, tasks):
     )
     assert "must be above" in check_tasks(planning, [first, run])[-1]
     assert "its complexity is" in check_tasks(planning, [replace(run, complexity=3.0)])[0]
-    unmeasured, wrong = (replace(run, shortest_path_mm=told) for told in (None, 5.0))
-    assert "shortestPathMm tells none" in check_tasks(planning, [unmeasured])[0]
-    assert "shortestPathMm tells 5.0 mm" in check_tasks(planning, [wrong])[0]
+    unmeasured, wrong = (replace(run, shortest_path_mm=stated) for stated in (None, 5.0))
+    assert "shortestPathMm says none" in check_tasks(planning, [unmeasured])[0]
+    assert "shortestPathMm says 5.0 mm" in check_tasks(planning, [wrong])[0]
 
 
 def test_a_plan_outside_of_the_head_or_reach_has_its_sentence(planning):
@@ -111,7 +111,7 @@ def test_a_first_target_too_deep_to_start_above_stays_a_further_one_and_that_is_
     assert [target.name for target in scenario.targets] == ["Brainstem", "Tumor"]
     (sentence,) = warnings
     assert sentence.startswith("Brainstem lies too deep for trials to start above it")
-    assert "told at Center of the head" in sentence
+    assert "reported at Center of the head" in sentence
 
 
 @pytest.mark.parametrize(

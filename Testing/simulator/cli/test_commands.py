@@ -251,10 +251,10 @@ def means(path, names):
 
 def test_the_mark_lies_between_the_groups_last_trials_without_trial_runs(study, capsys):
     assert main(words(study)) == 0
-    told = capsys.readouterr().out
-    mark = float(told.split()[2])
+    output = capsys.readouterr().out
+    mark = float(output.split()[2])
     assert max(means(study, NOVICES)) < mark < min(means(study, EXPERTS))
-    assert "here it is 0 % and 0 %" in told
+    assert "here it is 0 % and 0 %" in output
     with Study.open(study) as opened:
         assert [trial.task for trial in opened.past_trials("N0")] == ["task-1"] * 4
 

@@ -58,19 +58,19 @@ def test_python_and_its_packages_are_there():
 
 
 def test_what_computes_the_kinematics_is_named(monkeypatch):
-    def told():
+    def kinematics_result():
         (finding,) = (each for each in check_python() if each.check == "kinematics")
         return finding.verdict, finding.sentence
 
     pinocchio = f"Pinocchio {metadata.version('pin')} computes the robot's kinematics."
-    assert told() == (CheckStatus.OK, pinocchio)
+    assert kinematics_result() == (CheckStatus.OK, pinocchio)
     monkeypatch.setenv("RASTRAINER_KINEMATICS", "numpy")
-    assert told() == (
+    assert kinematics_result() == (
         CheckStatus.OK,
         f"numpy {metadata.version('numpy')} computes the robot's kinematics.",
     )
     monkeypatch.setenv("RASTRAINER_KINEMATICS", "guess")
-    assert told()[0] is CheckStatus.PROBLEM
+    assert kinematics_result()[0] is CheckStatus.PROBLEM
 
 
 def test_a_missing_package_is_a_problem_with_the_command_that_mends_it(monkeypatch):

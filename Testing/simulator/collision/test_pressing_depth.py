@@ -162,8 +162,8 @@ def test_a_journal_with_depths_replays_to_the_last_bit(setup, pressed, tmp_path)
 @pytest.mark.parametrize("kind", ["sample", "touch", "proximity"])
 def test_a_forged_depth_is_found_by_the_replay(setup, pressed, tmp_path, kind):
     entries = copy.deepcopy(pressed.entries)
-    told = [entry for entry in entries if entry["kind"] == kind and "depthMm" in entry]
-    told[-1]["depthMm"] += 0.5
+    found = [entry for entry in entries if entry["kind"] == kind and "depthMm" in entry]
+    found[-1]["depthMm"] += 0.5
     report = replay(written(entries, tmp_path / "forged.journal"), setup)
     assert "depthMm was" in report.difference
 

@@ -1,4 +1,4 @@
-"""The control loop: owns the time, tells nothing that is not on the disk, loses nothing."""
+"""The control loop: owns the time, publishes nothing that is not on the disk, loses nothing."""
 
 import errno
 import os
@@ -67,7 +67,7 @@ class Client:
         return self.do(CommandName.TRIAL_SCORED, trialId=trial_id, score=70.0)
 
     def ticks(self, count):
-        """Wait until so many more ticks have been told."""
+        """Wait until so many more ticks have been published."""
         until = self.loop.latest.tick + count
         wait_for(lambda: self.loop.latest.tick >= until)
 
@@ -115,8 +115,8 @@ def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_by_bit(
     answer = running.register(trial_id)
     assert running.score(trial_id).ok
     assert running.loop.latest.training.phase is Phase.SCORED
-    told = running.do(CommandName.GET_TRIAL, trialId=trial_id).data
-    assert told["headToWorld"] == answer.data["headToWorld"]
+    trial = running.do(CommandName.GET_TRIAL, trialId=trial_id).data
+    assert trial["headToWorld"] == answer.data["headToWorld"]
     running.loop.stop()
 
     (path,) = journals(tmp_path)
@@ -127,8 +127,8 @@ def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_by_bit(
     assert report.difference is None
     assert report.compared["sample"] > 20
     assert report.motion["undone_touches"] == 1
-    assert report.motion == told["record"]["motion"]
-    record = TrialRecord.from_json(told["record"])
+    assert report.motion == trial["record"]["motion"]
+    record = TrialRecord.from_json(trial["record"])
     assert record.undone_touches == 1
 
 
@@ -268,8 +268,8 @@ def test_a_question_about_an_older_trial_that_fails_unforeseen_is_answered(runni
     deep = []
     for _ in range(100_000):
         deep = [deep]
-    asked = {"trialId": trial_id, "details": deep}
-    answer = running.loop.submit(CommandName.TRIAL_SCORED, asked).result(TIMEOUT_S)
+    arguments = {"trialId": trial_id, "details": deep}
+    answer = running.loop.submit(CommandName.TRIAL_SCORED, arguments).result(TIMEOUT_S)
     assert not answer.ok
     assert "log says why" in answer.message
     assert "TrialScored of an older trial has failed" in caplog.text
@@ -423,12 +423,12 @@ def test_kill_9_in_the_middle_of_trials_loses_no_acknowledged_touch(tmp_path):
         [sys.executable, "-c", KILLED, str(tmp_path / "records")], stdout=subprocess.PIPE, text=True
     )
     with process:
-        told = [process.stdout.readline().strip() for _ in range(40)]
+        answers = [process.stdout.readline().strip() for _ in range(40)]
         os.kill(process.pid, signal.SIGKILL)
-        told += process.stdout.read().split()
-    assert told.count("Capture") >= 30
+        answers += process.stdout.read().split()
+    assert answers.count("Capture") >= 30
     readings = [read_journal(path) for path in journals(tmp_path)]
     assert all(reading.integrity is not Integrity.ALTERED for reading in readings)
-    assert told.count("Capture") <= sum(len(labels(reading)) for reading in readings)
-    assert told.count("Register") <= sum(len(r.of_kind("registered")) for r in readings)
-    assert told.count("StartTask") <= len(readings)
+    assert answers.count("Capture") <= sum(len(labels(reading)) for reading in readings)
+    assert answers.count("Register") <= sum(len(r.of_kind("registered")) for r in readings)
+    assert answers.count("StartTask") <= len(readings)

@@ -62,16 +62,16 @@ def test_threads_that_the_loop_starts_stay_ordinary():
 
 @linux_only
 def test_who_shares_the_interpreter_with_the_loop_comes_after_it_and_before_ordinary_threads():
-    def told() -> tuple[int, int]:
+    def priority() -> tuple[int, int]:
         return policy(), os.sched_getparam(0).sched_priority
 
     def second() -> tuple[tuple[int, int], tuple[int, int]]:
         raise_thread_priority()
-        return told(), in_a_thread(told)
+        return priority(), in_a_thread(priority)
 
     def first() -> tuple[int, int]:
         with precise_timing(is_first_in_line=True):
-            return told()
+            return priority()
 
     ordinary = (os.SCHED_OTHER, 0)
     itself, started = in_a_thread(second)

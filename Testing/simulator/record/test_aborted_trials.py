@@ -158,9 +158,9 @@ def test_the_truth_about_it_is_revealed_to_nobody(simulation, tmp_path):
         touch(server, 15)
         server.do(CommandName.ABORT)
         for _ in range(2):
-            told = server.do(CommandName.GET_TRIAL, trialId=trial_id)
-            assert told.data["phase"] == "aborted"
-            assert not {"headToWorld", "trueTreMm", "seed"} & told.data.keys()
+            answer = server.do(CommandName.GET_TRIAL, trialId=trial_id)
+            assert answer.data["phase"] == "aborted"
+            assert not {"headToWorld", "trueTreMm", "seed"} & answer.data.keys()
             matrix = [float(i % 5 == 0) for i in range(16)]
             refused = server.do(
                 CommandName.SUBMIT_REGISTRATION,

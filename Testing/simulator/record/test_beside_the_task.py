@@ -1,4 +1,4 @@
-"""What is done beside the task never helps: waiting and detours cost points, pauses are told."""
+"""What is done beside the task never helps: waiting and detours cost points."""
 
 import pytest
 

@@ -216,7 +216,7 @@ def test_a_trial_interrupted_while_the_tool_is_pressed_in_continues_unpressed_an
         server.start()
         while server.loop.latest.depth < 0.002:
             server.move((0.0, 0.0, -0.6), 10)
-        # Until a sample tells what the stick has pressed before it was let go.
+        # Until a sample shows what the stick has pressed before it was released.
         server.move((0.0, 0.0, 0.0), 20)
         pressed_mm = MM_PER_M * server.loop.latest.depth
     with Server(simulation, tmp_path) as server:

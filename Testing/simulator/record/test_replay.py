@@ -175,8 +175,8 @@ def header(setup):
 
 
 def test_the_rule_for_touches_is_the_recorded_one(setup):
-    told = setup_of(header(setup)).settings.training
-    assert told.touch_rule is TouchRule.ON_SKIN
+    recorded = setup_of(header(setup)).settings.training
+    assert recorded.touch_rule is TouchRule.ON_SKIN
 
 
 def test_a_journal_older_than_the_rule_is_replayed_by_that_of_the_paper(setup):

@@ -107,8 +107,8 @@ def test_the_truth_of_an_older_trial_is_revealed_only_for_a_registration(tmp_pat
 def test_once_the_truth_of_an_older_trial_is_revealed_nobody_registers_it_again(tmp_path):
     write_trial(tmp_path)
     for archive in (TrialArchive(tmp_path), TrialArchive(tmp_path)):
-        told = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
-        assert told["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
+        data = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
+        assert data["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
         with pytest.raises(InputError, match="registration of this trial is final"):
             archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION | {"freMm": 2.0}, NOW)
 
@@ -122,9 +122,9 @@ def test_an_older_trial_without_a_registration_is_not_scored(tmp_path):
 def test_a_trial_that_was_scored_by_the_first_protocol_has_its_registration(tmp_path):
     write_trial(tmp_path, {"kind": "scored", "arguments": {**SCORE, **REGISTRATION}})
     archive = TrialArchive(tmp_path)
-    told = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    assert told["phase"] == "scored"
-    assert told["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
+    data = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert data["phase"] == "scored"
+    assert data["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
     with pytest.raises(InputError, match="final"):
         archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION | {"freMm": 2.0}, NOW)
 
@@ -143,8 +143,8 @@ def test_a_score_as_deep_as_a_message_may_be_leaves_a_journal_that_can_be_read(t
     arguments = check_arguments(CommandName.TRIAL_SCORED, decode_json_object(score))
     TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, arguments, NOW)
     assert read_journal(path).integrity is Integrity.INTACT
-    told = TrialArchive(tmp_path).answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
-    assert told["phase"] == "scored"
+    data = TrialArchive(tmp_path).answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+    assert data["phase"] == "scored"
     deeper = score.replace(details, f"[{details}]")
     with pytest.raises(InputError, match="one JSON object"):
         decode_json_object(deeper)
@@ -176,9 +176,9 @@ def test_a_trial_that_is_done_takes_no_memory_and_is_answered_as_before(tmp_path
         assert archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW) == truth
         assert archive.answer(CommandName.TRIAL_SCORED, SCORE, NOW) == {"trialId": TRIAL_ID}
         assert archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
-        told = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
-        assert told["phase"] == "scored"
-        assert told["trueTreMm"] == truth["trueTreMm"]
+        data = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
+        assert data["phase"] == "scored"
+        assert data["trueTreMm"] == truth["trueTreMm"]
     reading = read_journal(path)
     assert reading.integrity is Integrity.INTACT
     for kind in ("registration", "scored", "acknowledged"):

@@ -55,9 +55,9 @@ def test_a_contact_in_the_tick_of_register_counts_in_the_record_as_in_the_journa
         before = simulation.state
         return before, given, simulation.step(DT, given)
 
-    before, given, begun = step(CommandName.START_TASK, task="task-1", trainee="P01")
-    entries = TrialEntries.started(simulation, before, begun, DT)
-    entries.add(simulation, given, begun)
+    before, given, started = step(CommandName.START_TASK, task="task-1", trainee="P01")
+    entries = TrialEntries.started(simulation, before, started, DT)
+    entries.add(simulation, given, started)
     for _ in range(15):
         _, given, touched = step(CommandName.CAPTURE)
         entries.add(simulation, given, touched)

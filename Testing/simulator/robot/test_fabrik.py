@@ -57,7 +57,7 @@ def fabrik(robot):
 
 
 def target(tip, mode):
-    """Return what `solve` is asked for in a mode."""
+    """Return the arguments of `solve` in a mode."""
     direction = tip[:3, 2] if mode == "direction" else None
     return tip[:3, 3], direction, tip[:3, :3] if mode == "pose" else None
 

@@ -277,12 +277,12 @@ def test_a_registration_that_arrives_twice_is_answered_twice_and_kept_once(scena
 @pytest.mark.parametrize("phase", [Phase.REGISTERED, Phase.SCORED])
 def test_nobody_registers_again_once_the_truth_is_revealed(scenario, phase):
     trial = in_phase(scenario, phase)
-    told = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION).data
+    revealed = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION).data
     truth = tuple(np.linalg.inv(trial.training.truth.head_to_world).ravel())
     answer = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION | {"matrix": truth})
     assert not answer.ok
     assert "final" in answer.message
-    assert trial.do(CommandName.GET_TRIAL).data["trueTreMm"] == told["trueTreMm"]
+    assert trial.do(CommandName.GET_TRIAL).data["trueTreMm"] == revealed["trueTreMm"]
 
 
 def test_there_is_no_score_before_a_registration(scenario):

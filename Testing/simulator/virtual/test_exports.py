@@ -1,4 +1,4 @@
-"""What leaves a study is what other programs expect, and tells nobody's name."""
+"""What leaves a study is what other programs expect, and reveals nobody's name."""
 
 import csv
 import json

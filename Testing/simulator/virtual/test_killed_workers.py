@@ -214,10 +214,10 @@ def test_an_incomplete_cohort_is_neither_reported_nor_exported(copied, tmp_path,
     for command in ("report", "export"):
         words = [command, str(copied / DATABASE), "-o", str(tmp_path / command)]
         assert main(words) == 2
-        told = capsys.readouterr().err
-        assert "not played to its end: 3 of 4 trials are there." in told
-        assert "into the same folder with the same options" in told
-        assert "--incomplete takes it as it is" in told
+        errors = capsys.readouterr().err
+        assert "not played to its end: 3 of 4 trials are there." in errors
+        assert "into the same folder with the same options" in errors
+        assert "--incomplete takes it as it is" in errors
         assert not (tmp_path / command).exists()
 
 
@@ -287,11 +287,11 @@ def test_a_command_that_is_stopped_leaves_a_study_that_the_same_command_resumes(
         os.killpg(process.pid, stop)
     else:
         os.kill(process.pid, stop)
-    _out, told = process.communicate()
-    assert "Traceback" not in told
+    _out, errors = process.communicate()
+    assert "Traceback" not in errors
     if stop == signal.SIGINT:
         assert process.returncode == 130
-        assert told.strip().endswith("the same command resumes.")
+        assert errors.strip().endswith("the same command resumes.")
     while any(map(runs, workers)):
         time.sleep(0.02)
     assert trials_in(folder) < 5

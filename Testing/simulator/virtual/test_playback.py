@@ -195,16 +195,16 @@ def test_a_header_without_what_is_needed_is_one_sentence(track, setup, damage):
 
 
 def test_loading_that_is_canceled_ends(journal, setup, monkeypatch):
-    begun, may_go_on = threading.Event(), threading.Event()
+    started, may_go_on = threading.Event(), threading.Event()
 
     def read(path, rest):
-        begun.set()
+        started.set()
         may_go_on.wait(30)
         return read_track(path, rest)
 
     monkeypatch.setattr(recorded_trial, "read_track", read)
     loading = TrialLoading(journal, setup)
-    assert begun.wait(30)
+    assert started.wait(30)
     loading.cancel()
     may_go_on.set()
     with pytest.raises(InputError, match="was canceled"):
@@ -226,10 +226,10 @@ def test_the_program_serves_it_to_views_until_escape(journal, tmp_path, loop_thr
         view = ViewClient(loop_thread, url, key)
         view.join()
         first = view.next("state")
-        told = view.all_until(
+        messages = view.all_until(
             lambda m: m["type"] == "state" and m["elapsed"] > first["elapsed"] + 1.0
         )
-        assert told[-1]["poses"] != first["poses"]
+        assert messages[-1]["poses"] != first["poses"]
         view.send({"type": "key", "code": "Escape", "isDown": True, "text": ""})
         assert process.wait(60) == 0
         view.__exit__()

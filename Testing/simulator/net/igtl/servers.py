@@ -87,7 +87,7 @@ class PlainServer:
 
 
 class SimulatedLoop:
-    """Stands in for the control loop: answers what it is told to, and keeps what it was asked."""
+    """Replaces the control loop: gives prepared answers, and keeps the commands."""
 
     def __init__(self):
         self.latest = at_rest()

@@ -168,9 +168,9 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
     publisher.publish(state)
     (message,) = receiver.of("SimState")
     assert message.content.text.isascii()
-    told = json.loads(message.content.text)
-    assert told.pop("seq") > 0
-    assert told == {
+    state = json.loads(message.content.text)
+    assert state.pop("seq") > 0
+    assert state == {
         "simTime": 3.0,
         "elapsedS": state.elapsed,
         "phase": "running",
