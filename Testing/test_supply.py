@@ -162,7 +162,7 @@ def answering(monkeypatch, stdout: str) -> None:
             '{"dependencies": [{"name": "a", "version": "1", "vulns": '
             '[{"id": "CVE-1", "fix_versions": ["2"]}]}]}',
             1,
-            "a 1: CVE-1, mended in 2",
+            "a 1: CVE-1, fixed in 2",
         ),
         ("", 3, "not checked"),
         (
@@ -174,7 +174,7 @@ def answering(monkeypatch, stdout: str) -> None:
         ('{"error": "ENOTFOUND"}', 3, "not checked"),
     ],
 )
-def test_an_audit_tells_what_is_known_and_whether_anybody_was_asked(
+def test_an_audit_reports_what_is_known_and_whether_it_was_checked(
     monkeypatch, answer, status, words
 ):
     answering(monkeypatch, answer)
@@ -183,7 +183,7 @@ def test_an_audit_tells_what_is_known_and_whether_anybody_was_asked(
     assert words in found[1]
 
 
-def test_an_audit_that_could_not_ask_is_no_success(monkeypatch, capsys):
+def test_an_audit_that_was_not_possible_is_no_success(monkeypatch, capsys):
     monkeypatch.setattr(audit_packages, "audit_python", lambda _lock: (0, "well"))
     monkeypatch.setattr(audit_packages, "audit_page", lambda: (3, "not checked"))
     assert audit_packages.main() == 3

@@ -67,7 +67,7 @@ def easiest_order(transitions: Transitions, members: list[int]) -> list[int]:
 
 
 def crossing_order(transitions: Transitions, sides: list[list[int]], crossings: int) -> list[int]:
-    """Return an order that crosses so often between two sides.
+    """Return an order with a number of crossings between two sides.
 
     Each side is touched in its own easiest order, in runs of equal length.
     """

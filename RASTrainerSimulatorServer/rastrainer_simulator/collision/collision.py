@@ -209,7 +209,7 @@ class Collision:
         return self._travelled
 
     def line_of_sight(self, link_to_world: Mapping[str, np.ndarray]) -> LineOfSight:
-        """Return what tells which places are seen while the arm has such a posture."""
+        """Return what determines which points are seen while the arm has such a posture."""
         return LineOfSight(self._head, self._arm, self._arm.pose(link_to_world), self.table_height)
 
     def nearest_to_point(self, point: Vector) -> Nearest:

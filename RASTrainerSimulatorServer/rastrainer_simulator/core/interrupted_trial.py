@@ -107,7 +107,7 @@ class InterruptedTrial:
 def find_interrupted(folder: Path) -> tuple[JournalReading, InterruptedTrial] | None:
     """Return the journal of the newest trial in a folder, and where to resume it.
 
-    None where that trial was registered or aborted: who has begun another trial since has left an
+    None if that trial was registered or aborted: anyone who has started another trial has left an
     older one behind.
 
     Raises:

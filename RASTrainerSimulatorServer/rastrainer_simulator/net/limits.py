@@ -37,7 +37,7 @@ class LinkLimits:
         buffer_bytes: passed to the operating system ahead of a client that reads slowly.
         waiting_messages: messages, and
         waiting_bytes: bytes that may wait for a client; one more drops it.
-        commands_at_once: commands of one client that the control loop is given at once.
+        commands_at_once: commands of one client that are submitted to the control loop at a time.
         waiting_commands: further commands, and
         waiting_command_bytes: bytes of them that may wait for their turn; one more is refused.
         reconnect_s: pause between two attempts to reach a listening Slicer.
@@ -66,7 +66,7 @@ class ViewLimits:
     """Limits of the view server.
 
     Attributes:
-        views: streams at once; further ones are refused.
+        views: streams at a time; further ones are refused.
         connections: of any kind at a time; a further one replaces the oldest that has shown no
             key, and is closed immediately if all have.
         new_connections_per_s: that are taken in a second; further ones wait.

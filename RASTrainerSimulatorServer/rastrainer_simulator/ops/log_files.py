@@ -150,7 +150,7 @@ class BackgroundHandler(logging.Handler):
     """Passes records to another handler in a separate thread, in order.
 
     A pipe whose reader has stopped, a terminal in which text is being selected and a disk that is
-    asleep all make a write wait, and a server that waits answers nobody. Records that the other
+    asleep all make a write wait, and a waiting server answers no one. Records that the other
     handler cannot take in time are lost; a line in their place says how many. The standard
     library's QueueHandler and QueueListener neither count what they lose nor give up when the
     program ends, and they drop tracebacks.

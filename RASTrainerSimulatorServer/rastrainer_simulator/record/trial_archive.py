@@ -163,8 +163,8 @@ class TrialArchive:
             entry = {"kind": "registration", **times, "arguments": arguments}
             self._append(trial.record.trial_id, entry)
             return replace(trial, registration=arguments)
-        kept, told = map(FinalRegistration.from_arguments, (trial.registration, arguments))
-        if not kept.agrees_with(told):
+        kept, given = map(FinalRegistration.from_arguments, (trial.registration, arguments))
+        if not kept.agrees_with(given):
             raise InputError(Texts().say("registration is final"))
         return trial
 

@@ -129,7 +129,7 @@ class SimulatorServer:
         )
 
     async def run(self, on_ready: Callable[[str], None]) -> None:
-        """Serve until SIGTERM or Ctrl-C; `on_ready` is told where, and each new pairing code.
+        """Serve until SIGTERM or Ctrl-C; `on_ready` is called with the address and pairing codes.
 
         Raises:
             InputError: the address cannot be listened on.
