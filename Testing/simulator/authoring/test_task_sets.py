@@ -110,7 +110,7 @@ def test_a_first_target_too_deep_to_start_above_stays_a_further_one_and_that_is_
     assert scenario.target_name == "Center of the head"
     assert [target.name for target in scenario.targets] == ["Brainstem", "Tumor"]
     (sentence,) = warnings
-    assert sentence.startswith("Brainstem lies too deep for trials to start above it")
+    assert sentence.startswith("Brainstem is too deep for trials to start above it")
     assert "reported at Center of the head" in sentence
 
 

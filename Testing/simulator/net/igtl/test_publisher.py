@@ -168,9 +168,9 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
     publisher.publish(state)
     (message,) = receiver.of("SimState")
     assert message.content.text.isascii()
-    state = json.loads(message.content.text)
-    assert state.pop("seq") > 0
-    assert state == {
+    sent = json.loads(message.content.text)
+    assert sent.pop("seq") > 0
+    assert sent == {
         "simTime": 3.0,
         "elapsedS": state.elapsed,
         "phase": "running",
