@@ -43,7 +43,7 @@ class SceneMoment:
         head_base: (3,) float, RAS mm, the center of the head's base, on the stand.
         touched: labels of the fiducials that are done.
         next_point: label of the one to touch now.
-        proximity: the tip is blue while free, and red near and on the head.
+        proximity: the tip is blue while free, and light blue near and on the head.
     """
 
     link_to_world: Mapping[str, np.ndarray]

@@ -112,14 +112,14 @@ def tip(picture):
     return lambda proximity: picture(camera=close_up(target), proximity=proximity)
 
 
-def test_the_tool_tip_is_blue_when_free_and_red_when_near_or_touching(tip):
-    blue, red = ((0, 40, 200), (60, 110, 255)), ((200, 0, 0), (255, 60, 60))
+def test_the_tool_tip_is_blue_when_free_and_light_blue_when_near_or_touching(tip):
+    blue, light = ((0, 40, 200), (60, 110, 255)), ((60, 190, 230), (120, 240, 255))
     free = tip(Proximity.FREE)
     assert _share(free, *blue) > 1e-4
-    assert _share(free, *red) == 0
+    assert _share(free, *light) == 0
     for proximity in (Proximity.PROXIMITY, Proximity.CONTACT):
         near = tip(proximity)
-        assert _share(near, *red) > 1e-4
+        assert _share(near, *light) > 1e-4
         assert _share(near, *blue) == 0
 
 
