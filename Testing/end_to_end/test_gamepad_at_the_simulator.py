@@ -77,8 +77,12 @@ def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_pa
         watch.until_the_arm(moves=True)
         simulator.plug_out()
         watch.until_the_arm(moves=False)
-        assert watch.state()["phase"] == "running"
+        watch.until(lambda state: state["phase"] == "paused")
         simulator.plug_in()
+        while watch.state()["phase"] != "running":
+            assert time.monotonic() < give_up, "the trial was not resumed"
+            simulator.tap("a")
+            time.sleep(AGAIN_S)
         simulator.move(leftx=-0.8)
         watch.until_the_arm(moves=True)
         simulator.move(leftx=0.0)

@@ -188,7 +188,12 @@ def unplug_and_go_on(lab: Lab, trainee: StreamTrainee) -> dict:
     lab.simulator.plug_out()
     trainee.until_warned(UNPLUGGED)
     trainee.until_still()
+    trainee.until_menu("trial")
     phase = trainee.view.state["phase"]
+    trainee.until(lambda: trainee.menu.focus == "resume", "the focus")
+    for is_down in (True, False):
+        lab.keyboard.hold("Enter", is_down)
+    trainee.until_menu(None)
     lab.keyboard.hold("KeyR", True)
     trainee.until_moved()
     lab.keyboard.hold("KeyR", False)
@@ -233,8 +238,8 @@ def test_slicer_s_side_comes_back_into_the_running_trial_and_gets_all_of_it(sess
 
 def test_unplugging_the_gamepad_stops_the_arm_and_loses_nothing(session):
     unplugged = session["unplugged"]
-    # The arm's stop and the warning are waited for; the trial itself goes on.
-    assert unplugged["phase"] == "running"
+    # The arm's stop and the warning are waited for; the keyboard resumes the trial.
+    assert unplugged["phase"] == "paused"
     assert unplugged["touched"] == ["1", "2"]
     touches = unplugged["journal"].of_kind("touch")
     assert [touch["label"] for touch in touches] == ["1", "2"]

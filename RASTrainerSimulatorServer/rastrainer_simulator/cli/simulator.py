@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
+from rastrainer_simulator.ops.desktop_process import has_display
 
 FASTEST = 1000.0
 LARGEST_SEED = 2**63 - 1
@@ -146,6 +147,12 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+NO_DISPLAY = (
+    "--desktop needs a display, and there is none (DISPLAY and WAYLAND_DISPLAY are not set): leave "
+    "it out, and open the page in a browser."
+)
+
+
 def _check(arguments: argparse.Namespace) -> None:
     for name, port in (("--port", arguments.port), ("--view-port", arguments.view_port)):
         if port is not None and not 0 <= port < 65536:
@@ -156,6 +163,8 @@ def _check(arguments: argparse.Namespace) -> None:
         raise InputError("--lan and --no-views exclude each other.")
     if arguments.no_views and arguments.desktop:
         raise InputError("--desktop and --no-views exclude each other.")
+    if arguments.desktop and not has_display():
+        raise InputError(NO_DISPLAY)
     if not 0.0 < arguments.speed <= FASTEST:
         raise InputError(f"--speed must be above 0 and at most {FASTEST:g}.")
     if arguments.seed is not None and not 0 <= arguments.seed <= LARGEST_SEED:

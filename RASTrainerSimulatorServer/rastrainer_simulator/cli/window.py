@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.ops.desktop_process import VIEW_KEY_VARIABLE
+from rastrainer_simulator.ops.desktop_process import VIEW_KEY_VARIABLE, has_display
 
 DEFAULT_URL = "http://127.0.0.1:18945"
 LEAST_SIDE, MOST_SIDE = 320, 16_384
@@ -93,6 +93,8 @@ def run(arguments: argparse.Namespace) -> int:
         frame_log=arguments.frame_log,
     )
     with keep_logs(arguments.log_folder or log_folder(), "window"):
+        if not has_display():
+            raise InputError("No window can be opened on this machine: there is no display.")
         asyncio.run(DesktopWindow(options).run())
     return 0
 

@@ -16,6 +16,7 @@ from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 from vtkmodules.vtkRenderingOpenGL2 import vtkGenericOpenGLRenderWindow
 
 from rastrainer.errors import RASTrainerError
+from rastrainer_simulator.desktop.panels.window_icon import SIZE, window_icon
 
 TITLE = "RASTrainer"
 LEAST_SIZE = (960, 540)
@@ -60,6 +61,9 @@ class GlWindow:
             )
         except pygame.error as error:
             raise RASTrainerError(NO_WINDOW.format(reason=error)) from None
+        self._window.set_icon(
+            pygame.image.frombuffer(window_icon().tobytes(), (SIZE, SIZE), "RGBA")
+        )
         pygame.key.set_repeat(REPEAT_AFTER_MS, REPEAT_EVERY_MS)
         self._window.minimum_size = tuple(
             min(least, own) for least, own in zip(LEAST_SIZE, self.size, strict=True)

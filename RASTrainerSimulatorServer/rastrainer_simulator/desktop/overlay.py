@@ -104,6 +104,10 @@ class Overlay:
             right = self._size[0] - margin - self._slots["status"].sprite.size[0]
             self._place("status", margin if screen.menu is None else right, margin)
         top = margin
+        width, height = self._slots["status"].sprite.size
+        if screen.status and width > aside + margin:
+            # Wider than the room beside the messages: they come below it.
+            top += height + brush.px(1.5 * theme.STEP)
         message = screen.instruction if screen.instruction.text else None
         if self._paint("instruction", message, strips.instruction, brush, room):
             top = self._center("instruction", top)

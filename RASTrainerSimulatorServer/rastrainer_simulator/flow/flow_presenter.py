@@ -12,7 +12,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.session import FlowServices, TrainingSession
 from rastrainer_simulator.input.bindings import Bindings
 from rastrainer_simulator.input.control_name import ControlContext, ControlName
-from rastrainer_simulator.input.controls import Controls
+from rastrainer_simulator.input.controls import IDLE_S, Controls
 from rastrainer_simulator.input.inputs import (
     SIMULATOR_SEAT,
     InputDevice,
@@ -232,9 +232,15 @@ class FlowPresenter:
             return
         name = self._session.texts.say(f"source.{holder.kind.value}")
         menu = self._session.texts.say("control.menu")
-        text = self._session.texts.say("control.held", source=name, menu=menu)
+        text = self._session.texts.say("control.held", source=name, menu=menu, seconds=IDLE_S)
         self._session.notice(text, Tone.WARNING)
         self._is_changed = True
+
+    def unplugged(self, source: Source) -> None:
+        """Drop a gamepad that is gone; a trial that it drove is paused, since nobody can act."""
+        if source == self.controls.holder:
+            self._flow.pause("unseen.unplugged")
+        self.controls.forget(source)
 
     def warn(self, about: str, key: str = "", **values: object) -> None:
         """Show a warning until it is called off by an empty key."""

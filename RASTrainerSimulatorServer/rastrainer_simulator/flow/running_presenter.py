@@ -39,8 +39,8 @@ T = TypeVar("T")
 class RunningPresenter:
     """A presenter, its gamepads, and what keeps both going.
 
-    When a gamepad is unplugged the robot stops at once and a warning says so; the trial continues,
-    because the keyboard can take over, and may be paused by it.
+    When the gamepad in use is unplugged, the robot stops at once, the trial is paused and a warning
+    says so; the trial can be resumed with the keyboard.
 
     Attributes:
         presenter: what the views look at.
@@ -96,7 +96,7 @@ class RunningPresenter:
 
     def gamepad_went(self, number: int, name: str) -> None:
         """A gamepad was unplugged: what it held is let go."""
-        self.presenter.controls.forget(self._sources.pop(number))
+        self.presenter.unplugged(self._sources.pop(number))
         self.presenter.warn("gamepad", "warning.unplugged", name=name)
 
     def gamepad_unknown(self, name: str) -> None:

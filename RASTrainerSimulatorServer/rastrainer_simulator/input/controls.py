@@ -12,8 +12,11 @@ from rastrainer_simulator.input.input_state import InputState
 from rastrainer_simulator.input.inputs import InputDevice, Source, SourceKind
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 
-IDLE_S = 2.0
-"""How long the holder has to rest before another operator may take the control."""
+IDLE_S = 30.0
+"""How long the holder has to rest before another operator may take the control.
+
+Whoever looks closely or listens to the instructor rests for some seconds, and is not asked.
+"""
 REPEAT_AFTER_S = 0.4
 REPEAT_EVERY_S = 0.12
 

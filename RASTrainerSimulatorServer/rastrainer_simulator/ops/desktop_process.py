@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import os
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -27,6 +28,12 @@ GONE = (
     "continues without its window, which ended with status {status}: open another with `rastrainer "
     "window --connect {url} --code` and the pairing code"
 )
+
+
+def has_display() -> bool:
+    """Return whether a window can be seen; SDL would run without a display, and show nothing."""
+    names = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER")
+    return not sys.platform.startswith("linux") or any(map(os.environ.get, names))
 
 
 class DesktopProcess:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import read_parts
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.panels import theme
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.net.views.screen import ErrorArrow, Screen, Tone
@@ -70,3 +73,23 @@ def test_the_errors_of_the_touches_are_drawn_in_the_color_of_their_size(show):
             for pixels in (drawn, empty)
         )
         assert with_arrow > without + 50, tone
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("size", [(1280, 720), (1920, 1080)])
+def test_no_item_of_any_page_is_clipped(presenter, monkeypatch, language, size):  # noqa: F811
+    session = presenter._session
+    session.prefer(replace(session.preferences, language=language))
+    clipped = []
+    fit = Brush.fit
+
+    def noted(brush, text, style, width):
+        fitted = fit(brush, text, style, width)
+        clipped.extend([] if fitted == text else [text])
+        return fitted
+
+    monkeypatch.setattr(Brush, "fit", noted)
+    for screen in every_screen(presenter).values():
+        if screen.menu is not None:
+            menu_panel(screen.menu, theme.scale_of(*size), (size[0] - 64, size[1] - 160))
+    assert clipped == []

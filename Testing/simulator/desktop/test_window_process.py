@@ -151,3 +151,21 @@ def test_without_a_display_the_window_ends_with_one_sentence_which_its_log_keeps
     assert len(done.stderr.splitlines()) == 1
     (line,) = map(json.loads, (tmp_path / "window.log").read_text().splitlines())
     assert line["message"] == done.stderr.removeprefix("rastrainer: ").rstrip()
+
+
+@pytest.mark.parametrize("command", ["window", "simulator --desktop"])
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there always is a display")
+def test_without_a_display_nothing_runs_invisibly(tmp_path, command):
+    hidden = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER")
+    environment = {name: value for name, value in os.environ.items() if name not in hidden}
+    done = subprocess.run(
+        [sys.executable, "-m", "rastrainer_simulator.cli.main", *command.split()],
+        env={**environment, "RASTRAINER_VIEW_KEY": "k" * 40, "HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
+    )
+    assert done.returncode == 2
+    (sentence,) = done.stderr.splitlines()
+    assert "display" in sentence

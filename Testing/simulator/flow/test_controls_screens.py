@@ -11,15 +11,18 @@ from rastrainer_simulator.flow.pages.introduction import ControlsPage
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
 from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.controls import IDLE_S
 from rastrainer_simulator.net.views.presenter import Hello
-from Testing.simulator.flow.trainee import Keys
+from Testing.simulator.flow.trainee import STEP_S, Keys
 
 
 def tip(trainee):
     return np.array(trainee.tip)
 
 
-def test_unplugging_stops_the_robot_at_once_and_says_so_and_the_trial_goes_on(pilot):
+def test_unplugging_the_gamepad_in_use_stops_the_robot_and_the_clock_until_the_trial_is_resumed(
+    pilot,
+):
     pilot.start("task-1")
     pilot.hands.push(0.6, 0.0, 0.3, False)
     before = tip(pilot)
@@ -30,11 +33,16 @@ def test_unplugging_stops_the_robot_at_once_and_says_so_and_the_trial_goes_on(pi
     stopped = tip(pilot)
     pilot.step(30)
     assert np.array_equal(tip(pilot), stopped)
-    assert pilot.state.training.phase == "running"
-    assert "unplugged: the robot stands still" in pilot.presenter.screen.warnings[0].text
+    pilot.until_menu("trial")
+    assert "unplugged: the robot stands still" in str(pilot.presenter.screen.warnings)
     assert pilot.presenter.control.holder == ""
+    elapsed = pilot.state.elapsed
     pilot.hands.plugged.plug_in()
     pilot.step(20)
+    assert pilot.state.elapsed == elapsed
+    assert "robot stands still" not in str(pilot.presenter.screen.warnings)
+    pilot.choose("resume")
+    pilot.until_menu(None)
     assert pilot.presenter.screen.warnings == ()
     pilot.hands.push(0.6, 0.0, 0.0, False)
     pilot.step(20)
@@ -71,7 +79,10 @@ def test_another_operator_takes_the_control_only_after_a_rest_and_by_the_menu(tr
     assert trainee.state.training.phase == "running"
     assert "The keyboard is in control" in trainee.presenter.screen.warnings[0].text
     trainee.hands.push(0.0, 0.0, 0.0, False)
-    trainee.step(300)
+    trainee.step(int(0.9 * IDLE_S / STEP_S))
+    other.tap("menu")
+    assert trainee.presenter.control.view == 1
+    trainee.step(int(0.2 * IDLE_S / STEP_S))
     other.tap("touch")
     assert trainee.presenter.control.view == 1
     other.tap("menu")

@@ -13,6 +13,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.input import controls
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.presenter import Hello
@@ -199,7 +200,9 @@ def test_sticks_and_touches_do_nothing_to_the_arm_meanwhile(result):
     assert result.state.q == arm
 
 
-def test_only_who_holds_the_control_steers_until_another_takes_it_over(result):
+def test_only_who_holds_the_control_steers_until_another_takes_it_over(result, monkeypatch):
+    # The trial would be over after the usual rest.
+    monkeypatch.setattr(controls, "IDLE_S", 2.0)
     presenter = result.presenter
     presenter.view_joined(PAGE, Hello("page"))
     result.show_again()

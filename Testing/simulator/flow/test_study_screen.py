@@ -166,7 +166,7 @@ def test_a_questionnaire_is_answered_line_by_line_and_handed_over_only_when_all_
     ("language", "performance", "effort"),
     [
         ("en", "4. Performance: 0 is perfect, 100 is failure", "5. Effort"),
-        ("de", "4. Leistung: 0 bedeutet perfekt, 100 bedeutet Misserfolg", "5. Anstrengung"),
+        ("de", "4. Leistung: 0 = perfekt, 100 = Misserfolg", "5. Anstrengung"),
     ],
 )
 def test_the_line_of_performance_says_that_its_ends_are_its_own(

@@ -27,27 +27,44 @@ def draw_item(canvas: Canvas, item: MenuItem, look: Look, brush: Brush, row: Box
     canvas.box(row, _ground(item, look), radius)
     if look.has_focus:
         canvas.frame(row, theme.ACCENT_EDGE, radius, brush.px(3))
-    color = theme.TEXT if item.is_enabled else theme.TEXT_PALE
+    color = text_color(item, look)
     pad = brush.px(theme.PAD)
     style = theme.STRONG if look.has_focus or item.kind is ItemKind.BUTTON else theme.BODY
     top = row.top + (row.height - brush.line_height(style)) // 2
     has_value = item.kind is not ItemKind.BUTTON or bool(item.value)
-    room = row.width - 2 * pad - (_value_width(row) if has_value else 0)
+    free = row.width - 3 * pad - brush.width(item.label, style)
+    value_width = _value_width(row, free, _needed(item, brush))
+    room = row.width - 2 * pad - (value_width if has_value else 0)
     brush.write(canvas, brush.fit(item.label, style, room), style, color, row.left + pad, top)
     if has_value:
-        width = _value_width(row)
-        place = Box(row.left + row.width - pad - width, row.top, width, row.height)
+        left = row.left + row.width - pad - value_width
+        place = Box(left, row.top, value_width, row.height)
         _DRAW_VALUE[item.kind](canvas, item, look, brush, place, color)
+
+
+def text_color(item: MenuItem, look: Look) -> Color:
+    """Return the color of an item's label: one that cannot be chosen is readable in the focus."""
+    if item.is_enabled:
+        return theme.TEXT
+    return theme.TEXT_SOFT if look.has_focus else theme.TEXT_PALE
 
 
 def _ground(item: MenuItem, look: Look) -> Color:
     if look.has_focus:
-        return theme.ACCENT
+        return theme.ACCENT if item.is_enabled else theme.ROW_HOVER
     return theme.ROW_HOVER if look.is_hovered and item.is_enabled else theme.ROW
 
 
-def _value_width(row: Box) -> int:
-    return round(_VALUE_SHARE * row.width)
+def _needed(item: MenuItem, brush: Brush) -> int:
+    """Return the width that shows the whole value of an item."""
+    between = 7 * theme.STEP if item.kind is ItemKind.CHOICE else 0
+    return brush.width(item.value, theme.STRONG) + brush.px(between)
+
+
+def _value_width(row: Box, free: int, needed: int) -> int:
+    """Return the width of a value: its share of the row, more or less where either is clipped."""
+    share = round(_VALUE_SHARE * row.width)
+    return share if needed > free else max(needed, min(share, free))
 
 
 def _draw_plain(

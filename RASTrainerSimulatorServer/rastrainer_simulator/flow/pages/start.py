@@ -5,7 +5,7 @@ from __future__ import annotations
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import ControlsPage, IntroductionPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.session.preferences import OF_A_TRIAL, OPTIONS
+from rastrainer_simulator.flow.session.preferences import OF_A_TRIAL, OPTIONS, PREFERENCES_FILE
 from rastrainer_simulator.net.views.screen import Menu, MenuItem
 
 
@@ -81,8 +81,14 @@ class SettingsPage(SessionPage):
 
     def _item(self, name: str) -> MenuItem:
         waits = self.session.has_open_trial and name in OF_A_TRIAL
-        help_ = self.say("settings.waits") if waits else self.say(f"settings.{name} help")
-        return self.choice(name, self._value(name), is_enabled=not waits, help=help_)
+        help_ = self.say("settings.waits") if waits else self._help(name)
+        # Who trains here does not decide what they may leave out.
+        is_protected = name == "order"
+        is_enabled = not waits and not is_protected
+        return self.choice(name, self._value(name), is_enabled=is_enabled, help=help_)
+
+    def _help(self, name: str) -> str:
+        return self.say(f"settings.{name} help", file=PREFERENCES_FILE)
 
     def _value(self, name: str) -> str:
         value = getattr(self.session.preferences, name)

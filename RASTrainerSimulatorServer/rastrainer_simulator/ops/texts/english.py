@@ -74,6 +74,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "kept. Register them now.",
         # When nobody could see the trial, which pauses it.
         "unseen.left": "Paused: the view that showed the trial was closed or lost.",
+        "unseen.unplugged": "Paused: the gamepad was unplugged.",
         "unseen.hidden": "Paused: the trial was out of sight.",
         "unseen.still": "Paused: the picture stood still for some seconds, because this computer "
         "was too busy to draw it. If that happens again, close other programs.",
@@ -268,7 +269,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.muted.yes": "Yes",
         "settings.muted.no": "No",
         "settings.order": "Order of the tasks",
-        "settings.order help": "For instructors: whether a task waits for the one before it.",
+        "settings.order help": "Whether a task waits for the one before it. Instructors change "
+        "this in the file {file}.",
         "settings.order.fixed": "One after the other",
         "settings.order.any": "Any",
         "settings.coarse": "Speed",
@@ -312,9 +314,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "bindings.group.movement": "Moving the tool",
         "bindings.group.view": "The view",
         "bindings.group.menus": "Menus",
-        "bindings.defaults": "Back to the defaults",
+        "bindings.defaults": "Restore the defaults",
         "bindings.back": "Back",
-        "bindings.are default": "All controls are back to their defaults.",
+        "bindings.are default": "All controls have their defaults again.",
         "bindings.changed": "{control} is now {input}.",
         "bindings.impossible": "These two cannot be exchanged: one of them would do two things at "
         "once.",
@@ -363,8 +365,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "control.left": "Left",
         "control.right": "Right",
         "control.taken": "The {source} has taken control.",
-        "control.held": "The {source} is in control. Wait until it is idle, then press {menu} "
-        "to take over.",
+        "control.held": "The {source} is in control. Somebody else can take over with {menu} after "
+        "{seconds:.0f} s without input.",
         "control.holder": "Control: {source}",
         "control.nobody": "Control: nobody",
         "source.gamepad": "gamepad",

@@ -159,6 +159,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "sind gesichert. Registriere sie jetzt.",
         # Wenn niemand den Versuch sehen konnte, was ihn anhält.
         "unseen.left": "Angehalten: Die Ansicht des Versuchs wurde geschlossen oder ging verloren.",
+        "unseen.unplugged": "Pause: Das Gamepad wurde abgesteckt.",
         "unseen.hidden": "Angehalten: Der Versuch war nicht zu sehen.",
         "unseen.still": "Angehalten: Das Bild stand einige Sekunden still, weil dieser Rechner zu "
         "beschäftigt war. Geschieht das wieder, so schließ andere Programme.",
@@ -253,7 +254,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "questionnaire.text": "{trainee}, beantworte jede Zeile: {lowest} bedeutet {low}, "
         "{highest} bedeutet {high}, wenn in der Zeile nichts anderes steht. Deine Kursleitung hat "
         "den Bogen mit dem vollen Wortlaut.",
-        "questionnaire.ends": "{topic}: {lowest} bedeutet {low}, {highest} bedeutet {high}",
+        "questionnaire.ends": "{topic}: {lowest} = {low}, {highest} = {high}",
         "questionnaire.open": "Einige Zeilen sind noch nicht beantwortet.",
         "questionnaire.keep": "Fertig",
         "questionnaire.back": "Zurück, ohne Antworten",
@@ -359,7 +360,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.muted.yes": "Ja",
         "settings.muted.no": "Nein",
         "settings.order": "Reihenfolge der Aufgaben",
-        "settings.order help": "Für die Kursleitung: ob eine Aufgabe auf die vorige wartet.",
+        "settings.order help": "Ob eine Aufgabe auf die vorige wartet. Ausbildende ändern es in "
+        "der Datei {file}.",
         "settings.order.fixed": "Eine nach der anderen",
         "settings.order.any": "Beliebig",
         "settings.coarse": "Geschwindigkeit",
@@ -406,7 +408,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "bindings.group.movement": "Bewegen des Werkzeugs",
         "bindings.group.view": "Die Ansicht",
         "bindings.group.menus": "Menüs",
-        "bindings.defaults": "Zurück zum Anfang",
+        "bindings.defaults": "Standard wiederherstellen",
         "bindings.back": "Zurück",
         "bindings.are default": "Die ganze Steuerung ist wie am Anfang.",
         "bindings.changed": "{control} ist jetzt {input}.",
@@ -459,8 +461,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "control.left": "Links",
         "control.right": "Rechts",
         "control.taken": "Die Steuerung ist jetzt hier: {source}.",
-        "control.held": "Die Steuerung liegt hier: {source}. Warte, bis sie ruht, und drücke dann "
-        "{menu}, um sie zu übernehmen.",
+        "control.held": "Die Steuerung liegt hier: {source}. Wer übernehmen will, kann das mit "
+        "{menu} nach {seconds:.0f} s ohne Eingabe.",
         "control.holder": "Steuerung: {source}",
         "control.nobody": "Steuerung: niemand",
         "source.gamepad": "Gamepad",
