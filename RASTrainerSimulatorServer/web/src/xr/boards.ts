@@ -98,7 +98,7 @@ export class Boards {
   /** Stand where somebody who is seated so reads them well. */
   arrange(seating: Seating): void {
     this.seating = seating;
-    const aside = this.screen?.menu?.picture === "controls" ? MENU_ASIDE : 0;
+    const aside = this.screen?.menu?.picture ? MENU_ASIDE : 0;
     const { eyes, focus } = seating;
     const top = Math.atan2(focus.y + HEAD_ABOVE_M - eyes.y, Math.hypot(focus.x - eyes.x, focus.z - eyes.z));
     const overHead = { aside: 0, above: top + WARNING_OVER_HEAD, away: WARNING_AWAY };
