@@ -296,7 +296,7 @@ def test_a_command_that_is_stopped_leaves_a_study_that_the_same_command_resumes(
         time.sleep(0.02)
     assert trials_in(folder) < 5
     assert main([*words, "--workers", "1"]) == 0
-    assert "were there; " in capsys.readouterr().out
+    assert "trials were stored before; " in capsys.readouterr().out
     assert tables(folder / DATABASE) == whole[1]
 
 
