@@ -15,7 +15,8 @@ RED = 0xFF0D0D
 DRAW = """
 (changes) => {
   const state = { ...page.state, ...changes };
-  page.drawFlat(1, page.stage.model, state);
+  page.isDue = true;
+  page.drawFlat(page.flat, 1, page.stage.model, state);
   return {
     ring: page.ring.mesh.visible ? page.ring.mesh.scale.x : 0,
     color: page.ring.material.color.getHex(),

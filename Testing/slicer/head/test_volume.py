@@ -37,7 +37,7 @@ def test_a_transform_that_is_not_linear_is_refused_with_a_sentence(scene):
     bent = scene.AddNewNodeByClass("vtkMRMLGridTransformNode", "Bent")
     bent.SetAndObserveTransformToParent(vtk.vtkThinPlateSplineTransform())
     node.SetAndObserveTransformNodeID(bent.GetID())
-    with pytest.raises(InputError, match="under the transform Bent, which is not linear"):
+    with pytest.raises(InputError, match="has the parent transform Bent, which is not linear"):
         volumeFromNode(node)
 
 

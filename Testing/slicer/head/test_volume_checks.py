@@ -17,7 +17,7 @@ def sheared():
 
 
 UNPLACED = {
-    "no spacing": (block(spacing=(1.0, 1.0, 0.0)), "does not tell where"),
+    "no spacing": (block(spacing=(1.0, 1.0, 0.0)), "does not say where"),
     "axes that coincide": (sheared(), "orientation is damaged"),
 }
 

@@ -75,7 +75,7 @@ def toWorld(node: slicer.vtkMRMLTransformableNode) -> np.ndarray:
         if not parent.IsTransformToWorldLinear():
             raise InputError(
                 f"{node.GetName()} has the parent transform {parent.GetName()}, which is not "
-                "linear: harden it, or take it off."
+                "linear: harden it or remove it."
             )
         parent.GetMatrixTransformToWorld(matrix)
     return matrixOf(matrix)
