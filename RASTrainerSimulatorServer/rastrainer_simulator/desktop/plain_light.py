@@ -1,12 +1,17 @@
-"""The light of the lowest quality: two lamps far away, without shadows or reflections."""
+"""The light of the lowest quality: three lamps far away, without shadows or reflections."""
 
 from __future__ import annotations
 
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer
 
-LIGHTS = (((-0.25, -0.55, 0.80), 0.86), ((0.75, -0.60, 0.25), 0.30))
-"""Direction toward the lamp, in World, and intensity."""
+LIGHTS = (
+    ((-0.25, -0.55, 0.80), 0.86),
+    ((0.75, -0.60, 0.25), 0.30),
+    ((0.45, 0.80, 0.40), 0.45),
+)
+"""From the front, the side and behind, where there are touches, too: the direction toward each lamp
+in World, and its intensity."""
 AMBIENT, DIFFUSE = 0.34, 0.72
 """Shares of a surface's color that it shows in any light, and that it shows in the lamps' light."""
 
