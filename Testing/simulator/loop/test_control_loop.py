@@ -174,7 +174,7 @@ def test_nobody_sees_a_touch_before_it_is_on_the_disk_and_the_arm_continues_mean
     assert answer.result(TIMEOUT_S).ok
     wait_for(lambda: len(running.loop.latest.training.touches) == 1)
     # Subscribers receive a tick after it has become the latest.
-    wait_for(lambda: len(seen[-1].training.touches) == 1)
+    wait_for(lambda: len(seen[-1].state.training.touches) == 1)
     assert sum(event.kind == "touch" for result in seen for event in result.events) == 1
 
 
