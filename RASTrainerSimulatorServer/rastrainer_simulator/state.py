@@ -21,6 +21,7 @@ class EventKind(str, Enum):
     """What happened in a tick; sounds, vibration and the journal follow from these."""
 
     PHASE = "phase"
+    REGISTRATION = "registration"
     TOUCH = "touch"
     UNDO = "undo"
     REJECTED = "rejected"

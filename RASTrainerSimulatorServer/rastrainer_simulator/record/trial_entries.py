@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
 
 SAMPLE_HZ = 50.0
-MUST_LAST = frozenset({EventKind.PHASE, EventKind.TOUCH, EventKind.UNDO})
+MUST_LAST = frozenset({EventKind.PHASE, EventKind.REGISTRATION, EventKind.TOUCH, EventKind.UNDO})
 """Events that are not published before they are on the disk."""
 
 _KIND_OF_PHASE = {Phase.REGISTERED: "registered", Phase.IDLE: "aborted"}

@@ -248,8 +248,8 @@ class Training:
         data = {"trialId": self.state.trial_id, **self._revealed(matrix)}
         if known is not None:
             return TrainingReply(True, data=data)
-        final = replace(self.state, registration=registration)
-        event = self._enter(final, "registered", now)
+        self._keep(replace(self.state, registration=registration), "registered")
+        event = Event(EventKind.REGISTRATION, now.sim_time, {"trialId": self.state.trial_id})
         return TrainingReply(True, data=data, events=(event,))
 
     def _scored(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:

@@ -19,6 +19,7 @@ from rastrainer_simulator.net.views.feedback_event import (
     touch_feedback,
 )
 from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
+from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +73,10 @@ def test_touch_undo_proximity_contact_and_finish_are_told_and_felt_exactly_once(
     pilot.until_menu("complete")
     pilot.tap("accept")
     pilot.until_menu("waiting")
+    trial_id = pilot.state.training.trial_id
+    assert pilot.submit("SubmitRegistration", trialId=trial_id, **REGISTRATION).ok
+    assert pilot.submit("TrialScored", trialId=trial_id, **SCORE).ok
+    pilot.until(lambda: pilot.state.training.phase == "scored")
     told = [kind for kind in pilot.watcher.kinds if kind not in ("focus", "accept")]
     assert told == [each.value for each in expected]
     counted = Counter(told)
