@@ -6,44 +6,23 @@ import math
 
 from rastrainer.protocol import TRIAL_RUN, CommandName, Guidance, Phase, StepKind
 from rastrainer.study.protocol.study_step import StudyStep
-from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
-from rastrainer_simulator.flow.path_arc import (
-    BACK_WITHIN,
-    FARTHEST,
-    PathArc,
-    direction_words,
-    in_m,
-)
+from rastrainer_simulator.flow.path_arc import BACK_WITHIN, FARTHEST, PathArc, in_m
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, TouchStage
-from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, distance
-from rastrainer_simulator.viewpoint.orbit import FRONT
+from rastrainer_simulator.vectors import Vector
 
 TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""
 
-STEP_MM = 5.0
-"""The distance to the target is shown in such steps: a running figure cannot be read."""
-DEPTH_STEP_MM = 0.5
-"""The same of the depth: a screen reader says each change of a warning."""
 
-
-_LEVEL = (
-    ControlName.MOVE_FORWARD,
-    ControlName.MOVE_LEFT,
-    ControlName.MOVE_BACK,
-    ControlName.MOVE_RIGHT,
-)
-
-
-class TrialScreen:
+class TrialScreen(ArmScreen):
     """The instructions, warnings and hints of an open trial, and its controls.
 
     Attributes:
@@ -51,13 +30,11 @@ class TrialScreen:
     """
 
     def __init__(self, session: TrainingSession) -> None:
+        super().__init__(session)
         self.guidance = Guidance.NONE
-        self._session = session
         self._points: dict[str, Vector] = {}
         self._center: Vector = (0.0, 0.0, 0.0)
         self._is_beside = False
-        self._obstacle = ""
-        self._is_within_reach = True
         self._was_refused = False
         self._has_requested_menu = False
         self._is_practice_end_shown = False
@@ -66,10 +43,8 @@ class TrialScreen:
 
     def take(self, event: Event) -> None:
         """Take note of what happened."""
-        if event.kind is EventKind.REACH:
-            self._is_within_reach = event.data["isWithinReach"]
-            self._obstacle = event.data["obstacle"]
-        elif event.kind in (EventKind.TOUCH, EventKind.UNDO, EventKind.REJECTED, EventKind.PHASE):
+        super().take(event)
+        if event.kind in (EventKind.TOUCH, EventKind.UNDO, EventKind.REJECTED, EventKind.PHASE):
             self._was_refused = event.kind is EventKind.REJECTED
 
     @property
@@ -104,7 +79,7 @@ class TrialScreen:
         self._points = points
         self._center = center
         self._is_beside = self._was_refused = self._is_practice_end_shown = False
-        self._obstacle, self._is_within_reach = "", True
+        self._forget_arm()
         self._practice_step, self._practice_end_s = None, None
         self.guidance = self._session.guidance()
 
@@ -130,15 +105,6 @@ class TrialScreen:
         """Return whether the trainee has requested the menu since this was last asked."""
         has_requested, self._has_requested_menu = self._has_requested_menu, False
         return has_requested
-
-    def _change_camera(self) -> None:
-        """Look from the front again; from there already, change between near and far."""
-        session = self._session
-        if session.view.control.is_moved:
-            session.view.control.go(FRONT)
-        else:
-            camera = "far" if session.state.camera == "close-up" else "close-up"
-            session.do(CommandName.SET_CAMERA, {"camera": camera})
 
     def open_menu(self) -> None:
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""
@@ -173,24 +139,6 @@ class TrialScreen:
         tone = Tone.GOOD if training.touches else Tone.PLAIN
         return ScreenMessage(session.texts.again(training.instruction), tone)
 
-    def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return what is wrong with where the arm is."""
-        say = self._session.texts.say
-        warnings = []
-        state = self._session.state
-        if state.touch is TouchStage.TOO_DEEP:
-            depth_mm = DEPTH_STEP_MM * round(MM_PER_M * state.depth / DEPTH_STEP_MM)
-            warnings.append(ScreenMessage(say("warning.pressing", depth=depth_mm), Tone.ERROR))
-        elif state.touch is TouchStage.SHAFT:
-            warnings.append(ScreenMessage(say("warning.shaft"), Tone.ERROR))
-        elif state.touch is TouchStage.ELSEWHERE:
-            warnings.append(ScreenMessage(say("warning.elsewhere"), Tone.ERROR))
-        if self._obstacle:
-            warnings.append(ScreenMessage(say(f"warning.obstacle.{self._obstacle}"), Tone.ERROR))
-        elif not self._is_within_reach:
-            warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
-        return tuple(warnings)
-
     def status(self) -> tuple[str, ...]:
         """Return the short facts at the edge."""
         session = self._session
@@ -202,7 +150,7 @@ class TrialScreen:
         ]
         target = self._points.get(training.next_point or "")
         if target is not None and self.guidance is Guidance.WORDS:
-            facts.append(self._toward(target))
+            facts.append(self._toward(training.next_point or "", target))
         return tuple(facts)
 
     def hints(self) -> tuple[Hint, ...]:
@@ -223,11 +171,7 @@ class TrialScreen:
             # In a headset one looks around with the head, and its sticks are drawn in its hands.
             del names[ControlName.BEST_VIEW]
         elif not is_complete:
-            up_and_down = session.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
-            movement = (
-                Hint(session.stick_label(_LEVEL), say("hint.move")),
-                Hint(up_and_down, say("hint.up_and_down")),
-            )
+            movement = self._movement_hints()
         return (
             *movement,
             *(Hint(session.label(control), say(key)) for control, key in names.items()),
@@ -240,26 +184,6 @@ class TrialScreen:
             return session.duration(elapsed)
         left = math.ceil(max(0.0, self._practice_s - elapsed))
         return session.texts.say("status.left", time=session.duration(left))
-
-    def _toward(self, target: Vector) -> str:
-        session = self._session
-        away = MM_PER_M * distance(session.tip, target)
-        words = direction_words(session.tip, target, self._axes())
-        return session.texts.say(
-            "status.toward",
-            point=session.training.next_point,
-            distance=f"{STEP_MM * round(away / STEP_MM):.0f}",
-            direction=", ".join(session.texts.say(f"way.{word}") for word in words),
-        )
-
-    def _axes(self) -> Axes:
-        session = self._session
-        if session.preferences.axes == AxesChoice.ROBOT:
-            return ROBOT_AXES
-        view = session.scenario.cameras[session.state.camera]
-        line = tuple((view.focal_point - view.position).tolist())
-        axes = camera_axes(line, tuple(view.view_up.tolist()))
-        return axes.turned(math.radians(session.view.stick_turn_deg))
 
     def _is_off_the_way(self) -> bool:
         """Return whether the tip is beside the way between the last point and the next."""

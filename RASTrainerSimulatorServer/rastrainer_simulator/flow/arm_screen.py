@@ -1,0 +1,109 @@
+"""What a trainee who drives the arm reads whether or not a trial is open."""
+
+from __future__ import annotations
+
+import math
+
+from rastrainer.protocol import CommandName
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.flow.path_arc import direction_words
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
+from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
+from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
+from rastrainer_simulator.vectors import Vector, distance
+from rastrainer_simulator.viewpoint.orbit import FRONT
+
+STEP_MM = 5.0
+"""The distance to the target is shown in such steps: a running figure cannot be read."""
+DEPTH_STEP_MM = 0.5
+"""The same of the depth: a screen reader says each change of a warning."""
+_LEVEL = (
+    ControlName.MOVE_FORWARD,
+    ControlName.MOVE_LEFT,
+    ControlName.MOVE_BACK,
+    ControlName.MOVE_RIGHT,
+)
+
+
+class ArmScreen:
+    """The warnings about the arm, the directions to a point, and the hints on movement."""
+
+    def __init__(self, session: TrainingSession) -> None:
+        self._session = session
+        self._obstacle = ""
+        self._is_within_reach = True
+
+    def take(self, event: Event) -> None:
+        """Take note of what happened."""
+        if event.kind is EventKind.REACH:
+            self._is_within_reach = event.data["isWithinReach"]
+            self._obstacle = event.data["obstacle"]
+
+    @property
+    def _state(self) -> SimulationState:
+        """The state that the trainee sees."""
+        return self._session.state
+
+    def warnings(self) -> tuple[ScreenMessage, ...]:
+        """Return what is wrong with where the arm is."""
+        say = self._session.texts.say
+        warnings = []
+        state = self._state
+        if state.touch is TouchStage.TOO_DEEP:
+            depth_mm = DEPTH_STEP_MM * round(MM_PER_M * state.depth / DEPTH_STEP_MM)
+            warnings.append(ScreenMessage(say("warning.pressing", depth=depth_mm), Tone.ERROR))
+        elif state.touch is TouchStage.SHAFT:
+            warnings.append(ScreenMessage(say("warning.shaft"), Tone.ERROR))
+        elif state.touch is TouchStage.ELSEWHERE:
+            warnings.append(ScreenMessage(say("warning.elsewhere"), Tone.ERROR))
+        if self._obstacle:
+            warnings.append(ScreenMessage(say(f"warning.obstacle.{self._obstacle}"), Tone.ERROR))
+        elif not self._is_within_reach:
+            warnings.append(ScreenMessage(say("warning.reach"), Tone.WARNING))
+        return tuple(warnings)
+
+    def _forget_arm(self) -> None:
+        """Forget what was wrong: the arm is put where it starts."""
+        self._obstacle, self._is_within_reach = "", True
+
+    def _change_camera(self) -> None:
+        """Look from the front again; from there already, change between near and far."""
+        session = self._session
+        if session.view.control.is_moved:
+            session.view.control.go(FRONT)
+        else:
+            camera = "far" if session.state.camera == "close-up" else "close-up"
+            session.do(CommandName.SET_CAMERA, {"camera": camera})
+
+    def _movement_hints(self) -> tuple[Hint, ...]:
+        """Return what moves the tip."""
+        session = self._session
+        up_and_down = session.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
+        return (
+            Hint(session.stick_label(_LEVEL), session.texts.say("hint.move")),
+            Hint(up_and_down, session.texts.say("hint.up_and_down")),
+        )
+
+    def _toward(self, label: str, target: Vector) -> str:
+        """Return how far and in which directions a point is (World, m), in words."""
+        session = self._session
+        away = MM_PER_M * distance(session.tip, target)
+        words = direction_words(session.tip, target, self._axes())
+        return session.texts.say(
+            "status.toward",
+            point=label,
+            distance=f"{STEP_MM * round(away / STEP_MM):.0f}",
+            direction=", ".join(session.texts.say(f"way.{word}") for word in words),
+        )
+
+    def _axes(self) -> Axes:
+        """Return right, forward and up as the sticks mean them now."""
+        session = self._session
+        if session.preferences.axes == AxesChoice.ROBOT:
+            return ROBOT_AXES
+        view = session.scenario.cameras[session.state.camera]
+        line = tuple((view.focal_point - view.position).tolist())
+        axes = camera_axes(line, tuple(view.view_up.tolist()))
+        return axes.turned(math.radians(session.view.stick_turn_deg))
