@@ -5,9 +5,13 @@ import os
 import signal
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
+import rastrainer
+import rastrainer_simulator as simulator
+from rastrainer.python_environment import private_words
 from rastrainer.slicer.program import child_process
 from rastrainer.slicer.program.child_process import ChildProcess, runChild
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
@@ -94,6 +98,20 @@ def test_the_launcher_alone_would_leave_the_real_python_alive(python, tmp_path):
     assert runs(number(tmp_path / "pid"))
     wait_until(child.poll, lambda: None, LONG_S)
     ends(tmp_path / "pid")
+
+
+def test_slicers_python_has_no_package_of_the_simulator_but_on_a_private_folder(python, tmp_path):
+    code = "import {}\nprint('it has it')"
+    for name in ("rastrainer_simulator", "rastrainer_headless"):
+        refused = runChild([python, "-c", code.format(name)], lambda *_step: None)
+        assert refused.lastLine == f"ModuleNotFoundError: Slicer's Python has no package {name}."
+    own = runChild([python, "-c", code.format("rastrainer.igtl.client")], lambda *_step: None)
+    assert own.lastLine == "it has it"
+    sources = [str(Path(package.__file__).parents[1]) for package in (rastrainer, simulator)]
+    (tmp_path / "sources.pth").write_text("".join(f"{source}\n" for source in sources))
+    (tmp_path / "it.py").write_text(code.format("rastrainer_simulator"))
+    allowed = runChild(private_words(python, tmp_path, "it"), lambda *_step: None)
+    assert allowed.lastLine == "it has it"
 
 
 def test_a_program_asked_to_end_ends_with_the_real_python_and_writes_no_more(python, tmp_path):

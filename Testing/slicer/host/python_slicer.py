@@ -4,6 +4,9 @@ It behaves as CTK's launcher, which Slicer renames: it saves the environment tha
 under `APPLAUNCHER_<level>_…`, puts Slicer's folders before what is there, starts the real Python
 as a child, passes no signal on, and tells a child that a signal has ended as status 1. Whoever ends
 the launcher leaves the real Python alone.
+
+Its packages are Slicer's. Those of the tests lie in the same environment, so that they can be
+imported, too, but not the simulator's: they are only in the private folder of a set-up.
 """
 
 from __future__ import annotations
@@ -20,6 +23,23 @@ PACKAGES = Path("lib", "Python", "lib", "site-packages")
 LENT_LIBRARIES = ("libstdc++.so.6", "libgcc_s.so.1")
 """Of this computer; a copy lies in Slicer's folder, so that a process that takes its libraries
 from there can be seen to."""
+
+NOT_SLICERS = ("rastrainer_simulator", "rastrainer_headless")
+"""Packages of the simulator. A private folder is searched without `site`, and so without this."""
+
+SITE_CUSTOMIZE = f"""
+import sys
+
+
+class OnlyInPrivateFolders:
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        if name.partition(".")[0] in {NOT_SLICERS!r}:
+            raise ModuleNotFoundError(f"Slicer's Python has no package {{name}}.", name=name)
+
+
+sys.meta_path.insert(0, OnlyInPrivateFolders)
+"""
 
 LAUNCHER = """#!{python} -IS
 import os
@@ -58,7 +78,8 @@ sys.exit(status if status >= 0 else 1)
 def write_python_slicer(home: Path) -> Path:
     """Put the launcher where Slicer has it, in the folder `home`, and return its path.
 
-    The real Python is that of the tests; Slicer's packages are one that says whose it is.
+    The real Python is that of the tests; Slicer's packages are one that says whose it is, and one
+    that hides the simulator's.
     """
     program = home / "bin" / "PythonSlicer"
     if os.name == "nt" or program.exists():
@@ -66,6 +87,7 @@ def write_python_slicer(home: Path) -> Path:
     for folder in (program.parent, home / LIBRARIES, home / PACKAGES):
         folder.mkdir(parents=True)
     (home / PACKAGES / "slicers_own_package.py").write_text("", encoding="utf-8")
+    (home / PACKAGES / "sitecustomize.py").write_text(SITE_CUSTOMIZE, encoding="utf-8")
     for name in LENT_LIBRARIES:
         for found in sorted(Path("/usr/lib").glob(f"*/{name}")):
             shutil.copyfile(found, home / LIBRARIES / name)

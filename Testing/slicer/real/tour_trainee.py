@@ -33,10 +33,11 @@ def main() -> int:
     sys.path.insert(0, str(arguments.logic))
 
     from rastrainer.igtl.client import Client
-    from rastrainer_simulator.virtual.scripted_trial import say_hello
+    from rastrainer.protocol import PROTOCOL_VERSION
 
     with Client(port=arguments.port) as client:
-        say_hello(client, "tour")
+        # Steady: the pose is waited for after the arm has come to rest, too.
+        _do(client, "Hello", protocolVersion=PROTOCOL_VERSION, client="tour", steady=True)
         if arguments.points is not None:
             places = _places(arguments.scenario, arguments.records)
             first, last = arguments.points
@@ -93,7 +94,7 @@ def _move(client: Any, place: Any, speed_mm_s: float) -> None:
     _do(client, "MoveTipTo", positionMm=place.tolist(), speedMmS=speed_mm_s)
 
 
-def _do(client: Any, name: str, **arguments: Any) -> None:
+def _do(client: Any, name: str, /, **arguments: Any) -> None:
     reply = client.send_command(name, arguments, TIMEOUT_S)
     if not reply.ok:
         raise SystemExit(f"{name} was refused: {reply.error}")
