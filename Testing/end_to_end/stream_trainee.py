@@ -30,6 +30,11 @@ SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 ON_POINT_M, NEAR_M = 0.002, 0.008
 """Where the tip is stopped, and how far from there it may come to rest."""
+HOVER_M = 0.032
+OFF_FIDUCIALS_M = 0.018
+"""A place that far from every fiducial is clearly none, whatever the skin's slope there."""
+ASIDE_M = (0.03, 0.04, 0.05)
+"""How far from the tip such a place is looked for."""
 MOST_ATTEMPTS = 15
 STILL_STATES = 10
 """The arm is at rest after this number of equal states in a row."""
@@ -210,13 +215,47 @@ class StreamTrainee:
         self.until_menu(None)
         self.until(lambda: self.view.scene["task"] == task, f"the scene of {task}")
 
-    def press_against_head(self) -> None:
-        """Push the tool into the head until it touches it, and let go."""
-        inward = self.head_center - self.tip
-        wanted = self._stick_axes() @ inward / np.linalg.norm(inward)
+    def press_beside_fiducials(self) -> None:
+        """Push the tip against the skin where no fiducial is, as an error, and let go."""
+        place, center = self._bare_place(), self.head_center
+        outward = (place - center) / np.linalg.norm(place - center)
+        self.steer_to(self.tip + LIFT_M * outward, 0.01)
+        self.steer_to(place + LIFT_M * outward, 0.005)
+        wanted = self._stick_axes() @ -outward
         self.hands.push(*(0.5 * wanted).tolist(), False)
-        self.until(lambda: self.view.state["proximity"] == "contact", "the contact")
+        self.until(lambda: self.view.state["touch"] in ("elsewhere", "too deep"), "the error")
         self.hands.push(0.0, 0.0, 0.0, False)
+
+    def hover(self, label: str) -> None:
+        """Hold the tip still above a fiducial, far enough to be free of the head."""
+        point, center = self.place_of(label), self.head_center
+        above = point + HOVER_M * (point - center) / np.linalg.norm(point - center)
+        for _attempt in range(MOST_ATTEMPTS):
+            self.steer_to(above, 0.004, fine=True)
+            self.hands.push(0.0, 0.0, 0.0, False)
+            self.until_still()
+            is_near = np.linalg.norm(above - self.tip) < NEAR_M
+            if is_near and self.view.state["touch"] == "far":
+                return
+        raise AssertionError(f"the tip never hovered over {label}")
+
+    def _bare_place(self) -> np.ndarray:
+        """Return a place near the tip, the nearest to the eye that is off all fiducials."""
+        outward = (self.tip - self.head_center) / np.linalg.norm(self.tip - self.head_center)
+        first = np.cross(outward, (0.0, 0.0, 1.0))
+        first /= np.linalg.norm(first)
+        fiducials = np.array([self.place_of(label) for label in self.view.scene["fiducials"]])
+        eye = Viewpoint.from_json(self.view.state["view"]).position
+        angles = np.arange(0.0, 2.0 * np.pi, np.pi / 8.0)
+        sides = np.outer(np.cos(angles), first)
+        sides += np.outer(np.sin(angles), np.cross(outward, first))
+        places = [self.tip + away * side for away in ASIDE_M for side in sides]
+        bare = [
+            place
+            for place in places
+            if np.linalg.norm(fiducials - place, axis=1).min() > OFF_FIDUCIALS_M
+        ]
+        return min(bare, key=lambda place: np.linalg.norm(place - eye))
 
     def approach(self, label: str, near_m: float) -> None:
         """Carry the tip over the head to a place above a fiducial."""

@@ -46,16 +46,19 @@ SOUNDS = ("touch", "proximity", "contact", "error", "finish")
 
 
 class Photographer:
-    """Has the window keep pictures."""
+    """Has the window keep pictures, and waits for it."""
 
     def __init__(self, lab: Lab, window):
         self._lab, self._window = lab, window
         self.pictures: dict[str, Path] = {}
 
+    def catch_up(self) -> None:
+        """Wait until the window shows what this test has read, so that no two sounds coincide."""
+        self._window.wait_for_tick(self._lab.view.state["tick"])
+
     def keep(self, name: str) -> None:
         if self._lab.view.screen.menu is None:
-            # The window draws what this test has read already.
-            self._window.wait_for_tick(self._lab.view.state["tick"])
+            self.catch_up()
         time.sleep(SETTLED_S)
         known = set(self._window.folder.glob("*.png"))
         self._lab.keyboard.tap("F12")
@@ -101,6 +104,7 @@ def session(tmp_path_factory) -> dict:
         trainee.begin_task("task-1")
         play(trainee, photographer, range(1, CRASH_AFTER + 1))
         slicer.kill()
+        photographer.catch_up()
         crash = tell_of_crash(trainee, str(CRASH_AFTER + 1))
         # It waits for one trial more, so that it is still there while the result is shown.
         slicer = lab.start_slicer(trials=2)
@@ -119,7 +123,7 @@ def session(tmp_path_factory) -> dict:
             "felt": lab.simulator.felt(),
             "felt_events": list(lab.view.events),
         }
-        unplugged = unplug_and_go_on(lab, trainee)
+        unplugged = unplug_and_go_on(lab, trainee, photographer)
         listen_to_the_end(window)
         return {
             **played,
@@ -159,13 +163,15 @@ def play(trainee: StreamTrainee, photographer: Photographer, numbers: range) -> 
         trainee.press("touch", lambda: "error" in kinds(trainee.view.events), "an error")
     for number in numbers:
         label = str(number)
+        photographer.catch_up()
         trainee.approach(label, 0.02)
+        photographer.catch_up()
         if number == 7:
-            trainee.hands.push(0.0, 0.0, 0.0, False)
+            trainee.hover(label)
             photographer.keep("close-view-free")
         trainee.press_on(label)
         if number == 7:
-            trainee.press_against_head()
+            trainee.press_beside_fiducials()
             photographer.keep("close-view-proximity")
 
 
@@ -177,12 +183,14 @@ def tell_of_crash(trainee: StreamTrainee, label: str) -> dict:
     return {"phase": state["phase"], "touched": state["touched"], "warnings": trainee.warnings}
 
 
-def unplug_and_go_on(lab: Lab, trainee: StreamTrainee) -> dict:
+def unplug_and_go_on(lab: Lab, trainee: StreamTrainee, photographer: Photographer) -> dict:
     """Lose the gamepad in the next task while its stick is pushed; return what came of it."""
     trainee.choose("next")
     trainee.until_menu("experiment")
     trainee.begin_task("task-2")
+    photographer.catch_up()
     trainee.touch("1")
+    photographer.catch_up()
     trainee.hands.push(0.0, 0.0, 1.0, False)
     trainee.until_moved()
     lab.simulator.plug_out()

@@ -105,19 +105,27 @@ def wait_until(condition, what: str, patience_s: float = TIMEOUT_S) -> None:
 
 
 PLAYED_HZ, STORED_HZ = 44_100, 32_000
-APART_S = 0.1
-"""Nearer than this two matches are one sound."""
 BYTES_A_SECOND = PLAYED_HZ * 2 * 2
 """Of 16-bit samples in two channels."""
 
 
 def times_heard(path: Path, name: str, volume: float = 0.8) -> int:
-    """Return how often a sound was played at a volume, whatever else was to be heard then."""
+    """Return how often a sound was played at a volume, whatever else was to be heard then.
+
+    A busy window plays the same sound twice at once, or one within the other: what is most like
+    the sound is counted, by its loudness, and taken out of the rest (matching pursuit).
+    """
     samples = np.fromfile(path, "<i2").reshape(-1, 2)[:, 0].astype(float)
     with wave.open(str(asset_path("sounds", f"{name}.wav"))) as file:
         stored = np.frombuffer(file.readframes(file.getnframes()), "<i2").astype(float)
     pattern = resample_poly(stored, PLAYED_HZ, STORED_HZ)
+    energy, length = pattern @ pattern, len(pattern)
     # The factor by which the sound must be multiplied to be most like what was heard.
-    loudness = oaconvolve(samples, pattern[::-1], "valid") / (pattern @ pattern)
-    starts = np.flatnonzero(loudness > 0.75 * volume)
-    return np.count_nonzero(np.diff(starts, prepend=-PLAYED_HZ) > APART_S * PLAYED_HZ)
+    loudness = np.pad(oaconvolve(samples, pattern[::-1], "valid") / energy, length)
+    alike = oaconvolve(pattern, pattern[::-1]) / energy
+    count = 0
+    while (peak := loudness.max()) > 0.75 * volume:
+        count += round(peak / volume)
+        start = int(loudness.argmax())
+        loudness[start - length + 1 : start + length] -= peak * alike
+    return count
