@@ -25,6 +25,7 @@ LAYERS = {
         rastrainer
         rastrainer.files, rastrainer.igtl, rastrainer.statistics
         rastrainer.head, rastrainer.registration
+        rastrainer.procedure
         rastrainer.motion, rastrainer.scenario
         rastrainer.journal, rastrainer.trial
         rastrainer.study.database

@@ -1,6 +1,6 @@
-"""Make the default scenario's head and volume of the MRI Colin27 of Debian's package mricron-data.
+"""Make the default scenario's head, skull and volume of the MRI Colin27 in Debian's mricron-data.
 
-    python assets/scenarios/make_colin27.py            writes colin27/head.ply, colin27/volume.nrrd
+    python assets/scenarios/make_colin27.py            writes head, skull and volume of colin27
     python assets/scenarios/make_colin27.py --check    only compares with the committed files
 
 The same MRI gives the same bytes with the library versions of requirements.lock. Of the volume the
@@ -25,11 +25,11 @@ from rastrainer.slicer.head.volume import readVolume
 MRI = Path("/usr/share/mricron/templates/ch2.nii.gz")
 MRI_SHA256 = "a009051127f64dc3dd554d5f5b589870ea72106d9642c21b4e7093e478cfc309"
 FOLDER = Path(__file__).parent / "colin27"
-HEAD, VOLUME = FOLDER / "head.ply", FOLDER / "volume.nrrd"
+HEAD, SKULL, VOLUME = FOLDER / "head.ply", FOLDER / "skull.ply", FOLDER / "volume.nrrd"
 
 
 def main() -> int:
-    """Write head and volume, or compare them with the committed ones."""
+    """Write head, skull and volume, or compare them with the committed ones."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("mri", nargs="?", type=Path, default=MRI, help="ch2.nii.gz")
     parser.add_argument("--check", action="store_true", help="compare, write nothing")
@@ -42,29 +42,31 @@ def main() -> int:
 
 
 def make(mri: Path, check: bool) -> int:
-    """Return the exit status: 1 where the check found another head or volume."""
+    """Return the exit status: 1 where the check found another head, skull or volume."""
     if not mri.is_file():
         print(f"{mri} is missing; install it: apt-get install mricron-data", file=sys.stderr)
         return 2
     if hashlib.sha256(mri.read_bytes()).hexdigest() != MRI_SHA256:
         print(f"{mri} is not the MRI that the committed files were made of.", file=sys.stderr)
     draft, _ = makeDraft(
-        readVolume(mri), hasSkull=False, progress=lambda step, share: print(f"{share:4.0%}  {step}")
+        readVolume(mri), progress=lambda step, share: print(f"{share:4.0%}  {step}")
     )
     if check:
-        return 0 if all([_is_same_head(draft.head), _is_same_volume(draft.volume)]) else 1
+        same = [_is_same_mesh("head", HEAD, draft.head), _is_same_mesh("skull", SKULL, draft.skull)]
+        return 0 if all([*same, _is_same_volume(draft.volume)]) else 1
     write_head_mesh(HEAD, draft.head)
+    write_head_mesh(SKULL, draft.skull)
     write_head_volume(VOLUME, draft.volume)
     window, level = draft.volume.window, draft.volume.level
     print(f"{draft.method}\nwindow {window:g}, level {level:g}, {VOLUME.stat().st_size} bytes")
     return 0
 
 
-def _is_same_head(mesh: HeadMesh) -> bool:
+def _is_same_mesh(what: str, path: Path, mesh: HeadMesh) -> bool:
     with tempfile.TemporaryDirectory() as folder:
-        again = Path(folder) / HEAD.name
+        again = Path(folder) / path.name
         write_head_mesh(again, mesh)
-        return _told("head", again.read_bytes() == HEAD.read_bytes())
+        return _told(what, again.read_bytes() == path.read_bytes())
 
 
 def _is_same_volume(volume: HeadVolume) -> bool:

@@ -6,6 +6,7 @@ A check returns the accepted value or raises `ValueError` with the words that fo
 from __future__ import annotations
 
 import json
+import re
 import uuid
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
@@ -41,6 +42,15 @@ class Argument:
             InputError: the value is not acceptable; `what` begins the sentence.
         """
         return accepted(self.check, values[name], what) if name in values else self.default
+
+
+IDENTIFIER_WORDS = "lower-case letters, digits and hyphens"
+_IDENTIFIER = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+
+
+def is_identifier(name: str) -> bool:
+    """Return whether a name is valid in commands and files: lower case, digits, hyphens."""
+    return len(name) <= 40 and _IDENTIFIER.fullmatch(name) is not None
 
 
 def accepted(check: Callable[[Any], T], value: Any, what: str) -> T:

@@ -41,3 +41,12 @@ def inverse(matrix: np.ndarray) -> np.ndarray:
     matrix = np.asarray(matrix, dtype=float)
     linear = np.linalg.inv(matrix[:3, :3])
     return rigid(linear, -linear @ matrix[:3, 3])
+
+
+def is_rigid(matrix: np.ndarray) -> bool:
+    """Return whether a (4, 4) float matrix is a rotation and a translation, to 1e-6."""
+    rotation = matrix[:3, :3]
+    is_orthonormal = np.allclose(rotation @ rotation.T, np.eye(3), rtol=0.0, atol=1e-6)
+    return bool(
+        is_orthonormal and np.linalg.det(rotation) > 0 and matrix[3].tolist() == [0, 0, 0, 1]
+    )

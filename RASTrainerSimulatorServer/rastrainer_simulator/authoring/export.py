@@ -21,6 +21,7 @@ from rastrainer.head.face_removal import RADIUS_MM, face_vertices, nose_tip, wit
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
+from rastrainer.procedure.meshes import read_all_no_go
 from rastrainer.scenario.package import checked_scenario, pack
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario
 from rastrainer.scenario.writer import scenario_name, write_scenario
@@ -174,9 +175,10 @@ def pack_for_others(
         folder: of the scenario, which is not changed.
         package: the new file.
         keeps_face: keep the head, its picture, its images and its skull; otherwise head, picture
-            and images have no face, and the skull is left out.
-        keeps_names: keep title, name and source, which often are the patient's name; otherwise
-            the scenario is named by a number computed from its head's surface.
+            and images have no face, and the skull is left out with the procedures, which need it.
+        keeps_names: keep title, name and source, which often are the patient's name, and the
+            sources of the procedures; otherwise the scenario is named by a number computed from
+            its head's surface.
 
     Raises:
         InputError: the scenario cannot be used, or has fiducials on the face.
@@ -190,12 +192,15 @@ def pack_for_others(
         volume = without_face_in(volume, head) if volume else None
         scenario, head, skull = *_faceless(scenario, head), None
         taken += ["the face", "the skull"] if scenario.skull_mesh else ["the face"]
+        if scenario.procedures:
+            scenario = replace(scenario, procedures=())
+            taken.append("the procedures, which need the skull")
     if not keeps_names:
         scenario = _nameless(scenario, head)
         taken += ["its title", "its name", "its source"]
     with tempfile.TemporaryDirectory() as temporary:
         clean = Path(temporary)
-        write_scenario(clean, scenario, head, skull, volume)
+        write_scenario(clean, scenario, head, skull, volume, read_all_no_go(scenario.procedures))
         if not keeps_face:
             draw_preview(clean / PREVIEW_NAME, scenario, head)
         elif preview:
@@ -226,4 +231,11 @@ def _nameless(scenario: Scenario, head: HeadMesh) -> Scenario:
     number = hashlib.sha256(head.vertices.astype("<f4").tobytes()).hexdigest()[:6]
     title = f"Head {number}"
     provenance = replace(scenario.provenance, source=NO_SOURCE)
-    return replace(scenario, name=scenario_name(title), title=title, provenance=provenance)
+    procedures = tuple(replace(each, source=NO_SOURCE) for each in scenario.procedures)
+    return replace(
+        scenario,
+        name=scenario_name(title),
+        title=title,
+        provenance=provenance,
+        procedures=procedures,
+    )

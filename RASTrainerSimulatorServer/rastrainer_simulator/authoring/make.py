@@ -11,6 +11,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
+from rastrainer.procedure.meshes import read_all_no_go
 from rastrainer.progress import Progress, Warn
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
@@ -214,7 +215,7 @@ def copy_with_plan(
     if wrong:
         raise InputError(" ".join(wrong))
     with new_folder(copy) as made:
-        write_scenario(made, scenario, head, skull, volume)
+        write_scenario(made, scenario, head, skull, volume, read_all_no_go(scenario.procedures))
         draw_preview(made / PREVIEW_NAME, scenario, head)
         load_scenario(made)
     return load_scenario(copy)

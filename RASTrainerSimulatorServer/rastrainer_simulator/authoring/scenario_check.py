@@ -9,10 +9,12 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.procedure.checks import ENTRY_OFF_SKIN_MM
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.procedure_check import check_procedures
 from rastrainer_simulator.authoring.task_check import check_tasks
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import start_joints
@@ -64,10 +66,6 @@ def lowest_in_trials_mm(scenario: Scenario, head: HeadMesh) -> float:
 
 def _place(point: np.ndarray) -> str:
     return f"({point[0]:.0f}, {point[1]:.0f})"
-
-
-ENTRY_OFF_SKIN_MM = 10.0
-"""Many plan the entry on the bone, below some 7 mm of scalp, or click a little beside the skin."""
 
 
 def check_plan(planning: PlanningSetup) -> list[str]:
@@ -148,4 +146,5 @@ def check_scenario(folder: Path) -> list[str]:
     if mesh.euler_characteristic != 2:
         wrong.append("The head's surface has tunnels or loose parts; the skin must be one body.")
     planning = PlanningSetup(scenario, mesh)
-    return wrong + check_plan(planning) + check_tasks(planning, scenario.tasks)
+    wrong += check_plan(planning) + check_procedures(planning)
+    return wrong + check_tasks(planning, scenario.tasks)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import NamedTuple
@@ -23,6 +23,9 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 OUT_OF_REACH = "The target is out of the robot's reach."
 NO_ROOM = "The robot reaches the target, but its links come too near to the head or the table."
+NOT_BEFORE = (
+    "The robot cannot hold the guide on the line before its entry; choose another entry point."
+)
 NOT_ALONG = "The robot cannot hold its tool along the whole trajectory; choose another entry point."
 
 
@@ -64,6 +67,20 @@ class PlanReach:
             if self._has_room(end, direction):
                 return PlanAnswer(True, "")
         return PlanAnswer(False, NO_ROOM)
+
+    def judge_guide(
+        self, entry: Sequence[float], direction: Sequence[float], stand_offs: Iterable[float]
+    ) -> PlanAnswer:
+        """Return whether the guide can be held on a line before the head, in its present pose.
+
+        Args:
+            entry: (3,) float, World, m.
+            direction: (3,) float, World, unit vector into the head.
+            stand_offs: distances of the guide's tip from the entry, m.
+        """
+        begin, along = np.asarray(entry, dtype=float), np.asarray(direction, dtype=float)
+        is_held = all(self._has_room(begin - each * along, along) for each in stand_offs)
+        return PlanAnswer(is_held, "" if is_held else NOT_BEFORE)
 
     def _has_room(self, position: np.ndarray, direction: np.ndarray) -> bool:
         solution = self._fabrik.solve(position.tolist(), direction.tolist(), q_start=self._home)

@@ -145,6 +145,7 @@ class SimulationSetup:
         shape: the arm and its tool as collisions see them.
         settings: how it behaves.
         scenario_sha256: of what a trial depends on, which identifies the scenario in a journal.
+        sha256_with_skull: the same of a scenario that had its skull before its procedures.
     """
 
     scenario: Scenario
@@ -152,6 +153,11 @@ class SimulationSetup:
     shape: RobotShape
     settings: SimulationSettings = field(default_factory=SimulationSettings)
     scenario_sha256: str = ""
+    sha256_with_skull: str = ""
+
+    def is_of(self, sha256: object) -> bool:
+        """Return whether a journal with this hash of its scenario was recorded with this one."""
+        return sha256 in (self.scenario_sha256, self.sha256_with_skull)
 
     def description(self) -> dict[str, Any]:
         """Return the fields of a journal's header, ready for JSON."""
@@ -182,6 +188,7 @@ def load_setup(
         shape=shape,
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
+        sha256_with_skull=scenario_sha256(scenario, keeps_skull=True),
     )
 
 
@@ -196,24 +203,37 @@ def _robot_and_shape(
     return model_from_json(prepared["model"], path.parent), shape_from_json(prepared["shape"])
 
 
-def scenario_sha256(scenario: Scenario) -> str:
-    """Return one hash of what a trial depends on: `scenario.json`, the head and the fiducials.
+def scenario_sha256(scenario: Scenario, keeps_skull: bool = False) -> str:
+    """Return one hash of what a trial of touches depends on: `scenario.json`, head and fiducials.
 
-    It excludes the volume, which the simulator never reads: journals that were recorded before a
-    scenario had one remain valid.
+    It excludes the volume, which the simulator never reads, and the procedures with the skull that
+    they need: journals that were recorded before a scenario had them remain valid. A trial with a
+    procedure has a hash of its own (`Procedure.sha256`) in its journal.
+
+    Args:
+        scenario: read from its folder.
+        keeps_skull: for a scenario that had a skull before it had procedures: leave only the
+            procedures out.
     """
+    left_out = ["volume", "procedures"]
+    if scenario.procedures and not keeps_skull:
+        left_out.append("skull")
     whole = hashlib.sha256()
-    for content in (_without_volume(scenario.folder / FILE_NAME), scenario.head_mesh.read_bytes()):
+    for content in (
+        _without(scenario.folder / FILE_NAME, left_out),
+        scenario.head_mesh.read_bytes(),
+    ):
         whole.update(hashlib.sha256(content).digest())
     for task in scenario.tasks:
         whole.update(task.name.encode() + task.fiducials.astype("<f8").tobytes())
     return whole.hexdigest()
 
 
-def _without_volume(path: Path) -> bytes:
-    """Return a `scenario.json` as it would be written without its volume."""
+def _without(path: Path, names: list[str]) -> bytes:
+    """Return a `scenario.json` as it would be written without some fields."""
     content = path.read_bytes()
     values = json.loads(content)
-    if values.pop("volume", None) is None:
+    if not any(name in values for name in names):
         return content
-    return (json.dumps(values, indent=2, ensure_ascii=False) + "\n").encode()
+    kept = {name: value for name, value in values.items() if name not in names}
+    return (json.dumps(kept, indent=2, ensure_ascii=False) + "\n").encode()

@@ -56,7 +56,7 @@ def setup_of(
     except (KeyError, TypeError, AttributeError):
         raise InputError("The journal's header lacks the scenario or the settings.") from None
     setup = load_setup(scenario_folder, settings, robot_meshes=robot_meshes)
-    if setup.scenario_sha256 != sha256:
+    if not setup.is_of(sha256):
         raise InputError(
             f"The trial was recorded with a scenario {name!r} whose files differ from those of "
             f"{setup.scenario.name!r} here: give its folder with --scenario."

@@ -77,8 +77,8 @@ class RecordedTrial:
 
     def _prepare(self, track: ReplayTrack, setup: SimulationSetup) -> None:
         header, scenario = track.header, setup.scenario
-        recorded_with = (header["scenario"]["sha256"], header["robot"])
-        if recorded_with != (setup.scenario_sha256, setup.robot.name):
+        is_same_robot = header["robot"] == setup.robot.name
+        if not is_same_robot or not setup.is_of(header["scenario"]["sha256"]):
             raise InputError("The trial was recorded with another scenario or robot.")
         if not track.events:
             raise InputError("The trial cannot be shown again: its journal holds no event.")

@@ -7,9 +7,9 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.json_checks import is_identifier
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.library import ListedScenario, list_scenarios, user_library
-from rastrainer.scenario.tasks import is_task_name
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import TRIAL_IS_OPEN, ControlLoop
@@ -99,7 +99,7 @@ class ScenarioLoader:
         return found
 
     def _found(self, folder: str) -> Path:
-        if is_task_name(folder):
+        if is_identifier(folder):
             known = {entry.name: entry for entry in self._listed()}
             if folder in known:
                 return known[folder].folder

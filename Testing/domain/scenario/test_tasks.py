@@ -6,7 +6,8 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.files.markups import write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.scenario.tasks import LABELS, is_task_name, read_task, touch_order
+from rastrainer.json_checks import is_identifier
+from rastrainer.scenario.tasks import LABELS, read_task, touch_order
 
 POINTS = np.random.default_rng(2).uniform(-90, 90, (15, 3)).round(4)
 
@@ -54,14 +55,14 @@ def test_an_invalid_task_file_is_refused_with_a_message(tmp_path, labels, points
 
 @pytest.mark.parametrize("name", ["trial-run", "task-1", "a", "task-12-b"])
 def test_valid_task_names_are_accepted(name):
-    assert is_task_name(name)
+    assert is_identifier(name)
 
 
 @pytest.mark.parametrize(
     "name", ["", "Task 1", "task_1", "../task", "-task", "task-", "t" * 41, "é"]
 )
 def test_invalid_task_names_are_refused(name):
-    assert not is_task_name(name)
+    assert not is_identifier(name)
 
 
 @pytest.mark.parametrize(

@@ -5,16 +5,20 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.files.writing import write_json
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import CommandName, TouchRule, check_arguments
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.core.setup import scenario_sha256
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.record.trial_archive import SUFFIX
+from Testing.domain.procedure.made_up_procedure import write_planned
 
 CHAIN = ("n", "previous", "sha256")
 
@@ -185,7 +189,38 @@ def test_a_journal_older_than_the_rule_is_replayed_by_that_of_the_paper(setup):
     assert setup_of(older).settings.training.touch_rule is TouchRule.WITHIN_RADIUS
 
 
-def test_a_journal_recorded_before_the_default_head_had_its_volume_is_still_of_it(setup):
-    before = "8ea38ba4bfc46979ba0138ec6bce0c89536b8d9f4066b18be7c9018ccf2420aa"
+RECORDED_BEFORE = "8ea38ba4bfc46979ba0138ec6bce0c89536b8d9f4066b18be7c9018ccf2420aa"
+"""The default scenario when it had neither volume nor skull and procedures."""
+
+
+def test_a_journal_recorded_before_the_default_head_had_volume_and_procedures_is_still_of_it(setup):
     assert setup.scenario.volume is not None
-    assert setup.scenario_sha256 == before
+    assert setup.scenario.procedures
+    assert setup.scenario_sha256 == RECORDED_BEFORE
+    assert setup.is_of(RECORDED_BEFORE)
+
+
+def hashes(folder):
+    scenario = load_scenario(folder)
+    return scenario_sha256(scenario), scenario_sha256(scenario, keeps_skull=True)
+
+
+def test_a_journal_stays_of_a_scenario_whose_skull_is_older_than_its_procedures(tmp_path):
+    planned = write_planned(tmp_path / "planned")
+    with_procedures = hashes(planned)
+    path = planned / "scenario.json"
+    values = json.loads(path.read_text(encoding="utf-8"))
+    del values["procedures"]
+    write_json(path, values)
+    with_skull = hashes(planned)
+    del values["skull"]
+    write_json(path, values)
+    without_skull = hashes(planned)
+    assert with_skull[0] == with_skull[1]
+    assert without_skull[0] == without_skull[1] != with_skull[0]
+    assert with_procedures == (without_skull[0], with_skull[0])
+
+
+def test_a_journal_of_another_scenario_is_refused_whatever_its_skull(setup):
+    assert not setup.is_of("0" * 64)
+    assert not setup.is_of(None)

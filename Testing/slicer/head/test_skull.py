@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.procedure.geometry import bone_ahead
 from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.head_draft import makeDraft
-from rastrainer.slicer.head.images_and_skull import SCALP_MM
+from rastrainer.slicer.head.images_and_skull import BONE_MM, SCALP_MM
 from Testing.slicer.head.phantoms import CT, MRI, depth_mm, phantom
 
 BASE = -30.0
@@ -41,7 +42,18 @@ def test_it_is_closed_within_the_skin_and_ends_at_the_heads_base(draft):
 def test_the_skull_of_an_mri_is_one_body_as_deep_below_the_skin_as_its_method_states(draft):
     assert draft.is_skull_approximate
     assert draft.skull.euler_characteristic == 2
-    assert "an approximation, the skin moved inward by 7 mm" in draft.method
+    assert "an approximation, a shell from 7 to 14 mm below the skin" in draft.method
     depth = depth_mm(draft.skull.vertices[draft.skull.vertices[:, 2] > 0.0], SIZE)
-    assert np.abs(depth - SCALP_MM).max() < 2.0
-    assert abs(np.median(depth) - SCALP_MM) < 1.0
+    is_outer = depth < SCALP_MM + BONE_MM / 2
+    assert 0.4 < is_outer.mean() < 0.8
+    for table, nominal in ((depth[is_outer], SCALP_MM), (depth[~is_outer], SCALP_MM + BONE_MM)):
+        assert np.abs(table - nominal).max() < 2.0
+        assert abs(np.median(table) - nominal) < 1.0
+
+
+@of(MRI)
+def test_a_line_into_the_skull_of_an_mri_meets_both_tables(draft):
+    top = np.array([0.0, 0.0, draft.head.vertices[:, 2].max() + 10.0])
+    bone = bone_ahead(draft.skull, top, np.array([0.0, 0.0, -1.0]), 100.0)
+    assert bone.outer_mm == pytest.approx(10.0 + SCALP_MM, abs=1.0)
+    assert bone.inner_mm - bone.outer_mm == pytest.approx(BONE_MM, abs=1.0)

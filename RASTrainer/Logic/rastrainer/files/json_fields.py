@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
@@ -60,6 +62,19 @@ class Fields:
     def numbers(self, name: str, count: int, limit: float) -> list[float]:
         """Return a list of `count` finite numbers, each within ±`limit`."""
         return list(self._accepted(name, json_checks.numbers(count, limit)))
+
+    def point(self, name: str, limit: float) -> np.ndarray:
+        """Return a point, (3,) float, read-only, each coordinate within ±`limit`."""
+        point = np.array(self.numbers(name, 3, limit), dtype=float)
+        point.setflags(write=False)
+        return point
+
+    def identifier(self, name: str) -> str:
+        """Return a name for commands and files: lower case, digits, hyphens."""
+        value = self.text(name, 40)
+        if not json_checks.is_identifier(value):
+            raise self.error(name, json_checks.IDENTIFIER_WORDS)
+        return value
 
     def fields(self, name: str) -> Fields:
         """Return the fields of an object."""

@@ -133,16 +133,16 @@ def read_head_mesh(path: Path) -> HeadMesh:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError(f"The head mesh {path} does not exist.")
+        raise InputError(f"The mesh {path} does not exist.")
     if path.stat().st_size > MAX_BYTES:
-        raise InputError(f"The head mesh {path} is larger than {MAX_BYTES // 1_000_000} MB.")
+        raise InputError(f"The mesh {path} is larger than {MAX_BYTES // 1_000_000} MB.")
     content = path.read_bytes()
     head, end, body = content.partition(b"end_header\n")
     vertex_count, triangle_count = (_count(head, element) for element in (b"vertex", b"face"))
     expected = _HEADER.format(vertices=vertex_count, triangles=triangle_count).encode()
     if not end or head + end != expected:
         raise InputError(
-            f"The head mesh {path} must be a binary little-endian PLY file in RAS (comment "
+            f"The mesh {path} must be a binary little-endian PLY file in RAS (comment "
             "SPACE=RAS) with float vertices x, y, z and triangles."
         )
     return _checked(path, vertex_count, triangle_count, body)
@@ -158,16 +158,14 @@ def _count(head: bytes, element: bytes) -> int:
 
 def _checked(path: Path, vertex_count: int, triangle_count: int, body: bytes) -> HeadMesh:
     if not 4 <= triangle_count <= MAX_TRIANGLES or vertex_count < 4:
-        raise InputError(f"The head mesh {path} must have 4 to {MAX_TRIANGLES} triangles.")
+        raise InputError(f"The mesh {path} must have 4 to {MAX_TRIANGLES} triangles.")
     if len(body) != 12 * vertex_count + _FACE.itemsize * triangle_count:
-        raise InputError(f"The head mesh {path} is cut short or has bytes left over.")
+        raise InputError(f"The mesh {path} is cut short or has bytes left over.")
     vertices = np.frombuffer(body, "<f4", 3 * vertex_count).reshape(-1, 3)
     faces = np.frombuffer(body, _FACE, triangle_count, 12 * vertex_count)
     corners = faces["corners"]
     if not np.all(np.abs(vertices) <= RAS_LIMIT_MM):
-        raise InputError(
-            f"The head mesh {path} has a vertex that is not within ±{RAS_LIMIT_MM:g} mm."
-        )
+        raise InputError(f"The mesh {path} has a vertex that is not within ±{RAS_LIMIT_MM:g} mm.")
     if (faces["count"] != 3).any() or corners.min() < 0 or corners.max() >= vertex_count:
-        raise InputError(f"The head mesh {path} has a face that is no triangle of its vertices.")
+        raise InputError(f"The mesh {path} has a face that is no triangle of its vertices.")
     return HeadMesh(vertices.astype(float), corners.astype(np.int32))

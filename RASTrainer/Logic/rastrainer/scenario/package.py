@@ -14,6 +14,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
+from rastrainer.procedure.meshes import read_all_no_go
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario, load_scenario
 from rastrainer.scenario.writer import new_folder, write_scenario
@@ -47,11 +48,12 @@ def pack(folder: Path, package: Path) -> Path:
     head = read_head_mesh(scenario.head_mesh)
     skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
     volume = read_head_volume(scenario.volume) if scenario.volume else None
+    no_go = read_all_no_go(scenario.procedures)
     partial = package.parent / f".{uuid.uuid4().hex}.partial"
     try:
         with tempfile.TemporaryDirectory() as temporary:
             clean = Path(temporary)
-            write_scenario(clean, scenario, head, skull, volume)
+            write_scenario(clean, scenario, head, skull, volume, no_go)
             if scenario.preview:
                 shutil.copyfile(scenario.preview, clean / PREVIEW_NAME)
             _write_archive(partial, clean)

@@ -18,16 +18,18 @@ from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.head.pose import MAX_PERTURBATION, Perturbation, perturbed_pose
 from rastrainer.head.volume import VolumeFile, read_volume_file
+from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
+from rastrainer.procedure.plan import Procedure, read_procedures
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.tasks import (
     PlannedTarget,
     PlannedTrajectory,
     Task,
-    is_task_name,
     read_targets,
     read_task,
     read_trajectory,
 )
+from rastrainer.transforms import is_rigid
 
 FILE_NAME = "scenario.json"
 PREVIEW_NAME = "preview.png"
@@ -105,6 +107,7 @@ class Scenario:
         targets: further planned targets.
         trajectory: the planned trajectory, or None.
         volume: the images, or None.
+        procedures: planned; a trial may carry one of them out.
     """
 
     folder: Path
@@ -124,6 +127,7 @@ class Scenario:
     targets: tuple[PlannedTarget, ...] = ()
     trajectory: PlannedTrajectory | None = None
     volume: VolumeFile | None = None
+    procedures: tuple[Procedure, ...] = ()
 
     @property
     def preview(self) -> Path | None:
@@ -142,6 +146,18 @@ class Scenario:
                 return task
         names = ", ".join(task.name for task in self.tasks)
         raise InputError(f"The scenario {self.name} has no such task; it has {names}.")
+
+    def procedure(self, name: str) -> Procedure:
+        """Return the procedure of this name.
+
+        Raises:
+            InputError: there is none; the message lists the procedures.
+        """
+        for procedure in self.procedures:
+            if procedure.name == name:
+                return procedure
+        names = ", ".join(procedure.name for procedure in self.procedures) or "none"
+        raise InputError(f"The scenario {self.name} has no such procedure; it has {names}.")
 
     def perturbed_head_to_world(self, seed: int) -> np.ndarray:
         """Return the head's pose in the trial of a seed, (4, 4) float, mm.
@@ -170,16 +186,13 @@ def _load(folder: Path) -> Scenario:
     if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
         raise fields.error("formatVersion", f"{FORMAT_VERSION}, which this version reads")
     target = fields.fields("target")
-    name = fields.text("name", 40)
-    if not is_task_name(name):
-        raise fields.error("name", "lower-case letters, digits and hyphens")
     return Scenario(
         folder=folder,
-        name=name,
+        name=fields.identifier("name"),
         title=fields.text("title", 80),
         head_mesh=fields.file("head"),
         target_name=target.text("name", 60),
-        target_position=_array(target.numbers("positionRas", 3, RAS_LIMIT_MM)),
+        target_position=target.point("positionRas", RAS_LIMIT_MM),
         head_to_world=_rigid(fields, "headToWorld"),
         perturbation=_perturbation(fields.fields("perturbation")),
         tasks=_tasks(fields),
@@ -190,6 +203,7 @@ def _load(folder: Path) -> Scenario:
         targets=read_targets(fields),
         trajectory=read_trajectory(fields),
         volume=read_volume_file(fields),
+        procedures=read_procedures(fields),
     )
 
 
@@ -205,8 +219,8 @@ def _tasks(fields: Fields) -> tuple[Task, ...]:
     tasks: dict[str, Task] = {}
     for entry in fields.list_of_fields("tasks", 1, MAX_TASKS):
         name = entry.text("name", 40)
-        if not is_task_name(name) or name in tasks:
-            raise entry.error("name", "lower-case letters, digits and hyphens, each name once")
+        if not is_identifier(name) or name in tasks:
+            raise entry.error("name", f"{IDENTIFIER_WORDS}, each name once")
         title, complexity = entry.text("title", 60), entry.number("complexity", 0, 1000)
         is_measured = "shortestPathMm" in entry.names()
         shortest = entry.number("shortestPathMm", 1, 1e5) if is_measured else None
@@ -248,9 +262,7 @@ def _provenance(fields: Fields) -> Provenance:
 
 def _rigid(fields: Fields, name: str) -> np.ndarray:
     matrix = _array(fields.numbers(name, 16, WORLD_LIMIT_MM)).reshape(4, 4)
-    rotation = matrix[:3, :3]
-    is_rotation = np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6)
-    if not is_rotation or np.linalg.det(rotation) < 0 or matrix[3].tolist() != [0, 0, 0, 1]:
+    if not is_rigid(matrix):
         raise fields.error(name, "a rigid transform, 4×4, row by row, in mm")
     return matrix
 

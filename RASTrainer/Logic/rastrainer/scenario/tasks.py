@@ -16,7 +16,6 @@ from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.protocol import FIDUCIAL_COUNT
 
 LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
-_NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 
 
 @dataclass(frozen=True)
@@ -62,11 +61,6 @@ def read_task(
         raise InputError(f"{path} has two points at the same place.")
     fiducials.setflags(write=False)
     return Task(name, title, LABELS, fiducials, complexity, shortest_path_mm)
-
-
-def is_task_name(name: str) -> bool:
-    """Return whether a name is valid in commands and files: lower case, digits, hyphens."""
-    return len(name) <= 40 and _NAME.fullmatch(name) is not None
 
 
 _NUMBER = re.compile(r"(\d{1,6})\s*$")
@@ -137,7 +131,8 @@ def read_targets(fields: Fields) -> tuple[PlannedTarget, ...]:
         return ()
     entries = fields.list_of_fields("targets", 0, MAX_TARGETS)
     return tuple(
-        PlannedTarget(entry.text("name", 60), _point(entry, "positionRas")) for entry in entries
+        PlannedTarget(entry.text("name", 60), entry.point("positionRas", RAS_LIMIT_MM))
+        for entry in entries
     )
 
 
@@ -150,13 +145,7 @@ def read_trajectory(fields: Fields) -> PlannedTrajectory | None:
     if "trajectory" not in fields.names():
         return None
     own = fields.fields("trajectory")
-    entry, target = _point(own, "entryRas"), _point(own, "targetRas")
+    entry, target = (own.point(end, RAS_LIMIT_MM) for end in ("entryRas", "targetRas"))
     if np.linalg.norm(target - entry) < MIN_TRAJECTORY_MM:
         raise own.error("entryRas", f"at least {MIN_TRAJECTORY_MM:g} mm from targetRas")
     return PlannedTrajectory(own.text("name", 60), entry, target)
-
-
-def _point(fields: Fields, name: str) -> np.ndarray:
-    point = np.array(fields.numbers(name, 3, RAS_LIMIT_MM), dtype=float)
-    point.setflags(write=False)
-    return point

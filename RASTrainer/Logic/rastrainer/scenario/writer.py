@@ -10,7 +10,7 @@ import contextlib
 import re
 import shutil
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,8 +24,10 @@ from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_private_folder, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, read_head_volume, read_volume_file, write_head_volume
+from rastrainer.json_checks import is_identifier
+from rastrainer.procedure.plan import NO_GO_FOLDER, procedure_json
 from rastrainer.scenario.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
-from rastrainer.scenario.tasks import Task, is_task_name
+from rastrainer.scenario.tasks import Task
 
 HEAD_NAME, SKULL_NAME, VOLUME_NAME = "head.ply", "skull.ply", "volume.nrrd"
 _DECIMALS = 4
@@ -61,7 +63,7 @@ def scenario_name(title: str) -> str:
         InputError: the title has no Latin letter or digit.
     """
     name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40].strip("-")
-    if not is_task_name(name):
+    if not is_identifier(name):
         raise InputError(
             f"{title!r} cannot be a scenario's title: it needs a Latin letter or digit."
         )
@@ -74,8 +76,11 @@ def write_scenario(
     head: HeadMesh,
     skull: HeadMesh | None = None,
     volume: HeadVolume | None = None,
+    no_go: Mapping[str, HeadMesh] | None = None,
 ) -> None:
     """Write `scenario.json`, meshes, volume and tasks into an existing folder.
+
+    Procedures are written only with a skull.
 
     Args:
         folder: such as from `new_folder`.
@@ -83,6 +88,7 @@ def write_scenario(
         head: the head's mesh.
         skull: the skull's mesh, or None.
         volume: the images, or None.
+        no_go: the meshes of the procedures' no-go structures, by file name.
 
     Raises:
         InputError: a file cannot be written.
@@ -95,6 +101,9 @@ def write_scenario(
         write_head_volume(folder / VOLUME_NAME, volume)
     for task in scenario.tasks:
         write_markups(folder / _file(task), PointList(task.labels, task.fiducials))
+    for name, mesh in (no_go or {}).items():
+        (folder / NO_GO_FOLDER).mkdir(exist_ok=True)
+        write_head_mesh(folder / NO_GO_FOLDER / name, mesh)
     content = scenario_json(scenario, skull is not None, volume)
     write_json(folder / FILE_NAME, content)
 
@@ -142,6 +151,8 @@ def scenario_json(
             "entryRas": _listed(scenario.trajectory.entry),
             "targetRas": _listed(scenario.trajectory.target),
         }
+    if scenario.procedures and has_skull:
+        content["procedures"] = [procedure_json(each) for each in scenario.procedures]
     return content
 
 

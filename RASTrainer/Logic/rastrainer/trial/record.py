@@ -14,6 +14,7 @@ import numpy as np
 from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.json_checks import Argument, checked_keys
+from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM, Mode, TouchRule
 
 TIME_LIMIT_S = 1e6
@@ -84,6 +85,8 @@ class TrialRecord:
         motion: Motion metrics by name (`rastrainer.motion.definitions`); empty in older records.
         display: What the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
             `droppedFrames`, and the `guidance` to the next point; empty where no view reported it.
+        procedure: What was done after the touches; None in a trial of touches alone. The points
+            are those of the accepted registration.
     """
 
     trial_id: str
@@ -102,6 +105,7 @@ class TrialRecord:
     touch_rule: str = TouchRule.WITHIN_RADIUS.value
     motion: Mapping[str, float] = field(default_factory=dict)
     display: Mapping[str, str | float] = field(default_factory=dict)
+    procedure: ProcedureRecord | None = None
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -131,7 +135,11 @@ class TrialRecord:
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON object that `from_json` reads."""
-        return record_to_json(self)
+        values = record_to_json(self)
+        del values["procedure"]
+        # Records of touches alone stay as they were before there were procedures.
+        procedure = {} if self.procedure is None else {"procedure": self.procedure.to_json()}
+        return values | procedure
 
 
 def utc_time(value: Any) -> str:
@@ -275,4 +283,5 @@ _CHECKS = {
     "display": Argument(
         _mapping(DISPLAY_LIMIT, "names with texts or finite numbers", _text_or_number), {}
     ),
+    "procedure": Argument(_optional(ProcedureRecord.from_json), None),
 }

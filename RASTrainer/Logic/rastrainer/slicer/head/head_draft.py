@@ -14,7 +14,7 @@ from rastrainer.progress import Progress
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
-from rastrainer.slicer.head.images_and_skull import SCALP_MM, imageOf, skullOf
+from rastrainer.slicer.head.images_and_skull import BONE_MM, SCALP_MM, imageOf, skullOf
 from rastrainer.slicer.head.level_set import isHounsfield
 from rastrainer.slicer.head.segment import SegmentImage, forSegment, volumeOfSegment
 from rastrainer.slicer.head.volume import Volume, asFloat, readVolume
@@ -106,7 +106,10 @@ def _headMethod(found: HeadBody, isSegment: bool) -> str:
 def _skullMethod(found: HeadBody) -> str:
     if found.isCt:
         return "Skull: bone of the CT."
-    return f"Skull: an approximation, the skin moved inward by {SCALP_MM:g} mm; MRI shows no bone."
+    return (
+        f"Skull: an approximation, a shell from {SCALP_MM:g} to {SCALP_MM + BONE_MM:g} mm below "
+        "the skin; MRI shows no bone."
+    )
 
 
 FEWEST_VOXELS = 16

@@ -66,12 +66,15 @@ CT_BONE = 300.0
 CT_NOISE_MM = 0.7
 SCALP_MM = 7.0
 """From the skin to the skull, which MRI does not show: a usual thickness, not the patient's."""
+BONE_MM = 7.0
+"""From the outer to the inner table, where MRI shows neither: the mean of the parietal bone; the
+frontal has 8.0 and the temporal 4.7 mm (Thulung et al. 2019, 10.31729/jnma.3949)."""
 
 TRIANGLES = 30_000
 
 
 def skullOf(volume: Volume, head: HeadBody) -> HeadMesh:
-    """Return the skull above the head's base: bone of a CT, else the skin moved inward.
+    """Return the skull above the head's base: bone of a CT, else a shell parallel to the skin.
 
     Raises:
         InputError: there is none.
@@ -103,5 +106,10 @@ def _bone(volume: Volume, head: HeadBody) -> np.ndarray:
 
 
 def _belowScalp(head: HeadBody) -> np.ndarray:
-    scalp = SCALP_MM / SPACING_MM
-    return np.clip(mask.depthInside(head.body, scalp + 1.0) - scalp, -1.0, 1.0)
+    """Return the level set of a shell between two depths below the skin."""
+    outer, inner = SCALP_MM / SPACING_MM, (SCALP_MM + BONE_MM) / SPACING_MM
+    depth = mask.depthInside(head.body, inner + 1.0)
+    level = np.clip(depth - outer, -1.0, 1.0)
+    # The cavity of the brain alone: noses and ears are solid.
+    cavity = ndimage.binary_dilation(mask.largestBody(depth > inner), iterations=2)
+    return np.where(cavity, np.minimum(level, np.clip(inner - depth, -1.0, 1.0)), level)

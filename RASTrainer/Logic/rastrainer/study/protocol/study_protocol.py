@@ -10,8 +10,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
+from rastrainer.json_checks import is_identifier
 from rastrainer.protocol import TRIAL_RUN, Guidance, Mode
-from rastrainer.scenario.tasks import is_task_name
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
 
@@ -145,12 +145,10 @@ def _protocol(fields: Fields) -> StudyProtocol:
         raise fields.error(unknown[0], f"left out; a protocol has {', '.join(_KEYS)}")
     if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
         raise fields.error("formatVersion", f"{FORMAT_VERSION}, which this version reads")
-    name = fields.text("name", 40)
-    if not is_task_name(name):
-        raise fields.error("name", "lower-case letters, digits and hyphens")
+    name = fields.identifier("name")
     modes = fields.texts("modes", 1, len(Mode), choices=tuple(mode.value for mode in Mode))
     tasks = fields.texts("tasks", 1, 20)
-    if not all(is_task_name(task) and task != TRIAL_RUN for task in tasks):
+    if not all(is_identifier(task) and task != TRIAL_RUN for task in tasks):
         raise fields.error("tasks", "names of tasks, such as task-1; the trial run is not one")
     breaks, scoring = fields.fields("breaks"), fields.fields("scoring")
     version = scoring.text("version", 20)

@@ -1,0 +1,1 @@
+"""Procedures: planned trajectories into a head, what was done along them, errors and score."""

@@ -1,0 +1,173 @@
+"""Whether a planned procedure can be carried out on its head: one sentence for each error.
+
+The reach of the robot is not checked here; it needs the robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.procedure.geometry import (
+    BoneAhead,
+    axis_distance_mm,
+    bone_ahead,
+    is_inside,
+    mesh_crossings,
+    segment_distances_mm,
+    skull_angle_deg,
+)
+from rastrainer.procedure.meshes import ProcedureMeshes
+from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
+
+ENTRY_OFF_SKIN_MM = 10.0
+"""Many plan the entry on the bone, below some 7 mm of scalp, or click a little beside the skin."""
+CHECKPOINT_OFF_SKIN_MM = 1.0
+MAX_LENGTH_MM = 150.0
+"""From entry to target; drill and instrument reach 250 mm beyond the guide."""
+MAX_SKULL_ANGLE_DEG = 40.0
+"""To the skull's normal; a drill that meets bone at a flatter angle slips. Our own convention."""
+APART_MM = 1.0
+"""Between the surfaces of two instruments. Our own convention."""
+OUTSIDE_MM = 60.0
+"""Before the entry: outside of the head, also where the entry is planned on the bone."""
+
+
+def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshes) -> list[str]:
+    """Return a sentence for each error of a plan, in the order of its trajectories.
+
+    Args:
+        procedure: to check.
+        head: the closed skin, RAS mm.
+        meshes: of the procedure.
+    """
+    wrong = unusable_lines(procedure, head, meshes.skull)
+    if wrong:
+        return wrong
+    for trajectory in procedure.trajectories:
+        about = _about(procedure, trajectory)
+        wrong += [f"{about} {what}" for what in _questionable(trajectory, meshes)]
+    wrong += _too_near_each_other(procedure)
+    for checkpoint in procedure.checkpoints:
+        away = nearest_on_mesh(head, checkpoint.position).distance
+        if away > CHECKPOINT_OFF_SKIN_MM:
+            wrong.append(
+                f"{procedure.title}: the checkpoint {checkpoint.name} is {away:.1f} mm off the "
+                f"skin; it must be within {CHECKPOINT_OFF_SKIN_MM:g} mm."
+            )
+    return wrong
+
+
+def unusable_lines(procedure: Procedure, head: HeadMesh, skull: HeadMesh) -> list[str]:
+    """Return a sentence for each trajectory along which nothing can be drilled and placed.
+
+    Args:
+        procedure: to check.
+        head: the closed skin, RAS mm.
+        skull: closed, RAS mm.
+    """
+    return [
+        f"{_about(procedure, trajectory)} {what}"
+        for trajectory in procedure.trajectories
+        if (what := _unusable(trajectory, head, skull))
+    ]
+
+
+def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> BoneAhead | None:
+    """Return where the planned line goes through bone, as distances from the entry in mm.
+
+    They are below 0 where the entry is planned below the bone's surface. None where the line does
+    not go through bone.
+    """
+    direction = trajectory.direction
+    start = trajectory.entry - OUTSIDE_MM * direction
+    bone = bone_ahead(skull, start, direction, OUTSIDE_MM + trajectory.length_mm)
+    if bone is None:
+        return None
+    inner = None if bone.inner_mm is None else bone.inner_mm - OUTSIDE_MM
+    return BoneAhead(bone.outer_mm - OUTSIDE_MM, inner)
+
+
+def distances_to_no_go(
+    trajectory: ProcedureTrajectory, meshes: ProcedureMeshes
+) -> dict[str, float]:
+    """Return how far the instrument's surface stays from each no-go structure, mm, by name.
+
+    Below 0 the instrument overlaps the structure.
+    """
+    radius = trajectory.diameter_mm / 2
+    return {
+        name: axis_distance_mm(mesh, trajectory.entry, trajectory.target) - radius
+        for name, mesh in meshes.no_go.items()
+    }
+
+
+def _about(procedure: Procedure, trajectory: ProcedureTrajectory) -> str:
+    return f"{procedure.title}: {trajectory.name}"
+
+
+def _unusable(trajectory: ProcedureTrajectory, head: HeadMesh, skull: HeadMesh) -> str | None:
+    entry, target, direction = trajectory.entry, trajectory.target, trajectory.direction
+    if not is_inside(head, target):
+        outside = nearest_on_mesh(head, target).distance
+        return f"has its target {outside:.0f} mm outside of the head."
+    off_skin = nearest_on_mesh(head, entry).distance
+    if off_skin > ENTRY_OFF_SKIN_MM:
+        side = "below the skin, within the head" if is_inside(head, entry) else "above the skin"
+        return (
+            f"enters {off_skin:.0f} mm {side}; its entry must be within {ENTRY_OFF_SKIN_MM:g} mm "
+            "of the skin."
+        )
+    crossings = mesh_crossings(head, entry, direction, trajectory.length_mm)
+    leaving = [crossing for crossing in crossings if not crossing.is_entering]
+    if leaving:
+        before = trajectory.length_mm - leaving[0].distance_mm
+        return f"leaves the head {before:.0f} mm before its target; it must stay within it."
+    bone = planned_bone(trajectory, skull)
+    if bone is None:
+        return "does not go through the skull; drilling needs bone."
+    if bone.inner_mm is None:
+        return (
+            "meets a skull without an inner table; make the skull again, or from a CT, so that it "
+            "has one."
+        )
+    return None
+
+
+def _questionable(trajectory: ProcedureTrajectory, meshes: ProcedureMeshes) -> Iterator[str]:
+    length = trajectory.length_mm
+    if length > MAX_LENGTH_MM:
+        yield f"is {length:.0f} mm long; it may be {MAX_LENGTH_MM:g} mm."
+    bone = planned_bone(trajectory, meshes.skull)
+    assert bone is not None, "it is usable"
+    point = trajectory.entry + bone.outer_mm * trajectory.direction
+    angle = skull_angle_deg(meshes.skull, point, trajectory.direction)
+    if angle > MAX_SKULL_ANGLE_DEG:
+        yield (
+            f"meets the skull at {angle:.0f}° to its normal; it may be {MAX_SKULL_ANGLE_DEG:g}°."
+        )
+    for name, distance in distances_to_no_go(trajectory, meshes).items():
+        if distance <= 0.0:
+            yield f"goes through {name}."
+        elif distance < trajectory.safety_mm:
+            yield (
+                f"comes within {distance:.1f} mm of {name}; its safety distance is "
+                f"{trajectory.safety_mm:g} mm."
+            )
+
+
+def _too_near_each_other(procedure: Procedure) -> Iterator[str]:
+    for one, other in combinations(procedure.trajectories, 2):
+        axes = segment_distances_mm(
+            one.entry, one.target, np.array([other.entry]), np.array([other.target])
+        )
+        distance = float(axes[0]) - (one.diameter_mm + other.diameter_mm) / 2
+        if distance < APART_MM:
+            yield (
+                f"{procedure.title}: {one.name} and {other.name} come within "
+                f"{max(distance, 0.0):.1f} mm of each other; they must stay {APART_MM:g} mm apart."
+            )

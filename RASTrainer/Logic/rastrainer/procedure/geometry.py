@@ -1,0 +1,179 @@
+"""Straight instruments: where a line goes through bone, and how near it comes to a structure."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.surface_queries import nearest_on_mesh, normal_at
+
+DIPLOE_MM = 5.0
+"""Gaps in bone up to this length belong to it: the marrow between both tables is dark in a CT."""
+_EDGE = 1e-9
+_SAME_MM = 1e-6
+
+
+class MeshCrossing(NamedTuple):
+    """Where a line goes through a surface: at a distance from its start, in mm, and whether in."""
+
+    distance_mm: float
+    is_entering: bool
+
+
+class BoneAhead(NamedTuple):
+    """Where a line goes through the skull, as distances from its start in mm.
+
+    Attributes:
+        outer_mm: the outer table.
+        inner_mm: the inner table; None where the line does not leave the bone.
+    """
+
+    outer_mm: float
+    inner_mm: float | None
+
+
+def mesh_crossings(
+    mesh: HeadMesh, start: np.ndarray, direction: np.ndarray, length_mm: float
+) -> list[MeshCrossing]:
+    """Return where a line goes through a closed surface, in order.
+
+    The triangles are intersected as by Möller and Trumbore (1997). A line through an edge or a
+    corner crosses once.
+
+    Args:
+        mesh: the surface.
+        start: (3,) float, mm, in the frame of the mesh.
+        direction: (3,) float, unit vector.
+        length_mm: of the line.
+    """
+    centers, radii = mesh.triangle_spheres
+    to_center = centers - start
+    along = to_center @ direction
+    aside = np.einsum("ij,ij->i", to_center, to_center) - along**2
+    near = np.flatnonzero(aside <= (radii + _SAME_MM) ** 2)
+    corner, b, c = (mesh.vertices[mesh.triangles[near, k]] for k in range(3))
+    ab, ac, to_start = b - corner, c - corner, start - corner
+    across = np.cross(np.broadcast_to(direction, ac.shape), ac)
+    area = np.einsum("ij,ij->i", ab, across)
+    turned = np.cross(to_start, ab)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = np.einsum("ij,ij->i", to_start, across) / area
+        v = turned @ direction / area
+        distance = np.einsum("ij,ij->i", ac, turned) / area
+        is_hit = (u >= -_EDGE) & (v >= -_EDGE) & (u + v <= 1.0 + _EDGE)
+        is_hit &= (distance >= 0.0) & (distance <= length_mm)
+    found: list[MeshCrossing] = []
+    hits = np.flatnonzero(is_hit)
+    for hit in hits[np.argsort(distance[hits], kind="stable")]:
+        # A triangle turned against the line has a positive determinant.
+        crossing = MeshCrossing(float(distance[hit]), bool(area[hit] > 0.0))
+        if not found or crossing.distance_mm - found[-1].distance_mm > _SAME_MM:
+            found.append(crossing)
+    return found
+
+
+def bone_ahead(
+    skull: HeadMesh, start: np.ndarray, direction: np.ndarray, length_mm: float
+) -> BoneAhead | None:
+    """Return where a line first goes through bone, or None if it does not.
+
+    Args:
+        skull: closed surface.
+        start: (3,) float, mm, outside of the skull, in its frame.
+        direction: (3,) float, unit vector into the head.
+        length_mm: how far to look.
+    """
+    outer = inner = None
+    for distance, is_entering in mesh_crossings(skull, start, direction, length_mm):
+        if outer is None:
+            outer = distance if is_entering else None
+        elif not is_entering:
+            inner = distance
+        elif inner is not None and distance - inner > DIPLOE_MM:
+            break
+    return None if outer is None else BoneAhead(outer, inner)
+
+
+def angle_deg(a: np.ndarray, b: np.ndarray) -> float:
+    """Return the angle between two directions (3,), in degrees.
+
+    By the arc tangent, which is exact for small angles, too (Kahan 2006).
+    """
+    return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b)), a @ b)))
+
+
+def skull_angle_deg(skull: HeadMesh, point: np.ndarray, direction: np.ndarray) -> float:
+    """Return the angle between a direction into the head and the skull's inward normal, degrees.
+
+    Args:
+        skull: closed surface.
+        point: (3,) float, mm, where the line enters it.
+        direction: (3,) float, unit vector.
+    """
+    return angle_deg(-normal_at(skull, nearest_on_mesh(skull, point)), direction)
+
+
+def is_inside(mesh: HeadMesh, point: np.ndarray) -> bool:
+    """Return whether a point (3,), in mm, is within a closed surface."""
+    far = float(np.linalg.norm(mesh.vertices - point, axis=1).max()) + 1.0
+    # No direction of a symmetric mesh.
+    direction = np.array([0.31, 0.52, 0.79])
+    crossings = mesh_crossings(mesh, point, direction / np.linalg.norm(direction), far)
+    return bool(crossings) and not crossings[0].is_entering
+
+
+def axis_distance_mm(mesh: HeadMesh, start: np.ndarray, end: np.ndarray) -> float:
+    """Return the distance of a straight segment from a closed body, 0 where they meet.
+
+    Unless they meet, the shortest way to a triangle begins at an end of the segment, or ends on a
+    side of the triangle.
+
+    Args:
+        mesh: surface of the body.
+        start: (3,) float, mm, in the frame of the mesh.
+        end: (3,) float, mm, another point.
+    """
+    length = float(np.linalg.norm(end - start))
+    if mesh_crossings(mesh, start, (end - start) / length, length) or is_inside(mesh, start):
+        return 0.0
+    least = min(nearest_on_mesh(mesh, point).distance for point in (start, end))
+    centers, radii = mesh.triangle_spheres
+    share = np.clip((centers - start) @ (end - start) / length**2, 0.0, 1.0)
+    to_segment = np.linalg.norm(start + share[:, None] * (end - start) - centers, axis=1) - radii
+    near = mesh.vertices[mesh.triangles[to_segment <= least]]
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        if len(near):
+            sides = segment_distances_mm(start, end, near[:, first], near[:, second])
+            least = min(least, float(sides.min()))
+    return least
+
+
+def segment_distances_mm(
+    start: np.ndarray, end: np.ndarray, starts: np.ndarray, ends: np.ndarray
+) -> np.ndarray:
+    """Return the distances between one segment and others, (n,) float, mm.
+
+    The closest points of both lines, clamped to the segments (Ericson 2005, Real-Time Collision
+    Detection, 5.1.9).
+
+    Args:
+        start: (3,) float, mm.
+        end: (3,) float, mm, another point.
+        starts: (n, 3) float, mm.
+        ends: (n, 3) float, mm; a segment may be a point.
+    """
+    along, others, offset = end - start, ends - starts, start - starts
+    aa = float(along @ along)
+    bb = np.maximum(np.einsum("ij,ij->i", others, others), 1e-30)
+    ab, ao = others @ along, offset @ along
+    bo = np.einsum("ij,ij->i", others, offset)
+    area = aa * bb - ab**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s = np.where(area > 1e-12 * aa * bb, (ab * bo - ao * bb) / area, 0.0).clip(0.0, 1.0)
+    t = (ab * s + bo) / bb
+    s = np.where(t < 0.0, -ao / aa, np.where(t > 1.0, (ab - ao) / aa, s)).clip(0.0, 1.0)
+    t = t.clip(0.0, 1.0)
+    between = offset + s[:, None] * along - t[:, None] * others
+    return np.linalg.norm(between, axis=1)

@@ -1,0 +1,85 @@
+"""Check the procedures of a scenario: their plans, and the reach of the guide along each line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.procedure.checks import check_procedure
+from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.collision.touch_planner import PlanReach
+
+STAND_OFFS_M = (0.01, 0.03, 0.05, 0.08)
+"""Of the guide's tip from the entry: where it may be locked, and the way there."""
+POSES_TRIED = 12
+
+
+class GuideReach:
+    """Tells where the robot can hold the guide."""
+
+    def __init__(self, planning: PlanningSetup) -> None:
+        """`planning` has the robot and the head; its collision takes on the poses."""
+        self._collision = planning.collision
+        self._reach = PlanReach(planning.setup.robot, planning.kinematics, planning.collision)
+
+    def is_held(self, trajectory: ProcedureTrajectory, poses: Iterable[np.ndarray]) -> bool:
+        """Return whether the guide can be held along a line before the head in all its poses.
+
+        Args:
+            trajectory: planned, RAS mm.
+            poses: HeadToWorld, (4, 4) float, mm, one after the other.
+        """
+        return all(self._is_held(trajectory, pose) for pose in poses)
+
+    def _is_held(self, trajectory: ProcedureTrajectory, head_to_world: np.ndarray) -> bool:
+        pose = np.array(head_to_world, dtype=float)
+        pose[:3, 3] /= MM_PER_M
+        self._collision.set_head_pose(pose)
+        entry = transforms.apply(pose, trajectory.entry / MM_PER_M)
+        direction = pose[:3, :3] @ trajectory.direction
+        return self._reach.judge_guide(entry.tolist(), direction.tolist(), STAND_OFFS_M).reachable
+
+
+def check_procedures(planning: PlanningSetup) -> list[str]:
+    """Return a sentence for each error in the procedures of a scenario.
+
+    Reach is checked in the nominal pose of the head and in those of some seeds.
+    """
+    wrong = []
+    for procedure in planning.scenario.procedures:
+        try:
+            wrong += _check(planning, procedure)
+        except InputError as error:
+            wrong.append(f"{procedure.title}: {error}")
+    return wrong
+
+
+def _check(planning: PlanningSetup, procedure: Procedure) -> list[str]:
+    skull = planning.scenario.skull_mesh
+    assert skull is not None, "a scenario with procedures has a skull"
+    wrong = check_procedure(procedure, planning.mesh, read_procedure_meshes(procedure, skull))
+    return wrong or unreachable_lines(planning, procedure, range(POSES_TRIED))
+
+
+def unreachable_lines(planning: PlanningSetup, procedure: Procedure, seeds: range) -> list[str]:
+    """Return a sentence for each line of a procedure on which the guide cannot be held."""
+    reach, wrong = GuideReach(planning), []
+    nominal, *others = planning.poses(seeds)
+    for trajectory in procedure.trajectories:
+        where = ""
+        if not reach.is_held(trajectory, [nominal]):
+            where = "where the head is"
+        elif not reach.is_held(trajectory, others):
+            where = "in every trial"
+        if where:
+            wrong.append(
+                f"{procedure.title}: the robot cannot hold the guide on the line of "
+                f"{trajectory.name} {where}; choose another entry, or move the head."
+            )
+    return wrong

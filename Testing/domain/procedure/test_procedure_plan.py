@@ -1,0 +1,215 @@
+"""Procedures in a scenario's files: what is written is read again, and what is wrong is said."""
+
+import json
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import write_head_mesh
+from rastrainer.procedure.meshes import MAX_NO_GO_TRIANGLES, read_procedure_meshes
+from rastrainer.procedure.plan import ProcedureKind, procedure_json
+from rastrainer.scenario.package import pack, unpack
+from rastrainer.scenario.scenario import load_scenario
+from Testing.domain.procedure.made_up_procedure import (
+    made_up_procedure,
+    shell,
+    trajectory,
+    vessel,
+    write_planned,
+)
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return write_planned(tmp_path / "planned")
+
+
+def changed(folder, change):
+    path = folder / "scenario.json"
+    values = json.loads(path.read_text())
+    change(values)
+    path.write_text(json.dumps(values))
+    return folder
+
+
+def test_a_written_procedure_is_read_again(folder):
+    scenario = load_scenario(folder)
+    (procedure,) = scenario.procedures
+    assert scenario.procedure("dbs-1") is procedure
+    assert procedure.kind is ProcedureKind.DBS
+    assert procedure_json(procedure) == procedure_json(made_up_procedure())
+    left = procedure.trajectory("Left")
+    assert left.length_mm == 70.0
+    assert left.direction.tolist() == [0.0, 0.0, -1.0]
+    assert not left.entry.flags.writeable
+    meshes = read_procedure_meshes(procedure, scenario.skull_mesh)
+    assert len(meshes.skull.triangles) == len(shell().triangles)
+    assert np.allclose(meshes.no_go["Vessel"].vertices, vessel().vertices, atol=1e-4)
+
+
+def test_a_scenario_without_procedures_has_none(folder):
+    scenario = load_scenario(changed(folder, lambda values: values.pop("procedures")))
+    assert scenario.procedures == ()
+    with pytest.raises(InputError, match="has no such procedure; it has none"):
+        scenario.procedure("dbs-1")
+
+
+def test_a_missing_trajectory_is_named_with_those_that_exist():
+    with pytest.raises(InputError, match="no trajectory 'Middle'; it has Left, Right"):
+        made_up_procedure().trajectory("Middle")
+
+
+def test_a_package_keeps_the_procedures(folder, tmp_path):
+    package = pack(folder, tmp_path / "planned.zip")
+    unpacked = unpack(package, tmp_path / "library")
+    before, after = load_scenario(folder), load_scenario(unpacked)
+    assert procedure_json(after.procedures[0]) == procedure_json(before.procedures[0])
+    assert (unpacked / "no-go/vessel.ply").read_bytes() == (
+        folder / "no-go/vessel.ply"
+    ).read_bytes()
+    again = pack(unpacked, tmp_path / "again.zip")
+    assert again.read_bytes() == package.read_bytes()
+
+
+def set_in(*path_and_value):
+    *path, value = path_and_value
+
+    def change(values):
+        inner = values["procedures"]
+        for step in path[:-1]:
+            inner = inner[step]
+        inner[path[-1]] = value
+
+    return change
+
+
+def same_name(values):
+    values["procedures"].append(dict(values["procedures"][0]))
+
+
+def same_trajectory(values):
+    lines = values["procedures"][0]["trajectories"]
+    lines.append(dict(lines[0]))
+
+
+def many_lines(values):
+    line = values["procedures"][0]["trajectories"][0]
+    values["procedures"][0]["trajectories"] = [{**line, "name": f"{n}"} for n in range(21)]
+
+
+def many_structures(values):
+    one = values["procedures"][0]["noGo"][0]
+    values["procedures"][0]["noGo"] = [{**one, "name": f"{n}"} for n in range(11)]
+
+
+def many_files(values):
+    one = values["procedures"][0]
+    values["procedures"] = [
+        {
+            **one,
+            "name": f"p{row}",
+            "noGo": [{"name": f"{n}", "file": f"no-go/s{row}-{n}.ply"} for n in range(8)],
+        }
+        for row in range(4)
+    ]
+
+
+LINE = (0, "trajectories", 0)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda values: values.pop("skull"), "skull must be given, because .* needs a skull"),
+        (set_in(0, "name", "Not Good"), r"procedures\[0\].name must be lower-case"),
+        (set_in(0, "kind", "heart"), "kind must be one of biopsy, dbs, seeg"),
+        (set_in(0, "title", ""), "title must be printable text"),
+        (set_in(0, "trajectories", []), "trajectories must be a list of 1 to 20 objects"),
+        (many_lines, "trajectories must be a list of 1 to 20 objects"),
+        (many_structures, "noGo must be a list of 0 to 10 objects"),
+        (many_files, "at most 30 files of no-go meshes"),
+        (same_name, "procedures must be a list in which each name occurs once"),
+        (same_trajectory, "trajectories must be a list in which each name occurs once"),
+        (set_in(*LINE, "entryRas", [0, 0, 1e9]), "entryRas must be a list of 3 numbers within"),
+        (set_in(*LINE, "entryRas", [0.0, 0.0, 21.0]), "at least 10 mm from targetRas"),
+        (set_in(*LINE, "diameterMm", 0.0), "diameterMm must be a number from 0.5 to 10"),
+        (set_in(*LINE, "safetyMm", -1.0), "safetyMm must be a number from 0 to 20"),
+        (set_in(0, "noGo", 0, "file", "../vessel.ply"), "inside the scenario's folder"),
+        (set_in(0, "noGo", 0, "file", "vessel.ply"), "must be no-go/NAME.ply"),
+        (set_in(0, "noGo", 0, "file", "no-go/Vessel 1.ply"), "must be no-go/NAME.ply"),
+        (set_in(0, "checkpoints", 0, "positionRas", None), "positionRas must be a list of 3"),
+    ],
+)
+def test_an_invalid_procedure_is_refused_with_one_sentence(folder, change, sentence):
+    changed(folder, change)
+    with pytest.raises(InputError, match=sentence) as caught:
+        load_scenario(folder)
+    assert str(folder / "scenario.json") in str(caught.value)
+
+
+def meshes_of(folder):
+    scenario = load_scenario(folder)
+    return read_procedure_meshes(scenario.procedures[0], scenario.skull_mesh)
+
+
+def test_a_missing_no_go_mesh_is_named(folder):
+    (folder / "no-go/vessel.ply").unlink()
+    with pytest.raises(InputError, match=r"The mesh .*vessel.ply does not exist"):
+        meshes_of(folder)
+
+
+def test_an_open_no_go_mesh_is_refused(folder):
+    mesh = vessel()
+    write_head_mesh(folder / "no-go/vessel.ply", replace(mesh, triangles=mesh.triangles[1:]))
+    with pytest.raises(InputError, match=r"no-go structure .*vessel.ply is not closed"):
+        meshes_of(folder)
+
+
+def test_a_huge_no_go_mesh_is_refused(folder):
+    mesh = vessel()
+    copies = MAX_NO_GO_TRIANGLES // len(mesh.triangles) + 1
+    write_head_mesh(
+        folder / "no-go/vessel.ply", replace(mesh, triangles=np.tile(mesh.triangles, (copies, 1)))
+    )
+    with pytest.raises(InputError, match=rf"triangles; it may have {MAX_NO_GO_TRIANGLES}"):
+        meshes_of(folder)
+
+
+def test_an_open_skull_is_refused(folder):
+    mesh = shell()
+    write_head_mesh(folder / "skull.ply", replace(mesh, triangles=mesh.triangles[1:]))
+    with pytest.raises(InputError, match=r"The skull .*skull.ply is not closed"):
+        meshes_of(folder)
+
+
+def hash_of(folder):
+    scenario = load_scenario(folder)
+    return scenario.procedures[0].sha256(scenario.skull_mesh)
+
+
+def test_the_hash_of_a_procedure_covers_what_a_trial_depends_on(folder):
+    before = hash_of(folder)
+    changed(folder, set_in(0, "title", "Another title"))
+    changed(folder, set_in(0, "source", "Another source"))
+    assert hash_of(folder) == before
+    write_head_mesh(folder / "no-go/vessel.ply", vessel(radius=6.0))
+    with_vessel = hash_of(folder)
+    write_head_mesh(folder / "skull.ply", shell(84.0))
+    with_skull = hash_of(folder)
+    changed(folder, set_in(0, "trajectories", 0, "targetRas", [0.0, 0.0, 21.0]))
+    with_target = hash_of(folder)
+    assert len({before, with_vessel, with_skull, with_target}) == 4
+
+
+def test_the_hash_of_a_procedure_is_the_same_after_moving_its_folder(folder, tmp_path):
+    before = hash_of(folder)
+    assert hash_of(shutil.move(folder, tmp_path / "elsewhere")) == before
+
+
+def test_coordinates_are_those_of_the_file_to_a_ten_thousandth(tmp_path):
+    third = trajectory(entry=(1 / 3, 0.0, 89.99))
+    folder = write_planned(tmp_path / "third", made_up_procedure(third))
+    assert load_scenario(folder).procedures[0].trajectories[0].entry[0] == 0.3333

@@ -1,0 +1,377 @@
+"""Plan the three procedures of the default scenario; write them, and README's table.
+
+    python assets/scenarios/make_procedures.py
+
+Takes about a minute. The same head, skull, robot and program give the same plan. The targets are
+numbers from publications; nothing else of them is in the repository. The no-go structures are
+schematic tubes along a course that is written down here: they are no vessels of this person.
+"""
+
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+
+from rastrainer.files.reading import read_json
+from rastrainer.files.writing import write_text
+from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.procedure.checks import distances_to_no_go, planned_bone
+from rastrainer.procedure.geometry import (
+    axis_distance_mm,
+    mesh_crossings,
+    segment_distances_mm,
+    skull_angle_deg,
+)
+from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import (
+    Checkpoint,
+    NoGoStructure,
+    Procedure,
+    ProcedureKind,
+    ProcedureTrajectory,
+    procedure_json,
+)
+from rastrainer.scenario.scenario import FILE_NAME, load_scenario
+from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
+from rastrainer_simulator.authoring.procedure_check import GuideReach
+from rastrainer_simulator.authoring.task_set import smooth_places
+
+FOLDER = Path(__file__).parent / "colin27"
+README = Path(__file__).parent / "README.md"
+TABLE_START, TABLE_END = "<!-- table by make_procedures.py -->\n", "<!-- end of table -->\n"
+
+HEAD_SPACE = (
+    "The MRI is in the space of the MNI (stereotaxic, not warped), so the coordinates are only as "
+    "right for this person as such a space allows: they are for training, not anatomy."
+)
+AAL = (
+    "Targets: centroids of regions of the atlas AAL (Tzourio-Mazoyer et al. 2002, "
+    "doi:10.1006/nimg.2001.0978), which was drawn on this very MRI."
+)
+STN = (
+    "Targets: mean position of the active contacts in deep brain stimulation of the subthalamic "
+    "nucleus for Parkinson's disease, (±12.58, −13.41, −5.87) mm in MNI space: Caire et al. 2013, "
+    "doi:10.1007/s00701-013-1782-1, converted from AC-PC coordinates by Horn et al. 2017, "
+    "doi:10.1016/j.neuroimage.2017.02.004."
+)
+SCHEMATIC = (
+    "The no-go structures are schematic tubes along a stated course (make_procedures.py), no "
+    "vessels or ventricles of this person. Entries: proposed so that the drill meets the skull "
+    "steeply and the robot reaches along the line."
+)
+
+
+@dataclass(frozen=True)
+class WantedTrajectory:
+    """A trajectory whose entry is to be found.
+
+    Attributes:
+        name: for people.
+        target: R, A, S in mm.
+        toward: direction from the target to the entry that is preferred, R, A, S.
+    """
+
+    name: str
+    target: tuple[float, float, float]
+    toward: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Tube:
+    """A schematic structure: a course through points (R, A, S) and a radius, mm."""
+
+    name: str
+    file: str
+    radius: float
+    course: tuple[tuple[float, float, float], ...]
+
+
+RIGHT_VENTRICLE = (
+    (9, 30, 0),
+    (12, 20, 12),
+    (12, 5, 20),
+    (14, -12, 23),
+    (18, -30, 21),
+    (24, -42, 12),
+)
+TUBES = {
+    "right-ventricle": Tube(
+        "Right lateral ventricle (schematic)", "right-ventricle", 4.0, RIGHT_VENTRICLE
+    ),
+    "left-ventricle": Tube(
+        "Left lateral ventricle (schematic)",
+        "left-ventricle",
+        4.0,
+        tuple((-r, a, s) for r, a, s in RIGHT_VENTRICLE),
+    ),
+    "right-mca": Tube(
+        "Right middle cerebral artery (schematic)",
+        "right-mca",
+        1.5,
+        ((9, 1, -14), (22, 3, -17), (35, 4, -15), (44, 8, -5), (46, 5, 6), (47, -8, 14)),
+    ),
+    "right-pca": Tube(
+        "Right posterior cerebral artery (schematic)",
+        "right-pca",
+        1.3,
+        ((3, -20, -12), (13, -23, -9), (18, -34, -5), (15, -48, 0), (11, -62, 3)),
+    ),
+}
+SINUS = Tube("Superior sagittal sinus (schematic)", "sagittal-sinus", 4.0, ())
+"""Its course follows the inner table in the midline."""
+
+DIRECTIONS = {
+    "Right forehead": (0.45, 1.0, 0.55),
+    "Left forehead": (-0.45, 1.0, 0.55),
+    "Vertex": (0.0, -0.1, 1.0),
+    "Right parietal": (0.8, -0.45, 0.7),
+    "Left parietal": (-0.8, -0.45, 0.7),
+    "Occiput": (0.0, -1.0, 0.25),
+}
+"""In which checkpoints are looked for, from the head's center."""
+
+CANDIDATES = 4000
+STEEPEST_COST, AWAY_COST, LENGTH_COST = 1.0, 1.0, 0.15
+POSES = 12
+REACH_MM = 300.0
+APART_MM = 3.0
+
+
+class Planner:
+    """Finds entries on the head of the scenario."""
+
+    def __init__(self) -> None:
+        self.scenario = load_scenario(FOLDER)
+        self.head = read_head_mesh(self.scenario.head_mesh)
+        self.skull = read_head_mesh(FOLDER / "skull.ply")
+        self.planning = PlanningSetup(self.scenario, self.head)
+        self.reach = GuideReach(self.planning)
+        self.poses = self.planning.poses(range(POSES), WIDER)
+
+    def trajectories(
+        self,
+        wanted: list[WantedTrajectory],
+        no_go: dict[str, HeadMesh],
+        diameter_mm: float,
+        safety_mm: float,
+    ) -> tuple[ProcedureTrajectory, ...]:
+        """Return the trajectories with the best entries that are free and within reach."""
+        found: list[ProcedureTrajectory] = []
+        for one in wanted:
+            for trajectory in self._by_cost(one, diameter_mm, safety_mm):
+                if self._is_free(trajectory, no_go, found) and self._is_reached(trajectory):
+                    found.append(trajectory)
+                    break
+            else:
+                raise SystemExit(f"{one.name}: no entry was found.")
+        return tuple(found)
+
+    def _by_cost(
+        self, wanted: WantedTrajectory, diameter_mm: float, safety_mm: float
+    ) -> Iterator[ProcedureTrajectory]:
+        """Yield trajectories: steep to the skull, near the preferred direction, and short."""
+        target = np.array(wanted.target)
+        toward = np.array(wanted.toward) / np.linalg.norm(wanted.toward)
+        out = np.random.default_rng(27).normal(size=(CANDIDATES, 3))
+        out /= np.linalg.norm(out, axis=1)[:, None]
+        costs = []
+        for direction in out[out @ toward > np.cos(np.radians(25.0))]:
+            crossings = mesh_crossings(self.head, target, direction, REACH_MM)
+            if len(crossings) != 1:
+                continue
+            entry = (target + crossings[0].distance_mm * direction).round(2)
+            one = ProcedureTrajectory(wanted.name, entry, target, diameter_mm, safety_mm)
+            bone = planned_bone(one, self.skull)
+            if bone is None or bone.inner_mm is None:
+                continue
+            away_deg = np.degrees(np.arccos(np.clip(direction @ toward, -1.0, 1.0)))
+            cost = (
+                STEEPEST_COST
+                * skull_angle_deg(self.skull, entry + bone.outer_mm * one.direction, one.direction)
+                + AWAY_COST * away_deg
+                + LENGTH_COST * crossings[0].distance_mm
+            )
+            costs.append((float(cost), tuple(entry.tolist())))
+        for _cost, entry in sorted(costs):
+            yield ProcedureTrajectory(wanted.name, np.array(entry), target, diameter_mm, safety_mm)
+
+    def _is_free(
+        self,
+        trajectory: ProcedureTrajectory,
+        no_go: dict[str, HeadMesh],
+        others: list[ProcedureTrajectory],
+    ) -> bool:
+        radius, entry, target = trajectory.diameter_mm / 2, trajectory.entry, trajectory.target
+        is_clear = all(
+            axis_distance_mm(mesh, entry, target) - radius > trajectory.safety_mm + 0.5
+            for mesh in no_go.values()
+        )
+        return is_clear and all(
+            segment_distances_mm(entry, target, other.entry[None], other.target[None])[0]
+            > 2 * radius + APART_MM
+            for other in others
+        )
+
+    def _is_reached(self, trajectory: ProcedureTrajectory) -> bool:
+        return self.reach.is_held(trajectory, self.poses)
+
+    def checkpoints(self) -> tuple[Checkpoint, ...]:
+        """Return places of smooth skin that the robot can touch in every pose of the head."""
+        vertices = smooth_places(self.head, 8.0)
+        places, normals = self.head.vertices[vertices], self.head.vertex_normals[vertices]
+        can_be = self.planning.touchable(places, normals, self.poses)
+        places = places[can_be]
+        out = places - self.scenario.target_position
+        out /= np.linalg.norm(out, axis=1)[:, None]
+        found = []
+        for name, direction in DIRECTIONS.items():
+            best = (out @ (np.array(direction) / np.linalg.norm(direction))).argmax()
+            found.append(Checkpoint(name, places[best].round(4)))
+        return tuple(found)
+
+    def sinus(self) -> Tube:
+        """Return the superior sagittal sinus: along the inner table in the midline."""
+        center = np.array([0.0, -17.0, 20.0])
+        course = []
+        for degrees in np.arange(35.0, 196.0, 10.0):
+            out = np.array([0.0, np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
+            inner = mesh_crossings(self.skull, center, out, REACH_MM)[0].distance_mm
+            course.append(tuple((center + (inner - SINUS.radius) * out).round(2).tolist()))
+        return Tube(SINUS.name, SINUS.file, SINUS.radius, tuple(course))
+
+
+def tube_mesh(tube: Tube) -> HeadMesh:
+    """Return the closed surface of a tube: cylinders between balls, joined."""
+    parts = []
+    for start, end in pairwise(tube.course):
+        parts.append(trimesh.creation.cylinder(tube.radius, segment=(start, end), sections=16))
+    for point in tube.course:
+        ball = trimesh.creation.icosphere(2, tube.radius)
+        parts.append(ball.apply_translation(point))
+    joined = trimesh.boolean.union(parts, engine="manifold")
+    return HeadMesh(np.array(joined.vertices), np.array(joined.faces, dtype=np.int32))
+
+
+def planned(planner: Planner) -> tuple[list[Procedure], dict[str, HeadMesh]]:
+    """Return the three procedures, and the meshes of their no-go structures by file name."""
+    tubes = {**TUBES, SINUS.file: planner.sinus()}
+    meshes = {name: tube_mesh(tube) for name, tube in tubes.items()}
+
+    def no_go(*names: str) -> tuple[dict[str, HeadMesh], tuple[NoGoStructure, ...]]:
+        structures = tuple(
+            NoGoStructure(tubes[name].name, FOLDER / "no-go" / f"{name}.ply") for name in names
+        )
+        return {name: meshes[name] for name in names}, structures
+
+    checkpoints = planner.checkpoints()
+    procedures = []
+    for name, title, kind, source, wanted, structures, diameter, safety in PLANS:
+        obstacles, named = no_go(*structures)
+        trajectories = planner.trajectories(wanted, obstacles, diameter, safety)
+        text = f"{source} {SCHEMATIC} {HEAD_SPACE}"
+        procedures.append(Procedure(name, title, kind, text, trajectories, named, checkpoints))
+    return procedures, {f"{name}.ply": mesh for name, mesh in meshes.items()}
+
+
+PLANS = (
+    (
+        "biopsy",
+        "Biopsy of a frontal lesion",
+        ProcedureKind.BIOPSY,
+        "Target: the center of a made-up lesion in the right frontal white matter.",
+        [WantedTrajectory("Right frontal lesion", (28.0, 30.0, 24.0), (0.4, 0.35, 0.8))],
+        (SINUS.file, "right-ventricle"),
+        2.1,
+        3.0,
+    ),
+    (
+        "dbs",
+        "Deep brain stimulation of both subthalamic nuclei",
+        ProcedureKind.DBS,
+        STN,
+        [
+            WantedTrajectory(
+                "Left subthalamic nucleus", (-12.58, -13.41, -5.87), (-0.3, 0.5, 0.85)
+            ),
+            WantedTrajectory("Right subthalamic nucleus", (12.58, -13.41, -5.87), (0.3, 0.5, 0.85)),
+        ],
+        (SINUS.file, "left-ventricle", "right-ventricle"),
+        1.27,
+        2.0,
+    ),
+    (
+        "seeg",
+        "Stereo-EEG of the right hemisphere",
+        ProcedureKind.SEEG,
+        AAL,
+        [
+            WantedTrajectory("Right hippocampus", (28.23, -19.78, -10.33), (0.35, -0.85, 0.35)),
+            WantedTrajectory("Right insula", (38.02, 6.25, 2.08), (0.15, 0.6, 0.8)),
+            WantedTrajectory("Right anterior cingulate", (7.46, 37.01, 15.84), (0.6, 0.5, 0.6)),
+            WantedTrajectory("Right middle cingulate", (7.02, -8.83, 39.79), (0.6, 0.2, 0.8)),
+            WantedTrajectory("Right posterior cingulate", (6.44, -41.81, 21.87), (0.5, -0.6, 0.6)),
+        ],
+        (SINUS.file, "right-mca", "right-pca"),
+        0.8,
+        3.0,
+    ),
+)
+
+
+def main() -> int:
+    """Write the procedures into the scenario."""
+    planner = Planner()
+    procedures, meshes = planned(planner)
+    (FOLDER / "no-go").mkdir(exist_ok=True)
+    for name, mesh in meshes.items():
+        write_head_mesh(FOLDER / "no-go" / name, mesh)
+    write_procedures([procedure_json(procedure) for procedure in procedures])
+    table = table_of(procedures)
+    before, _, rest = README.read_text(encoding="utf-8").partition(TABLE_START)
+    write_text(README, before + TABLE_START + table + TABLE_END + rest.partition(TABLE_END)[2])
+    print(table)
+    return 0
+
+
+def write_procedures(entries: list[dict[str, Any]]) -> None:
+    """Put skull and procedures into `scenario.json`; everything else stays as it is."""
+    content = read_json(FOLDER / FILE_NAME, 2**20)
+    content["skull"] = {"file": "skull.ply", "kind": "approximation"}
+    content["procedures"] = entries
+    write_text(FOLDER / FILE_NAME, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+
+
+def table_of(procedures: list[Procedure]) -> str:
+    """Return the numbers of the trajectories as a table in Markdown."""
+    rows = [
+        "| procedure | trajectory | target, R A S mm | length, mm | angle to the skull, ° | "
+        "nearest no-go structure, mm |",
+        "|---|---|---|---|---|---|",
+    ]
+    for procedure in procedures:
+        skull = FOLDER / "skull.ply"
+        meshes = read_procedure_meshes(procedure, skull)
+        for one in procedure.trajectories:
+            bone = planned_bone(one, meshes.skull)
+            assert bone is not None
+            point = one.entry + bone.outer_mm * one.direction
+            distance, name = min(
+                (distance, name) for name, distance in distances_to_no_go(one, meshes).items()
+            )
+            target = ", ".join(f"{value:g}" for value in one.target)
+            rows.append(
+                f"| {procedure.title} | {one.name} | {target} | {one.length_mm:.0f} | "
+                f"{skull_angle_deg(meshes.skull, point, one.direction):.0f} | "
+                f"{distance:.1f}, {name} |"
+            )
+    return "\n".join(rows) + "\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
