@@ -29,10 +29,10 @@ from rastrainer.registration.registration import Registration
 
 CONFIDENCE = 0.95
 COMMON_BIAS_SD_MM = 0.25
-"""Of an offset that all touches share, on each axis; 0.43 mm RMS in space. An assumption, not
-measured: a tip is calibrated to a few tenths of a mm by pivoting (methods: Yaniv 2015), and an
-iiwa 7 R800 repeats its poses to ±0.1 mm (its data sheet). Aiming beside every point, or hovering
-above it, is a larger one."""
+"""Of an offset that all touches share, on each axis; 0.43 mm RMS in space. Our own assumption, not
+measured: pivoting located the tip of an optically tracked tool with a mean precision of 0.25 mm
+(Yaniv 2015, "Which pivot calibration?", SPIE Medical Imaging). Aiming beside every point, or
+hovering above it, is a larger one."""
 INTERVAL_NOTE = (
     "The 95 % interval of the expected TRE holds only where the errors of the points are "
     "independent, unbiased and alike. Of an offset that all touches share it allows for a standard "
