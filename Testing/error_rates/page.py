@@ -28,6 +28,7 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "studies": (modes.STUDY_HEADER, modes.studies),
     "effect sizes": (modes.EFFECT_HEADER, modes.coverage),
     "recovery": (recovery.HEADER, recovery.parameters),
+    "recovery intervals": (recovery.COVERAGE_HEADER, recovery.coverage),
     "throughput": (cheats.THROUGHPUT_HEADER, cheats.offsets),
     "aborted trials": (cheats.ABORTED_HEADER, cheats.competence),
     "target errors": (target_errors.HEADER, target_errors.intervals),

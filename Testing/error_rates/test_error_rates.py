@@ -21,7 +21,13 @@ from Testing.error_rates.page import PAGE, SETS, TABLES, printed, with_table
 from Testing.error_rates.played import SEEDS, SLOW, TASKS, USUAL, all_keys, play, stored
 from Testing.simulator.authoring import planned_heads
 
-FEW = {"several groups": 40, "target errors": 50, "learning": 100}
+FEW = {
+    "several groups": 40,
+    "target errors": 50,
+    "learning": 100,
+    "recovery": 20,
+    "recovery intervals": 20,
+}
 """Fewer data sets for costly tables."""
 
 

@@ -3,8 +3,11 @@
 The logarithm of a positive outcome is regressed on ln(n) of the trial's number n over all modes, on
 the tasks, and on one level for each trainee in each mode (least squares). The scatter of these
 levels, less what chance adds to it, is parted into trainees and trainee × mode by the analysis of
-variance with random effects (Searle, Casella and McCulloch 1992). No estimate is biased;
-a variance may come out below 0 where it is about 0.
+variance with random effects (Searle, Casella and McCulloch 1992). No estimate is biased: the
+coefficients are linear and the variances quadratic in the logarithms, with the parameters as their
+expected values. A variance may come out below 0 where it is about 0.
+
+The intervals take the scatter of levels and trials as normal and all trainees as learning alike.
 """
 
 from __future__ import annotations
@@ -12,6 +15,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+
+from rastrainer.statistics.estimates import (
+    Estimate,
+    MeanSquare,
+    coefficient,
+    difference,
+    variance,
+)
 
 MIN_TRAINEES = 4
 
@@ -37,13 +48,12 @@ class Trials:
 
 @dataclass(frozen=True)
 class Variation:
-    """What the logarithm of one outcome varies by.
+    """What the logarithm of one outcome varies by, with 95 % intervals.
 
     Attributes:
         learning: b; the n-th trial has n^−b of the first one's value.
-        learning_error: Standard error of b.
         lapse: What a touch taken back adds to the logarithm; None where there was none.
-        modes: (m,) float, what each mode adds to the logarithm against the first mode.
+        modes: What each mode adds to the logarithm against the first mode, from the second on.
         trainee_variance: Between trainees, over the modes.
         interaction_variance: Between trainees × modes.
         trial_variance: Between trials of a trainee in a mode.
@@ -51,13 +61,12 @@ class Variation:
         residuals: (n,) float, of the trials.
     """
 
-    learning: float
-    learning_error: float
-    lapse: float | None
-    modes: np.ndarray
-    trainee_variance: float
-    interaction_variance: float
-    trial_variance: float
+    learning: Estimate
+    lapse: Estimate | None
+    modes: tuple[Estimate, ...]
+    trainee_variance: Estimate
+    interaction_variance: Estimate
+    trial_variance: Estimate
     dof: int
     residuals: np.ndarray
 
@@ -86,28 +95,28 @@ def fit_variation(trials: Trials, values: np.ndarray) -> Variation | None:
     inverse = np.linalg.inv(design.T @ design)
     fitted = inverse @ (design.T @ y)
     residuals = y - design @ fitted
-    variance = float(residuals @ residuals) / dof
-    count = trainees * modes
-    of_trainees, of_both = _components(
-        fitted[:count].reshape(trainees, modes), variance * inverse[:count, :count]
-    )
+    chance = MeanSquare(float(residuals @ residuals) / dof, dof)
     place = design.shape[1] - 1 - has_lapses
-    levels = fitted[:count].reshape(trainees, modes).mean(axis=0)
+    learning, lapse = (
+        coefficient(float(fitted[at]), float(np.sqrt(chance.value * inverse[at, at])), dof)
+        for at in (place, -1)
+    )
+    count = trainees * modes
+    levels = _Levels(fitted[:count].reshape(trainees, modes), inverse[:count, :count], chance)
     return Variation(
-        learning=-float(fitted[place]),
-        learning_error=float(np.sqrt(variance * inverse[place, place])),
-        lapse=float(fitted[-1]) if has_lapses else None,
-        modes=levels - levels[0],
-        trainee_variance=of_trainees,
-        interaction_variance=of_both,
-        trial_variance=variance,
+        learning=-learning,
+        lapse=lapse if has_lapses else None,
+        modes=tuple(levels.of_mode(mode) for mode in range(1, modes)),
+        trainee_variance=levels.trainee_variance(),
+        interaction_variance=levels.interaction_variance(),
+        trial_variance=variance(chance),
         dof=dof,
         residuals=residuals,
     )
 
 
-def trade_off(times: Variation, errors: Variation) -> tuple[float, float]:
-    """Return k and its standard error: a trial x times as long as usual has an error x^−k as large.
+def trade_off(times: Variation, errors: Variation) -> Estimate:
+    """Return k: a trial x times as long as usual has an error x^−k as large.
 
     "As usual" is what practice, task, trainee and mode say of both.
     """
@@ -115,24 +124,68 @@ def trade_off(times: Variation, errors: Variation) -> tuple[float, float]:
     squares = float(haste @ haste)
     slope = float(haste @ errors_left) / squares
     left = errors_left - slope * haste
-    return -slope, float(np.sqrt(left @ left / (errors.dof - 1) / squares))
+    dof = errors.dof - 1
+    return coefficient(-slope, float(np.sqrt(left @ left / dof / squares)), dof)
 
 
-def _components(levels: np.ndarray, chance: np.ndarray) -> tuple[float, float]:
-    """Return the variances between trainees and between trainees × modes.
+class _Levels:
+    """The estimated levels of trainees in modes, and what their scatter says.
 
     Args:
-        levels: (trainees, modes) float, as they were estimated.
-        chance: Covariance of what chance adds to them, row by row.
+        levels: (trainees, modes) float.
+        inverse: What the variance between trials has to be multiplied by to get their covariance,
+            row by row.
+        chance: The variance between trials.
     """
-    trainees, modes = levels.shape
-    of_trainees = np.eye(trainees) - 1 / trainees
-    of_modes = np.eye(modes) - 1 / modes
-    both = np.kron(of_trainees, of_modes)
-    means = np.kron(of_trainees, np.full((modes, modes), 1 / modes))
-    flat = levels.ravel()
-    dof = (trainees - 1) * (modes - 1)
-    interaction = (flat @ both @ flat - np.trace(both @ chance)) / dof
-    # Of a mean over the modes, each square stands there so many times.
-    between = (flat @ means @ flat - np.trace(means @ chance)) / (trainees - 1)
-    return float((between - interaction) / modes), float(interaction)
+
+    def __init__(self, levels: np.ndarray, inverse: np.ndarray, chance: MeanSquare) -> None:
+        self._flat, self._inverse, self._chance = levels.ravel(), inverse, chance
+        self._trainees, self._modes = levels.shape
+        between = np.eye(self._trainees) - 1 / self._trainees
+        of_modes = np.full((self._modes, self._modes), 1 / self._modes)
+        # Of a mean over the modes, each square stands there so many times.
+        self._between = self._square(np.kron(between, of_modes), self._trainees - 1)
+        self._both = self._square(
+            np.kron(between, np.eye(self._modes) - of_modes),
+            (self._trainees - 1) * (self._modes - 1),
+        )
+
+    def interaction_variance(self) -> Estimate:
+        """Return the variance between trainees × modes."""
+        square, share = self._both
+        return difference(square, self._scaled(share))
+
+    def trainee_variance(self) -> Estimate:
+        """Return the variance between trainees."""
+        (between, of_between), (both, of_both) = self._between, self._both
+        found = difference(between, both)
+        # Chance adds nearly the same to both, or exactly so where the design is balanced.
+        more = self._scaled(of_between - of_both).value
+        low, high = ((limit - more) / self._modes for limit in found.interval)
+        return Estimate((found.value - more) / self._modes, (low, high))
+
+    def of_mode(self, mode: int) -> Estimate:
+        """Return what a mode adds against the first.
+
+        Its variance is that of a mean difference over the trainees, who differ in it by the
+        interaction, and what the unknowns that all share add (Satterthwaite 1946).
+        """
+        contrast = np.zeros((self._trainees, self._modes))
+        contrast[:, mode], contrast[:, 0] = 1 / self._trainees, -1 / self._trainees
+        flat = contrast.ravel()
+        square, share = self._both
+        own = 2 / self._trainees * square.value
+        more = float(flat @ self._inverse @ flat) - 2 / self._trainees * share
+        shared = self._scaled(max(more, 0.0)).value
+        dof = float(square.dof)
+        if shared:
+            dof = (own + shared) ** 2 / (own**2 / square.dof + shared**2 / self._chance.dof)
+        return coefficient(float(flat @ self._flat), float(np.sqrt(own + shared)), dof)
+
+    def _square(self, form: np.ndarray, dof: int) -> tuple[MeanSquare, float]:
+        """Return a mean square of the levels, and the share of chance in it."""
+        square = max(float(self._flat @ form @ self._flat), 0.0) / dof
+        return MeanSquare(square, dof), float(np.sum(form * self._inverse)) / dof
+
+    def _scaled(self, factor: float) -> MeanSquare:
+        return MeanSquare(factor * self._chance.value, self._chance.dof)

@@ -112,6 +112,11 @@ REFERENCES = (
     "Page 1963, Ordered hypotheses for multiple treatments: a significance test for linear ranks. "
     "J Am Stat Assoc 58",
     "Searle, Casella and McCulloch 1992, Variance components",
+    "Ting, Burdick, Graybill, Jeyaratnam and Lu 1990, Confidence intervals on linear combinations "
+    "of variance components that are unrestricted in sign. J Stat Comput Simul 35",
+    "Burdick and Graybill 1992, Confidence intervals on variance components",
+    "Wilson 1927, Probable inference, the law of succession, and statistical inference. "
+    "J Am Stat Assoc 22",
     "Fitzpatrick, West and Maurer 1998, Predicting error in rigid-body point-based registration. "
     "IEEE Trans Med Imaging 17",
     "Harrington 1965, The desirability function. Industrial Quality Control 21",
@@ -247,7 +252,8 @@ def _analysis() -> str:
         "slope over ln(trial), over all orders or, of more than seven trials, 9999 random ones. "
         "What trials vary by was estimated by a "
         "regression of logarithms with a level for each trainee in each mode, and from an analysis "
-        "of variance of these levels (Searle, Casella and McCulloch 1992). Groups were looked for "
+        "of variance of these levels (Searle, Casella and McCulloch 1992), with intervals for "
+        "differences of mean squares (Ting et al. 1990). Groups were looked for "
         "by the dip test on the first principal component of the z-scored trainee means. Outliers "
         "were not removed and missing values not filled in. How often each of these tests errs, "
         "and what it finds, "

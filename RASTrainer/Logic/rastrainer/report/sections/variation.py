@@ -1,4 +1,4 @@
-"""Sources of variation of the trials: practice, speed, trainees and modes."""
+"""Sources of variation of the trials: practice, speed, trainees, modes, and bias of the views."""
 
 from __future__ import annotations
 
@@ -8,14 +8,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.number_text import fixed, percent
-from rastrainer.report.elements.markup import Cell, Line, paragraph, section, table
+from rastrainer.number_text import counted, fixed
+from rastrainer.report.elements.markup import Cell, Line, heading, paragraph, section, table
 from rastrainer.report.sections.paired_statistics import interval_text
-from rastrainer.statistics.intervals import CONFIDENCE
-from rastrainer.statistics.scipy_modules import scipy_module
-from rastrainer.statistics.variation import Trials, Variation, fit_variation, trade_off
+from rastrainer.statistics.estimates import Estimate, mean
+from rastrainer.statistics.intervals import Proportion, proportion
+from rastrainer.statistics.variation import (
+    MIN_TRAINEES,
+    Trials,
+    Variation,
+    fit_variation,
+    trade_off,
+)
 from rastrainer.study.outcomes import mode_title
 from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.tre_calibration import share_text
 
 TIME, ERROR, LAPSES = "completion_time_s", "rmse_mm", "undone_touches"
 
@@ -29,7 +36,7 @@ class StudyVariation:
         trials: Number of their trials.
         time: Of the completion time.
         error: Of the RMSE.
-        trade_off: k, and its standard error.
+        trade_off: k.
         lapses: Share of the trials with an undone touch.
     """
 
@@ -37,8 +44,8 @@ class StudyVariation:
     trials: int
     time: Variation
     error: Variation
-    trade_off: tuple[float, float]
-    lapses: float
+    trade_off: Estimate
+    lapses: Proportion
 
 
 def study_variation(data: StudyData) -> StudyVariation | None:
@@ -63,9 +70,43 @@ def study_variation(data: StudyData) -> StudyVariation | None:
     )
     if time is None or error is None:
         return None
-    return StudyVariation(
-        len(names), len(rows), time, error, trade_off(time, error), float(trials.lapses.mean())
-    )
+    lapses = proportion(int(trials.lapses.sum()), len(rows))
+    return StudyVariation(len(names), len(rows), time, error, trade_off(time, error), lapses)
+
+
+@dataclass(frozen=True)
+class ViewBias:
+    """By how much a view displaces the target, beyond what the residuals say.
+
+    Attributes:
+        trainees: Number of trainees.
+        trials: Number of their trials with a true and an expected target error.
+        squared: Of the displacement, mm²; below 0 by chance where it is about 0.
+    """
+
+    trainees: int
+    trials: int
+    squared: Estimate
+
+
+def view_bias(data: StudyData, mode: str) -> ViewBias | None:
+    """Return the bias of a mode's view; None with fewer than four trainees.
+
+    The mean of true TRE² minus the part of the expected TRE² that the residuals explain: an offset
+    common to all touches adds its square to the first and leaves the second. Trainees count alike,
+    and their scatter gives the interval.
+    """
+    own: dict[str, list[float]] = defaultdict(list)
+    for trial in data.of_mode(mode):
+        values = trial.values
+        if "true_tre_mm" in values and "expected_tre_mm" in values:
+            assumed = 3 * values.get("tre_common_bias_sd_mm", 0.0) ** 2
+            scatter = values["expected_tre_mm"] ** 2 - assumed
+            own[trial.trainee].append(values["true_tre_mm"] ** 2 - scatter)
+    if len(own) < MIN_TRAINEES:
+        return None
+    means = np.array([np.mean(excess) for excess in own.values()])
+    return ViewBias(len(own), sum(map(len, own.values())), mean(means))
 
 
 def _rows(data: StudyData) -> list[tuple[TrialRow, int]]:
@@ -83,74 +124,121 @@ def _rows(data: StudyData) -> list[tuple[TrialRow, int]]:
     ]
 
 
-HEADER: Line = [Cell("Source of variation", kind="text"), "completion time", "RMSE"]
+HEADER: Line = [
+    Cell("Source of variation [95 %]", kind="text"),
+    "n",
+    "completion time",
+    "RMSE",
+]
+BIAS_HEADER: Line = [
+    Cell("View", kind="text"),
+    "n, trials",
+    "n, trainees",
+    "displacement of the target, mm [95 %]",
+]
 
 
 def variation(data: StudyData) -> str:
-    """Return a table if the trials allow it; else ""."""
+    """Return the tables that the trials allow; "" if none."""
     found = study_variation(data)
-    if found is None:
-        return ""
-    both, modes = (found.time, found.error), sorted(data.modes)
-    reaches = [_reach(one.dof) for one in both]
-    exponents = [
-        _exponent(one.learning, reach * one.learning_error)
-        for one, reach in zip(both, reaches, strict=True)
-    ]
-    k, error = found.trade_off
-    rows = [
-        ["Trials, trainees (n)", *[f"{found.trials}, {found.trainees}"] * 2],
-        ["Practice: exponent b, the m-th trial of all in proportion to m^−b [95 %]", *exponents],
+    biases = {mode: view_bias(data, mode) for mode in sorted(data.modes)}
+    parts = [] if found is None else _sources(found, sorted(data.modes))
+    parts += _view_biases({mode: bias for mode, bias in biases.items() if bias is not None})
+    return section("What completion time and error vary with", *parts) if parts else ""
+
+
+def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
+    both = (found.time, found.error)
+    trials, trainees = counted(found.trials, "trial"), counted(found.trainees, "trainee")
+    rows: list[Line] = [
         [
-            "Speed and accuracy: exponent k, RMSE in proportion to time^−k [95 %]",
-            "–",
-            _exponent(k, reaches[1] * error),
+            "Practice: exponent b, the m-th trial of all in proportion to m^−b",
+            trials,
+            *(_exponent(one.learning) for one in both),
         ],
-        *(
-            [f"{mode_title(mode)} against {mode_title(modes[0])}"]
-            + [_factor(one.modes[index]) for one in both]
-            for index, mode in enumerate(modes)
-            if index
-        ),
-        ["Between trainees (SD)", *(_sd(one.trainee_variance) for one in both)],
-        ["Trainee × mode (SD)", *(_sd(one.interaction_variance) for one in both)],
-        ["From trial to trial (SD)", *(_sd(one.trial_variance) for one in both)],
+        [
+            "Speed and accuracy: exponent k, RMSE in proportion to time^−k",
+            trials,
+            "–",
+            _exponent(found.trade_off),
+        ],
+        *_against_first(found, modes, trainees),
+        ["Between trainees (SD)", trainees, *(_sd(one.trainee_variance) for one in both)],
+        ["Trainee × mode (SD)", trainees, *(_sd(one.interaction_variance) for one in both)],
+        ["From trial to trial (SD)", trials, *(_sd(one.trial_variance) for one in both)],
         [
             "Trials with a touch taken back against others",
+            f"{found.lapses.count} of {found.trials}",
             *("–" if one.lapse is None else _factor(one.lapse) for one in both),
         ],
+        ["Trials with a touch taken back (share)", trials, Cell(share_text(found.lapses), span=2)],
     ]
-    return section(
-        "What completion time and error vary with",
-        table([HEADER], [[Cell(row[0], kind="text"), *row[1:]] for row in rows], "wide"),
-        paragraph(_words(found), "small"),
-    )
+    return [table([HEADER], rows, "wide"), paragraph(_words(found), "small")]
 
 
-def _reach(dof: int) -> float:
-    return float(scipy_module("stats").t.ppf((1 + CONFIDENCE) / 2, dof))
+def _against_first(found: StudyVariation, modes: list[str], trainees: str) -> list[Line]:
+    first, *others = map(mode_title, modes)
+    return [
+        [f"{mode} against {first}", trainees, _factor(time), _factor(error)]
+        for mode, time, error in zip(others, found.time.modes, found.error.modes, strict=True)
+    ]
 
 
-def _exponent(value: float, reach: float) -> str:
-    return interval_text(value, (value - reach, value + reach), 3)
+def _view_biases(biases: dict[str, ViewBias]) -> list[str]:
+    if not biases:
+        return []
+    rows: list[Line] = [
+        [mode_title(mode), str(bias.trials), str(bias.trainees), _length(bias)]
+        for mode, bias in biases.items()
+    ]
+    return [
+        heading("Bias of the views"),
+        table([BIAS_HEADER], rows),
+        paragraph(BIAS_WORDS, "small"),
+    ]
 
 
-def _sd(variance: float) -> str:
-    """Return a standard deviation of logarithms in percent."""
-    return percent(math.sqrt(max(variance, 0.0)))
+BIAS_WORDS = (
+    "By how much an offset that the touches of a trial share displaces the target: the root of the "
+    "mean of true TRE² minus what the residuals say about its scatter. No registration error shows "
+    "such an offset; the simulator knows where the head is. It may come from the view, or from "
+    "what trainees have in common. The interval is that of the means of trainees (t); 0 stands for "
+    "a mean below 0."
+)
 
 
-def _factor(logarithm: float) -> str:
-    return f"× {fixed(math.exp(logarithm), 2)}"
+def _exponent(found: Estimate) -> str:
+    return interval_text(found.value, found.interval, 3)
+
+
+def _sd(found: Estimate) -> str:
+    """Return a standard deviation of logarithms in percent, with its interval."""
+    low, high = (100 * _root(limit) for limit in found.interval)
+    return f"{fixed(100 * _root(found.value), 1)} % [{fixed(low, 1)}, {fixed(high, 1)}]"
+
+
+def _factor(found: Estimate) -> str:
+    low, high = (math.exp(limit) for limit in found.interval)
+    return f"× {interval_text(math.exp(found.value), (low, high), 2)}"
+
+
+def _length(bias: ViewBias) -> str:
+    low, high = map(_root, bias.squared.interval)
+    return interval_text(_root(bias.squared.value), (low, high), 2)
+
+
+def _root(square: float) -> float:
+    return math.sqrt(max(square, 0.0))
 
 
 def _words(found: StudyVariation) -> str:
     return (
-        f"{found.trials} trials of the {found.trainees} trainees who did every mode; a touch was "
-        f"taken back in {percent(found.lapses)} of them. Logarithms, regressed on the trial’s "
-        "number over all modes, the task, and one level for each trainee in each mode. SD are of "
-        "logarithms: 10 % is about a tenth of the value. The intervals assume that all trainees "
-        "learn alike, and the exponent that practice in one mode counts in the next; where all did "
-        "the tasks in the same order, practice is told from difficulty only by the shape of its "
-        "curve."
+        f"{found.trials} trials of the {found.trainees} trainees who did every mode. Logarithms, "
+        "regressed on the trial’s number over all modes, the task, and one level for each trainee "
+        "in each mode. SD are of logarithms: 10 % is about a tenth of the value; 0 stands for a "
+        "variance below 0. Their intervals are those of mean squares (χ²; Burdick and Graybill "
+        "1992), that of the share is Wilson’s (1927), the others are of t. They assume that "
+        "trainees learn and slip alike; the exponent also, that practice in one mode counts in the "
+        "next. Where all did the tasks in the same order, practice is told from difficulty only by "
+        "the shape of its curve."
     )
