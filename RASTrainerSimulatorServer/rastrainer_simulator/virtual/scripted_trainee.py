@@ -38,6 +38,7 @@ class Skill:
         speed_mm_s: fastest travel of the tip.
         gain_per_s: how briskly the remaining distance is closed.
         aim_sd_mm: standard deviation of the aim on the skin, along each of its two directions.
+        settled_mm: how far beside its aim the tip may be for a touch.
         tremor_mm_s: standard deviation of the hand's unwanted velocity, along each axis.
         overshoot: how far the first aim goes past the fiducial, as a share of the distance.
         reaction_s: pause before each new movement.
@@ -51,6 +52,7 @@ class Skill:
     speed_mm_s: float = 120.0
     gain_per_s: float = 3.0
     aim_sd_mm: float = 0.8
+    settled_mm: float = 0.4
     tremor_mm_s: float = 4.0
     overshoot: float = 0.05
     reaction_s: float = 0.25
@@ -198,8 +200,8 @@ class ScriptedTrainee:
         return _jog(self._along_skin(velocity) if eases_off else velocity)
 
     def _is_over_aim(self, remaining: np.ndarray) -> bool:
-        """Return whether the tip is less than 0.4 mm beside the aim, at any height above it."""
-        return bool(np.linalg.norm(self._along_skin(remaining)) < 0.4)
+        """Return whether the tip is beside the aim by no more than it may, at any height."""
+        return bool(np.linalg.norm(self._along_skin(remaining)) < self._skill.settled_mm)
 
     def _along_skin(self, displacement: np.ndarray) -> np.ndarray:
         return displacement - self._outward_at_aim * float(displacement @ self._outward_at_aim)
