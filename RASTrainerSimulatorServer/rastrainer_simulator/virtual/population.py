@@ -91,8 +91,8 @@ class ModeEffect:
     """The effect of a mode on every trainee.
 
     Attributes:
-        speed: Factor on the speed.
-        aim: Factor on the scatter of the aim.
+        speed: Factor on the pace of the hands: speed, gain and, inversely, pauses.
+        aim: Factor on the scatter.
         bias_mm: Systematic error of the aim, as by a distorted view: x, y, z in `World`, mm; only
             its part along the skin has an effect, since the tip is on the skin.
     """
@@ -106,18 +106,21 @@ class ModeEffect:
 class Population:
     """The distribution of virtual trainees.
 
+    Scatter is that of the aim, of where the tip settles beside it, and of the hand's tremor: all
+    three are scaled alike, so that the localization error is in proportion. Pace is that of speed,
+    gain and pauses, so that times are in inverse proportion, up to the robot's speed limit.
+
     Attributes:
         skill: Of the typical trainee at the first trial.
-        speed_spread: Standard deviation, between trainees, of the logarithm of the speed.
-        aim_spread: The same of the scatter of the aim.
-        learning: b; the n-th trial of all takes n^−b of the first one's time. Speed, gain and
-            pauses all improve by n^b, up to the robot's speed limit.
+        speed_spread: Standard deviation, between trainees, of the logarithm of the pace.
+        aim_spread: The same of the scatter.
+        learning: b; the n-th trial of all takes n^−b of the first one's time.
         modes: Effect of each mode; none for those left out.
-        accuracy_learning: The same exponent of the scatter of the aim.
-        interaction: Standard deviation, between trainees and modes, of the logarithms of speed and
+        accuracy_learning: The same exponent of the scatter.
+        interaction: Standard deviation, between trainees and modes, of the logarithms of pace and
             scatter: how differently a mode suits different trainees.
         tempo_spread: Standard deviation, between trials of a trainee, of the logarithm of the
-            speed: haste and leisure.
+            pace: haste and leisure.
         trade_off: k; a trial played x times as fast as usual has a scatter x^k times as large.
         lapses: Share of trials in which one touch slips by 4 mm, is noticed and taken back; None
             for `skill.slip_at`.
@@ -160,21 +163,23 @@ class Population:
         of_trial = np.random.default_rng([seed, trainee, _TRIAL, trial])
         tempo = math.exp(of_trial.normal(0.0, self.tempo_spread))
         effect = self.modes.get(mode, ModeEffect())
-        brisk = own_speed * suits_speed * tempo * trial**self.learning
-        aim = own_aim * suits_aim * effect.aim * tempo**self.trade_off
-        aim *= self.skill.aim_sd_mm * trial**-self.accuracy_learning
-        speed = self.skill.speed_mm_s * brisk * effect.speed
-        slip_at = self.skill.slip_at
+        pace = own_speed * suits_speed * effect.speed * tempo * trial**self.learning
+        scatter = own_aim * suits_aim * effect.aim * tempo**self.trade_off
+        scatter *= trial**-self.accuracy_learning
+        own = self.skill
+        slip_at = own.slip_at
         if self.lapses is not None:
             # The trial's own seed decides at which fiducial.
             slip_at = 2 if of_trial.random() < self.lapses else None
         return replace(
-            self.skill,
-            speed_mm_s=float(np.clip(speed, SLOWEST_MM_S, 0.9 * SPEED_LIMIT_MM_S)),
-            gain_per_s=float(np.clip(self.skill.gain_per_s * brisk * effect.speed, *GAIN_PER_S)),
-            aim_sd_mm=float(max(aim, STEADIEST_MM)),
+            own,
+            speed_mm_s=float(np.clip(own.speed_mm_s * pace, SLOWEST_MM_S, 0.9 * SPEED_LIMIT_MM_S)),
+            gain_per_s=float(np.clip(own.gain_per_s * pace, *GAIN_PER_S)),
+            aim_sd_mm=float(max(own.aim_sd_mm * scatter, STEADIEST_MM)),
+            settled_mm=float(max(own.settled_mm * scatter, STEADIEST_MM)),
+            tremor_mm_s=float(own.tremor_mm_s * scatter),
             aim_bias_mm=effect.bias_mm,
-            reaction_s=self.skill.reaction_s / brisk,
-            dwell_s=self.skill.dwell_s / brisk,
+            reaction_s=float(own.reaction_s / pace),
+            dwell_s=float(own.dwell_s / pace),
             slip_at=slip_at,
         )

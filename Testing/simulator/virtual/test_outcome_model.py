@@ -168,13 +168,25 @@ def hands(population, mode="desktop", trials=(1,), trainees=2000):
     return [population.skill_of(i, mode, n, seed=0) for i in range(trainees) for n in trials]
 
 
-def test_practice_makes_speed_gain_and_pauses_better_alike_and_the_aim_by_its_own_exponent():
+def test_practice_makes_speed_gain_and_pauses_better_alike_and_the_scatter_by_its_own_exponent():
     first, later = hands(Population(learning=0.2, accuracy_learning=0.1), trials=(1, 8), trainees=1)
     for name in ("speed_mm_s", "gain_per_s"):
         assert getattr(later, name) / getattr(first, name) == pytest.approx(8**0.2)
     for name in ("reaction_s", "dwell_s"):
         assert getattr(first, name) / getattr(later, name) == pytest.approx(8**0.2)
-    assert first.aim_sd_mm / later.aim_sd_mm == pytest.approx(8**0.1)
+    for name in ("aim_sd_mm", "settled_mm", "tremor_mm_s"):
+        assert getattr(first, name) / getattr(later, name) == pytest.approx(8**0.1)
+
+
+def test_a_mode_scales_everything_that_makes_the_pace_and_everything_that_makes_the_scatter():
+    population = Population(modes={"hmd": ModeEffect(speed=0.8, aim=1.5)}, interaction=0.0)
+    (desktop,), (hmd,) = (hands(population, mode, trainees=1) for mode in MODES)
+    for name in ("speed_mm_s", "gain_per_s"):
+        assert getattr(hmd, name) / getattr(desktop, name) == pytest.approx(0.8)
+    for name in ("reaction_s", "dwell_s"):
+        assert getattr(desktop, name) / getattr(hmd, name) == pytest.approx(0.8)
+    for name in ("aim_sd_mm", "settled_mm", "tremor_mm_s"):
+        assert getattr(hmd, name) / getattr(desktop, name) == pytest.approx(1.5)
 
 
 def test_modes_suit_trainees_differently_only_where_there_is_an_interaction():
