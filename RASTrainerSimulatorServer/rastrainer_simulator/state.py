@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -11,10 +10,15 @@ from typing import Any
 import numpy as np
 
 from rastrainer.protocol import Phase, Proximity
-from rastrainer_simulator.vectors import Vector
-
-SAME = 1e-9
-"""Registrations are the same up to this part of a number, and up to as many mm."""
+from rastrainer_simulator.procedure_state import (
+    GuideAlignment,
+    GuideAxis,
+    PlannedLine,
+    ProcedureState,
+    Tool,
+)
+from rastrainer_simulator.registration_state import FinalRegistration, TouchState
+from rastrainer_simulator.vectors import Vector, vector
 
 
 class EventKind(str, Enum):
@@ -30,6 +34,8 @@ class EventKind(str, Enum):
     CAMERA = "camera"
     PLAN = "plan"
     REACH = "reach"
+    CHECKPOINT = "checkpoint"
+    FEED = "feed"
 
 
 class TouchStage(str, Enum):
@@ -53,12 +59,13 @@ TOUCH_ERRORS = (TouchStage.TOO_DEEP, TouchStage.ELSEWHERE, TouchStage.SHAFT, Tou
 
 
 class Motion(str, Enum):
-    """What moves the tool's tip."""
+    """What moves the tool's tip; `FEED` the instrument in the guide, while the arm is held."""
 
     NONE = "none"
     STICK = "stick"
     JOG = "jog"
     MOVE = "move"
+    FEED = "feed"
 
 
 @dataclass(frozen=True)
@@ -81,19 +88,6 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class TouchState:
-    """One touched fiducial: where the tip was (World, m) and when.
-
-    `elapsed` is the trial's time in s, pauses excluded.
-    """
-
-    label: str
-    position: Vector
-    sim_time: float
-    elapsed: float
-
-
-@dataclass(frozen=True)
 class PlanInWorld:
     """A point planned on the MRI, mapped to World (m) by the client's registration.
 
@@ -105,35 +99,6 @@ class PlanInWorld:
     position: Vector
     entry: Vector | None = None
     reachable: bool = True
-
-
-@dataclass(frozen=True)
-class FinalRegistration:
-    """The registration that was submitted for a trial; the truth is then revealed (mm).
-
-    `matrix` is WorldToHead, 16 floats row by row, mm.
-    """
-
-    matrix: tuple[float, ...]
-    fre_mm: float
-    expected_tre_mm: float
-
-    @classmethod
-    def from_arguments(cls, arguments: Mapping[str, Any]) -> FinalRegistration:
-        """Return what the arguments of SubmitRegistration hold."""
-        return cls(tuple(arguments["matrix"]), arguments["freMm"], arguments["expectedTreMm"])
-
-    def agrees_with(self, other: FinalRegistration) -> bool:
-        """Return whether both are the outcome of one computation.
-
-        Slicer's numpy and the simulator's may round the last digits otherwise; who knows the truth
-        gains nothing from so little.
-        """
-        pairs = zip(self._numbers(), other._numbers(), strict=True)
-        return all(math.isclose(a, b, rel_tol=SAME, abs_tol=SAME) for a, b in pairs)
-
-    def _numbers(self) -> tuple[float, ...]:
-        return (*self.matrix, self.fre_mm, self.expected_tre_mm)
 
 
 @dataclass(frozen=True)
@@ -153,7 +118,8 @@ class TrainingState:
     `revision` rises with every change that must not be lost (phase, touch, undo, score).
     `registration` is what a client has submitted, None before.
     `next_point` is the label of the fiducial to touch, None when there is none; `rejected` and
-    `undone` count the touches that were refused and taken back.
+    `undone` count the touches that were refused and taken back. `procedure` is None in a trial of
+    touches alone.
     """
 
     revision: int = 0
@@ -169,6 +135,7 @@ class TrainingState:
     undone: int = 0
     registration: FinalRegistration | None = None
     result: TrialResult | None = None
+    procedure: ProcedureState | None = None
 
 
 @dataclass(frozen=True)
@@ -181,6 +148,7 @@ class SimulationState:
     tool to the head, `depth` how far the commanded motion has gone into it beyond where the tool
     could go (`collision.proximity`), 0 without contact. `elapsed` is the running trial's time,
     pauses excluded. `operator` is who last moved the arm. `touch` is how the next touch is going.
+    `feed` is how far drill or electrode is beyond the guide's tip.
     """
 
     tick: int
@@ -200,6 +168,32 @@ class SimulationState:
     planned_target: PlanInWorld | None
     depth: float = 0.0
     touch: TouchStage = TouchStage.FAR
+    feed: float = 0.0
+
+    @property
+    def tool(self) -> Tool:
+        """What the robot holds."""
+        procedure = self.training.procedure
+        return Tool.POINTER if procedure is None else procedure.tool
+
+    @property
+    def plan_in_world(self) -> PlannedLine | None:
+        """The planned line at hand, as the registration in use shows it; None without one."""
+        procedure = self.training.procedure
+        here = None if procedure is None else procedure.present
+        return None if here is None else here.line
+
+    @property
+    def guide_axis(self) -> GuideAxis:
+        """The tip of the guide and its axis, which are those of every tool."""
+        pose = self.tool_tip_to_world
+        return GuideAxis(vector(pose[:3, 3].tolist()), vector(pose[:3, 2].tolist()))
+
+    @property
+    def alignment(self) -> GuideAlignment | None:
+        """How the guide lies to the planned line at hand; None without one."""
+        line = self.plan_in_world
+        return None if line is None else GuideAlignment.of(self.guide_axis, line)
 
 
 @dataclass(frozen=True)

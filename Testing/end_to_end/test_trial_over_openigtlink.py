@@ -68,14 +68,17 @@ def distance(tip, position: np.ndarray) -> float:
     return float(np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - position))
 
 
-def play(player: Player, scenario: Scenario) -> dict:
-    """Play one trial up to its registration; return what the commands answered."""
+def play(player: Player, scenario: Scenario, **start: str) -> dict:
+    """Play one trial up to its registration; return what the commands answered.
+
+    `start` goes to StartTask besides task, trainee and seed.
+    """
     task, head_to_world = scenario.task(TASK), scenario.perturbed_head_to_world(SEED)
     head = read_head_mesh(scenario.head_mesh)
     normals = np.array([outward_normal(head, fiducial) for fiducial in task.fiducials])
     fiducials = transforms.apply(head_to_world, task.fiducials)
     above = fiducials + ABOVE_MM * normals @ head_to_world[:3, :3].T
-    answers = {"StartTask": player.do("StartTask", task=TASK, trainee="anna", seed=SEED)}
+    answers = {"StartTask": player.do("StartTask", task=TASK, trainee="anna", seed=SEED, **start)}
     for fiducial, place_above in zip(fiducials, above, strict=True):
         player.move_to(place_above)
         lower_onto_skin(player, fiducial, 2 * fiducial - place_above)

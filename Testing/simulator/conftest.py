@@ -7,6 +7,7 @@ import pytest
 from rastrainer.protocol import TouchRule
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
+from Testing.simulator.planned_procedures import procedure_setup
 
 
 @pytest.fixture(scope="session")
@@ -34,3 +35,9 @@ def anywhere(setup):
 def simulation(anywhere):
     """Return a simulation in which every touch counts."""
     return Simulation(anywhere, 3)
+
+
+@pytest.fixture(scope="session")
+def planned(tmp_path_factory):
+    """Return a setup with procedures, in which every touch counts, wherever the tip is."""
+    return procedure_setup(tmp_path_factory.mktemp("planned") / "scenario")

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
 from rastrainer.slicer.logic.next_step import NextAction, Section, WorkflowState, nextStep
 from rastrainer.slicer.logic.simulator_logic import ANY, freePort
@@ -115,6 +116,15 @@ def test_nothing_can_be_pressed_while_the_simulator_is_set_up():
 def test_a_trial_stays_in_sight_while_the_simulator_is_silent():
     silent = step_of(CHOSEN, link=link(LinkState.STALE), phase="running")
     assert (silent.action, silent.section) == (NextAction.WAIT, Section.TRAINING)
+
+
+@pytest.mark.parametrize("phase", [phase.value for phase in Phase])
+def test_there_is_something_to_do_and_a_word_for_each_phase_of_a_trial(phase):
+    found = step_of(CHOSEN, phase=phase, touched=15)
+    assert found.title
+    assert found.sentence
+    if phase in PROCEDURE_PHASES:
+        assert found.action is NextAction.PAUSE
 
 
 def test_a_study_with_trainees_lets_choose_one():

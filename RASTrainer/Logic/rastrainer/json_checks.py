@@ -72,13 +72,13 @@ def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def text(max_length: int = 64) -> Callable[[Any], str]:
-    """Accept printable text of 1 to `max_length` characters."""
+def text(max_length: int = 64, min_length: int = 1) -> Callable[[Any], str]:
+    """Accept printable text of `min_length` to `max_length` characters."""
 
     def check(value: Any) -> str:
         is_text = isinstance(value, str) and value.isprintable()
-        if not is_text or not 1 <= len(value) <= max_length:
-            raise ValueError(f"printable text of 1 to {max_length} characters")
+        if not is_text or not min_length <= len(value) <= max_length:
+            raise ValueError(f"printable text of {min_length} to {max_length} characters")
         return value
 
     return check

@@ -37,6 +37,7 @@ class DeviceName:
     """OpenIGTLink device names of what the server sends; each becomes the name of a MRML node."""
 
     TOOL_TIP_TO_WORLD = "ToolTipToWorld"
+    INSTRUMENT_TIP_TO_WORLD = "InstrumentTipToWorld"
     LINK_TO_WORLD = tuple(f"Link{i}ToWorld" for i in range(8))
     SIM_STATE = "SimState"
     CAPTURED_POINTS = "CapturedPoints"
@@ -64,12 +65,19 @@ class Phase(str, Enum):
     RUNNING = "running"
     PAUSED = "paused"
     COMPLETE = "complete"
+    VERIFYING = "verifying"
+    ALIGNING = "aligning"
+    DRILLING = "drilling"
+    INSERTING = "inserting"
     REGISTERED = "registered"
     SCORED = "scored"
 
 
-OPEN_PHASES = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE)
-"""A trial that is running, paused, or not registered yet."""
+PROCEDURE_PHASES = (Phase.VERIFYING, Phase.ALIGNING, Phase.DRILLING, Phase.INSERTING)
+"""What follows the touches in a trial with a procedure; `aligning` to `inserting` come once for
+each planned trajectory."""
+OPEN_PHASES = (Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE, *PROCEDURE_PHASES)
+"""A trial that is running, paused, or not registered and delivered yet."""
 FINISHED_PHASES = (Phase.REGISTERED, Phase.SCORED)
 
 
@@ -150,6 +158,15 @@ class CommandName:
     CAPTURE = "Capture"
     UNDO = "Undo"
     REGISTER = "Register"
+    USE_REGISTRATION = "UseRegistration"
+    ACCEPT_REGISTRATION = "AcceptRegistration"
+    REGISTER_AGAIN = "RegisterAgain"
+    ALIGN_GUIDE = "AlignGuide"
+    LOCK_GUIDE = "LockGuide"
+    FEED = "Feed"
+    RETRACT_DRILL = "RetractDrill"
+    START_INSERTION = "StartInsertion"
+    RELEASE_INSTRUMENT = "ReleaseInstrument"
     ABORT = "Abort"
     PAUSE = "Pause"
     RESUME = "Resume"
@@ -167,7 +184,17 @@ class CommandName:
 
 SPEED_LIMIT_MM_S = 500.0
 WORLD_LIMIT_MM = 5000.0
+STAND_OFF_LIMIT_MM = 80.0
+"""The farthest that the guide's tip may be from the skin, along its axis, when it is locked."""
+FEED_LIMIT_MM_S = 50.0
+"""Of `Feed`; drill and instrument have lower limits of their own."""
 
+_REGISTRATION: Mapping[str, Argument] = {
+    "trialId": Argument(trial_id),
+    "matrix": Argument(numbers(16, 1e6)),
+    "freMm": Argument(number(0, 1e6, "mm")),
+    "expectedTreMm": Argument(number(0, 1e6, "mm")),
+}
 
 COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     CommandName.HELLO: {
@@ -184,6 +211,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "trainee": Argument(pseudonym()),
         "mode": Argument(one_of(*(mode.value for mode in Mode)), Mode.DESKTOP.value),
         "seed": Argument(whole_number(0, 2**63 - 1), None),
+        "procedure": Argument(text(40, 0), ""),
     },
     CommandName.JOG: {
         "velocityMmS": Argument(numbers(3, SPEED_LIMIT_MM_S, "mm/s")),
@@ -198,6 +226,18 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     CommandName.CAPTURE: {},
     CommandName.UNDO: {},
     CommandName.REGISTER: {},
+    CommandName.USE_REGISTRATION: _REGISTRATION,
+    CommandName.ACCEPT_REGISTRATION: {},
+    CommandName.REGISTER_AGAIN: {},
+    CommandName.ALIGN_GUIDE: {"standOffMm": Argument(number(0, STAND_OFF_LIMIT_MM, "mm"), 30.0)},
+    CommandName.LOCK_GUIDE: {},
+    CommandName.FEED: {
+        "velocityMmS": Argument(number(-FEED_LIMIT_MM_S, FEED_LIMIT_MM_S, "mm/s")),
+        "durationS": Argument(number(0, 2, "s"), 0.1),
+    },
+    CommandName.RETRACT_DRILL: {},
+    CommandName.START_INSERTION: {},
+    CommandName.RELEASE_INSTRUMENT: {},
     CommandName.ABORT: {
         "reason": Argument(
             one_of(*(reason.value for reason in COMMANDED_ABORTS)), AbortReason.CLIENT.value
@@ -206,12 +246,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     CommandName.PAUSE: {},
     CommandName.RESUME: {},
     CommandName.SET_CAMERA: {"camera": Argument(one_of("close-up", "far"))},
-    CommandName.SUBMIT_REGISTRATION: {
-        "trialId": Argument(trial_id),
-        "matrix": Argument(numbers(16, 1e6)),
-        "freMm": Argument(number(0, 1e6, "mm")),
-        "expectedTreMm": Argument(number(0, 1e6, "mm")),
-    },
+    CommandName.SUBMIT_REGISTRATION: _REGISTRATION,
     CommandName.TRIAL_SCORED: {
         "trialId": Argument(trial_id),
         "score": Argument(number(0, 100)),
@@ -233,6 +268,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "minutes": Argument(number(0, 43_200, "min"), 0.0),
         "over": Argument(number(0, 43_200, "min"), 0.0),
         "guidance": Argument(one_of(*(choice.value for choice in Guidance)), ""),
+        "procedure": Argument(text(40, 0), ""),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},

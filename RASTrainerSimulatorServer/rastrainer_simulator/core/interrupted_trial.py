@@ -8,7 +8,6 @@ mathematics can change it.
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,22 +18,26 @@ from rastrainer.journal.folder import newest_journal
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.protocol import CommandName, Proximity, check_arguments
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.recorded_feed import RecordedFeed, metres
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.state import StartingPoint
+from rastrainer_simulator.training.feed import NO_FEED, Feed
+from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE
 from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TouchMoment
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import ZERO, vector
 
 _OVER = frozenset({"registered", "aborted", "attempt"})
 _EFFECTS: Mapping[str, frozenset[str]] = {
     CommandName.START_TASK: frozenset({"phase"}),
-    CommandName.CAPTURE: frozenset({"touch", "rejected"}),
+    CommandName.CAPTURE: frozenset({"touch", "checkpoint", "rejected"}),
     CommandName.UNDO: frozenset({"undo"}),
     CommandName.PAUSE: frozenset({"phase"}),
     CommandName.RESUME: frozenset({"phase"}),
+    CommandName.REGISTER: frozenset({"phase"}),
+    **dict.fromkeys(OF_A_PROCEDURE, frozenset({"phase"})),
     RECORDING_FAILED: frozenset({"phase"}),
 }
 """The kinds of entries that show that a command was carried out."""
-_NOWHERE: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,7 @@ class InterruptedTrial:
         proximity: as last recorded.
         is_within_reach: as last recorded.
         obstacle: as last recorded.
+        feed: of the instrument in the guide, as last recorded.
     """
 
     entries: Sequence[Mapping[str, Any]]
@@ -60,6 +64,7 @@ class InterruptedTrial:
     proximity: Proximity
     is_within_reach: bool
     obstacle: str
+    feed: Feed = NO_FEED
 
     @property
     def header(self) -> Mapping[str, Any]:
@@ -85,11 +90,12 @@ class InterruptedTrial:
         if any(entry["kind"] in _OVER for entry in entries):
             return None
         header = entries[0]
-        steps = list(_steps(entries, header["tickS"]))
+        recorded = RecordedFeed()
+        steps = list(_steps(entries, header["tickS"], recorded))
         if not steps:
             return None
         last = max(entries, key=lambda entry: entry["tick"])
-        steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTime"], _NOWHERE, 0.0)))
+        steps.append((OperatorCommand(INTERRUPTED), TouchMoment(last["simTime"], ZERO, 0.0)))
         latest = {entry["kind"]: entry for entry in entries}
         reach = latest.get("reach", {"isWithinReach": True, "obstacle": ""})
         return cls(
@@ -101,6 +107,7 @@ class InterruptedTrial:
             proximity=Proximity(latest["proximity"]["to"] if "proximity" in latest else "free"),
             is_within_reach=reach["isWithinReach"],
             obstacle=reach["obstacle"],
+            feed=recorded.feed,
         )
 
 
@@ -138,7 +145,7 @@ def recorded_command(entry: Mapping[str, Any]) -> OperatorCommand:
 
 
 def _steps(
-    entries: Sequence[Mapping[str, Any]], tick_s: float
+    entries: Sequence[Mapping[str, Any]], tick_s: float, recorded: RecordedFeed
 ) -> Iterator[tuple[OperatorCommand, TouchMoment]]:
     """Yield what changed the trial.
 
@@ -148,31 +155,27 @@ def _steps(
     for _tick, group in itertools.groupby(entries, key=lambda entry: entry["tick"]):
         together = list(group)
         for place, entry in enumerate(together):
+            recorded.take(entry)
             if entry["kind"] == "continued":
-                yield OperatorCommand(INTERRUPTED), TouchMoment(entry["since"], _NOWHERE, 0.0)
+                yield OperatorCommand(INTERRUPTED), TouchMoment(entry["since"], ZERO, 0.0)
             if entry["kind"] != "command" or entry["name"] not in _EFFECTS:
                 continue
             kinds = _EFFECTS[entry["name"]]
             effect = next((each for each in together[place:] if each["kind"] in kinds), None)
             if effect is not None:
                 # Commands are carried out at the state reached, one tick before their line.
-                tip = vector(map(_metres, effect.get("positionMm", _NOWHERE)))
-                # Older journals lack it: then every height counted.
-                clearance = float(effect.get("clearanceMm", 0.0)) / MM_PER_M
-                yield (
-                    recorded_command(entry),
-                    TouchMoment(entry["simTime"] - tick_s, tip, clearance),
+                moment = TouchMoment(
+                    sim_time=entry["simTime"] - tick_s,
+                    tip=vector(map(metres, effect.get("positionMm", ZERO))),
+                    # Older journals lack it: then every height counted.
+                    tip_clearance=float(effect.get("clearanceMm", 0.0)) / MM_PER_M,
+                    direction=vector(effect.get("direction", ZERO)),
+                    feed=recorded.before(effect),
                 )
+                yield recorded_command(entry), moment
 
 
 def _camera(entries: Sequence[Mapping[str, Any]]) -> str | None:
     """Return the view that was chosen last."""
     chosen = [e["camera"] for e in entries if e["kind"] in ("camera", "continued")]
     return chosen[-1] if chosen else entries[0]["before"]["camera"]
-
-
-def _metres(value_mm: float) -> float:
-    """Return the number that times 1000 is the given one to the last bit."""
-    near = value_mm / MM_PER_M
-    candidates = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
-    return next((each for each in candidates if MM_PER_M * each == value_mm), near)

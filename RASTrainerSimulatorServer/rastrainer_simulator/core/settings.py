@@ -13,6 +13,7 @@ from rastrainer_simulator.collision.proximity import ProximitySettings
 from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
+from rastrainer_simulator.training.feed import ProcedureSettings
 from rastrainer_simulator.training.rules import TrainingSettings
 
 T = TypeVar("T")
@@ -33,6 +34,7 @@ class SimulationSettings:
         start_height: of the tip above the head's target when a trial starts, m.
         axes: whose right, forward and up the sticks follow.
         camera: the view at the start.
+        procedure: how a procedure is carried out.
     """
 
     teleoperation: TeleoperationSettings = dataclasses.field(default_factory=TeleoperationSettings)
@@ -42,6 +44,7 @@ class SimulationSettings:
     start_height: float = 0.165
     axes: AxesChoice = AxesChoice.CAMERA
     camera: str = "close-up"
+    procedure: ProcedureSettings = dataclasses.field(default_factory=ProcedureSettings)
 
 
 def settings_to_json(settings: Any) -> dict[str, Any]:
@@ -77,7 +80,7 @@ def _from_json(kind: Any, name: str, value: Any) -> Any:
     try:
         if kind in (int, float) and not _is_reasonable(value):
             raise ValueError
-        if isinstance(value, (list, Mapping)):
+        if isinstance(value, (list, Mapping)) or (kind is bool) is not isinstance(value, bool):
             raise TypeError
         return kind(value)
     except (TypeError, ValueError):

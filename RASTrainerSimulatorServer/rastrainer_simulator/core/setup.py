@@ -146,6 +146,7 @@ class SimulationSetup:
         settings: how it behaves.
         scenario_sha256: of what a trial depends on, which identifies the scenario in a journal.
         sha256_with_skull: the same of a scenario that had its skull before its procedures.
+        procedure_sha256: name of a procedure → of what a trial with it depends on besides.
     """
 
     scenario: Scenario
@@ -154,14 +155,31 @@ class SimulationSetup:
     settings: SimulationSettings = field(default_factory=SimulationSettings)
     scenario_sha256: str = ""
     sha256_with_skull: str = ""
+    procedure_sha256: Mapping[str, str] = field(default_factory=dict)
 
     def is_of(self, sha256: object) -> bool:
         """Return whether a journal with this hash of its scenario was recorded with this one."""
         return sha256 in (self.scenario_sha256, self.sha256_with_skull)
 
-    def description(self) -> dict[str, Any]:
-        """Return the fields of a journal's header, ready for JSON."""
+    def has_procedure_of(self, header: Mapping[str, Any]) -> bool:
+        """Return whether the procedure of a journal's header, if it names one, is in here.
+
+        Raises:
+            KeyError, TypeError: the header is not usable.
+        """
+        recorded = header.get("procedure")
+        if recorded is None:
+            return True
+        return self.procedure_sha256.get(recorded["name"]) == recorded["sha256"]
+
+    def description(self, procedure: str = "") -> dict[str, Any]:
+        """Return the fields of a journal's header, ready for JSON.
+
+        `procedure` is the name of the trial's procedure, "" without one.
+        """
+        named = {"name": procedure, "sha256": self.procedure_sha256.get(procedure, "")}
         return {
+            **({"procedure": named} if procedure else {}),
             "scenario": {"name": self.scenario.name, "sha256": self.scenario_sha256},
             "robot": self.robot.name,
             "settings": settings_to_json(self.settings),
@@ -189,7 +207,15 @@ def load_setup(
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         sha256_with_skull=scenario_sha256(scenario, keeps_skull=True),
+        procedure_sha256=_procedure_sha256(scenario),
     )
+
+
+def _procedure_sha256(scenario: Scenario) -> dict[str, str]:
+    skull = scenario.skull_mesh
+    if skull is None:
+        return {}
+    return {procedure.name: procedure.sha256(skull) for procedure in scenario.procedures}
 
 
 def _robot_and_shape(

@@ -17,9 +17,11 @@ from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import Pressing, next_proximity
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
+from rastrainer_simulator.core.procedure_motion import FED, ProcedureMotion
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.procedure_state import GuideAxis
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Answer,
@@ -60,7 +62,9 @@ class Simulation:
         settings = setup.settings
         self.setup = setup
         self._texts = texts or Texts()
-        self._training = Training(setup.scenario, seed, settings.training, self._texts)
+        self._training = Training(
+            setup.scenario, seed, settings.training, self._texts, settings.procedure
+        )
         self._view = SceneView(setup.scenario, settings.camera, settings.axes)
         self._teleoperation = Teleoperation(settings.teleoperation)
         head = read_head_mesh(setup.scenario.head_mesh)
@@ -73,6 +77,7 @@ class Simulation:
         self._postures = Postures(setup.robot)
         self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
         self._joint_motion = JointMotion(setup.robot, self._start, settings.fabrik)
+        self._procedure_motion = ProcedureMotion(setup, head)
         self._put_in_place()
         self.state = self._state(0, 0.0, Motion.NONE)
 
@@ -106,6 +111,7 @@ class Simulation:
         self._proximity = interrupted.proximity
         self._is_within_reach = interrupted.is_within_reach
         self._obstacle = interrupted.obstacle
+        self._procedure_motion.reset(interrupted.feed)
         self._view.camera = point.camera or self._view.camera
         self.state = self._state(point.tick, point.sim_time, Motion.NONE)
 
@@ -120,6 +126,8 @@ class Simulation:
             answers.append(Answer(command.ticket, reply.ok, reply.message, reply.data))
             if self._training.truth is not self._placed:
                 self._put_in_place()
+            if reply.feed is not None:
+                self._procedure_motion.reset(reply.feed)
         proximity = self._proximity
         motion_request = self._motion_request(dt, operator_input)
         sim_time = before.sim_time + dt
@@ -129,14 +137,29 @@ class Simulation:
             events.extend(self._move(dt, motion_request, sim_time))
             if motion_request.motion is Motion.STICK:
                 self._operator = operator_input.operator
-        self.state = self._state(before.tick + 1, sim_time, motion_request.motion)
+        motion = self._feed(dt, operator_input, sim_time, events) or motion_request.motion
+        self.state = self._state(before.tick + 1, sim_time, motion)
         if self._proximity is not proximity:
             events.append(_proximity(proximity, self.state, self._pressing, sim_time))
         return StepResult(self.state, tuple(events), tuple(answers))
 
+    def _feed(
+        self, dt: float, operator_input: OperatorInput, sim_time: float, events: list[Event]
+    ) -> Motion | None:
+        """Feed what is in the locked guide; return the motion, None where there is none."""
+        phase, before = self._training.state.phase, self._procedure_motion.feed.depth
+        if phase not in FED:
+            return None
+        events.extend(self._procedure_motion.step(dt, phase, operator_input, sim_time))
+        if self._procedure_motion.feed.depth == before:
+            return None
+        if operator_input.translation != HANDS_OFF.translation:
+            self._operator = operator_input.operator
+        return Motion.FEED
+
     def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
         if self._training.handles(command.name):
-            return self._training.handle(command, self._touch_moment(sim_time))
+            return self._training.handle(command, self._moment_of(command, sim_time))
         sentence = refusal(command, self._training.state, self._texts)
         if sentence is not None:
             return TrainingReply(False, sentence)
@@ -144,12 +167,19 @@ class Simulation:
         if command.name == CommandName.LIST_TASKS:
             scenario = self.setup.scenario
             names = {"scenario": scenario.name, "title": scenario.title}
-            return TrainingReply(True, data={**names, "tasks": self._tasks()})
+            planned = {"tasks": self._tasks(), "procedures": self._procedures()}
+            return TrainingReply(True, data={**names, **planned})
         if command.name == CommandName.SET_CAMERA:
             self._view.camera = arguments["camera"]
             return TrainingReply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
         if command.name == CommandName.PLAN_TARGET:
             return self._plan(arguments, sim_time)
+        if command.name == CommandName.FEED:
+            self._procedure_motion.start(arguments["velocityMmS"], arguments["durationS"])
+            self._operator = command.sender
+            return TrainingReply(True)
+        if command.name == CommandName.ALIGN_GUIDE:
+            return self._align(command)
         tool = self._posture.tool_axes
         self._teleoperation.start(commanded_motion(command, self._view.camera_axes, tool))
         self._operator = command.sender
@@ -166,17 +196,49 @@ class Simulation:
         event = Event(EventKind.PLAN, sim_time, {**arguments, "reachable": answer.reachable})
         return TrainingReply(True, data=answer._asdict(), events=(event,))
 
+    def _align(self, command: OperatorCommand) -> TrainingReply:
+        """Have the robot bring the guide onto the planned line, if it may and can."""
+        if not self.setup.settings.procedure.self_alignment:
+            return TrainingReply(False, self._texts.say("no self-alignment"))
+        procedure = self._training.state.procedure
+        assert procedure is not None, "the phase has a procedure"
+        assert procedure.present is not None, "the phase has a trajectory"
+        line = procedure.present.line
+        stand_off = command.arguments["standOffMm"] / MM_PER_M
+        path = self._procedure_motion.path(self._guide_axis, procedure, stand_off)
+        if not self._plan_reach.judge_guide(line.entry, line.direction, [stand_off]).reachable:
+            values = {"stand_off": command.arguments["standOffMm"]}
+            return TrainingReply(False, self._texts.say("line out of reach", **values))
+        self._teleoperation.start(path)
+        self._operator = command.sender
+        return TrainingReply(True)
+
     def _tasks(self) -> list[dict[str, object]]:
         return [
             {"name": task.name, "title": task.title, "complexity": task.complexity}
             for task in self.setup.scenario.tasks
         ]
 
+    def _procedures(self) -> list[dict[str, object]]:
+        return [
+            {
+                "name": procedure.name,
+                "title": procedure.title,
+                "kind": procedure.kind.value,
+                "trajectories": [trajectory.name for trajectory in procedure.trajectories],
+            }
+            for procedure in self.setup.scenario.procedures
+        ]
+
     def _motion_request(self, dt: float, operator_input: OperatorInput) -> MotionRequest:
-        """Return the requested motion; while the trial is paused the arm does not move."""
-        if self._training.state.phase is Phase.PAUSED:
+        """Return the requested motion; none while the trial is paused or the guide locked."""
+        phase = self._training.state.phase
+        if phase is Phase.PAUSED:
+            self._procedure_motion.stop()
+        if phase is Phase.PAUSED or phase in FED:
             stopped = self._teleoperation.stop()
             return MotionRequest(Motion.NONE, ended=MotionOutcome.STOPPED if stopped else None)
+        self._teleoperation.hold_direction(phase is Phase.ALIGNING)
         axes = self._view.stick_axes
         posture = self._posture
         return self._teleoperation.step(dt, operator_input, posture.tip, axes, posture.surface)
@@ -197,6 +259,7 @@ class Simulation:
         self._obstacle = ""
         self._operator = ""
         self._teleoperation.stop()
+        self._procedure_motion.reset()
         self._view.planned_target = None
 
     def _move(self, dt: float, motion_request: MotionRequest, sim_time: float) -> list[Event]:
@@ -264,7 +327,20 @@ class Simulation:
                 self._training.goal,
                 self.setup.settings.training,
             ),
+            feed=self._procedure_motion.feed.depth,
         )
+
+    @property
+    def _guide_axis(self) -> GuideAxis:
+        return GuideAxis(self._posture.tip.position, self._posture.tip.direction)
+
+    def _moment_of(self, command: OperatorCommand, sim_time: float) -> TouchMoment:
+        """Return when and where a command of the trial is carried out."""
+        feed = self._procedure_motion.feed
+        if command.name == CommandName.LOCK_GUIDE and self._training.state.phase is Phase.ALIGNING:
+            feed = self._procedure_motion.looking_ahead(self._guide_axis, self._head_to_world)
+        moment = self._touch_moment(sim_time)
+        return replace(moment, direction=self._guide_axis.direction, feed=feed)
 
     def _touch_moment(self, sim_time: float) -> TouchMoment:
         tip, clearance = self._posture.tip.position, self._posture.clearance

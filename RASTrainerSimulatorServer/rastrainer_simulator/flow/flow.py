@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Guidance, Phase
+from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, Guidance, Phase
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
@@ -25,7 +25,7 @@ from rastrainer_simulator.state import SimulationState, StepResult, TouchStage, 
 OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage)
 
 NOT_RECORDED = "not recorded"
-INTERRUPTED = "interrupted"
+INTERRUPTED = ("interrupted", "interrupted procedure")
 
 
 class Flow:
@@ -105,7 +105,8 @@ class Flow:
         """Pause what runs, since nobody can see it; `why` is the key of a sentence."""
         if self.playback is not None:
             self.playback.pause(True)
-        if self._session.training.phase is Phase.RUNNING and self._session.pages.top is None:
+        phase, page = self._session.training.phase, self._session.pages.top
+        if phase in (Phase.RUNNING, *PROCEDURE_PHASES) and page is None:
             self._unseen = why
             self._trial_screen.open_menu()
 
@@ -146,7 +147,7 @@ class Flow:
         self._note_trial(before[0])
         is_requested = self._trial_screen.take_menu_request()
         was_working = session.pages.top is None
-        if training.phase in (Phase.RUNNING, Phase.COMPLETE):
+        if training.phase in (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES):
             session.pages.show(None)
         elif training.phase is Phase.PAUSED:
             is_over = self._trial_screen.is_practice_over
@@ -193,7 +194,7 @@ class Flow:
         if self._unseen:
             return (ScreenMessage(self._session.texts.say(self._unseen), Tone.WARNING),)
         said = self._session.training.instruction
-        if isinstance(said, LocalizedText) and said.key == INTERRUPTED:
+        if isinstance(said, LocalizedText) and said.key in INTERRUPTED:
             return (ScreenMessage(self._session.texts.again(said), Tone.WARNING),)
         if isinstance(said, LocalizedText) and said.key == NOT_RECORDED:
             return (ScreenMessage(self._session.texts.again(said), Tone.ERROR),)

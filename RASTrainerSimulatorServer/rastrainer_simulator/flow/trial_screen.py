@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rastrainer.protocol import TRIAL_RUN, CommandName, Guidance, Phase, StepKind
+from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN, CommandName, Guidance, Phase, StepKind
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.start import StartPage
@@ -110,7 +110,7 @@ class TrialScreen(ArmScreen):
         """Open the menu; a trial that runs is paused, and the menu opens when it is."""
         session = self._session
         phase = session.training.phase
-        if phase is Phase.RUNNING:
+        if phase in (Phase.RUNNING, *PROCEDURE_PHASES):
             session.do(CommandName.PAUSE)
         else:
             page = TrialPage if phase is Phase.COMPLETE else StartPage

@@ -51,6 +51,8 @@ _PASSING = frozenset(
     {
         CommandName.JOG,
         CommandName.MOVE_TIP_TO,
+        CommandName.ALIGN_GUIDE,
+        CommandName.FEED,
         CommandName.SET_CAMERA,
         CommandName.PLAN_TARGET,
         CommandName.LIST_TASKS,

@@ -13,7 +13,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
-from rastrainer.journal.recording import Recording
+from rastrainer.journal.recording import WholeRecording
 from rastrainer.protocol import AbortReason, CommandName, Phase
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint
@@ -159,7 +159,7 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
 
 
 def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial:
-    header, trajectory = entries[0], Recording.of(entries).trajectory()
+    header, trajectory = entries[0], WholeRecording.of(entries).trajectory()
     touches = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
     points = tuple(
         TouchedPoint(

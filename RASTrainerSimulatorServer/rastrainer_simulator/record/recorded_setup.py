@@ -61,6 +61,15 @@ def setup_of(
             f"The trial was recorded with a scenario {name!r} whose files differ from those of "
             f"{setup.scenario.name!r} here: give its folder with --scenario."
         )
+    try:
+        is_same_procedure = setup.has_procedure_of(header)
+    except (KeyError, TypeError, AttributeError):
+        raise InputError("The journal's header does not tell its procedure as it should.") from None
+    if not is_same_procedure:
+        raise InputError(
+            f"The trial was recorded with a procedure {header['procedure']['name']!r} that differs "
+            f"from that of {setup.scenario.name!r} here: give its folder with --scenario."
+        )
     if setup.robot.name != header.get("robot"):
         raise InputError(f"The trial was recorded with another robot than {setup.robot.name} here.")
     return setup

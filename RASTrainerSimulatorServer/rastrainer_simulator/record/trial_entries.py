@@ -8,16 +8,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from rastrainer.journal.feed_recording import FeedRecording
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.procedure.record import ProcedureRecord
+from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
+from rastrainer_simulator.procedure_state import Tool
 from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
+from rastrainer_simulator.record.procedure_entries import procedure_record
 from rastrainer_simulator.record.recorded_setup import versions
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.record.view_report import GuidanceReport, NotedReport
@@ -35,11 +39,20 @@ if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
 
 SAMPLE_HZ = 50.0
-MUST_LAST = frozenset({EventKind.PHASE, EventKind.REGISTRATION, EventKind.TOUCH, EventKind.UNDO})
+MUST_LAST = frozenset(
+    {
+        EventKind.PHASE,
+        EventKind.REGISTRATION,
+        EventKind.TOUCH,
+        EventKind.UNDO,
+        EventKind.CHECKPOINT,
+    }
+)
 """Events that are not published before they are on the disk."""
 
 _KIND_OF_PHASE = {Phase.REGISTERED: "registered", Phase.IDLE: "aborted"}
-_SAMPLED = (Phase.RUNNING, Phase.COMPLETE)
+_SAMPLED = (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES)
+_TOUCHED = (EventKind.TOUCH.value, EventKind.CHECKPOINT.value)
 _Q = struct.Struct("<7d")
 
 
@@ -51,14 +64,14 @@ class TrialEntries:
         self.trial_id = trial_id
         self.started_utc = started_utc
         self._seed = simulation.trial_seed
-        self._scenario = simulation.setup.scenario.name
-        self._touch_rule = simulation.setup.settings.training.touch_rule
+        self._setup = simulation.setup
         self.versions = versions() | {"kinematics": simulation.kinematics_name}
         self._every = max(1, round(1.0 / (SAMPLE_HZ * dt)))
         self._sticks: tuple[Any, ...] | None = None
         self._trajectory = hashlib.sha256()
         self._utc: dict[float, str] = {}
         self._recording = Recording()
+        self._feeds = FeedRecording()
         self._display = DisplayUse()
         self.pending: list[dict[str, Any]] = []
 
@@ -95,7 +108,9 @@ class TrialEntries:
                 "seed": entries._seed,
                 "tickS": dt,
                 "before": asdict(StartingPoint.after(before)),
-                **simulation.setup.description(),
+                **simulation.setup.description(
+                    "" if training.procedure is None else training.procedure.name
+                ),
                 "versions": entries.versions,
             }
         )
@@ -118,8 +133,8 @@ class TrialEntries:
         training = state.training
         entries = cls(simulation, training.trial_id, earlier[0]["utc"], dt)
         for entry in earlier:
-            entries._recording.add(entry)
-            if entry["kind"] == "touch":
+            entries._collect(entry)
+            if entry["kind"] in _TOUCHED:
                 entries._utc[entry["simTime"] - dt] = entry["utc"]
             elif entry["kind"] == "display":
                 entries._display.add(DisplayReport.of(entry))
@@ -161,7 +176,7 @@ class TrialEntries:
             self._append(self._command_entry(times, command))
         registered = None
         for event in result.events:
-            if event.kind is EventKind.TOUCH:
+            if event.kind.value in _TOUCHED:
                 self._utc[event.sim_time] = times["utc"]
             entry = self._event_entry(times, event)
             if entry["kind"] == "registered":
@@ -185,7 +200,11 @@ class TrialEntries:
 
     def _append(self, entry: dict[str, Any]) -> None:
         self.pending.append(entry)
+        self._collect(entry)
+
+    def _collect(self, entry: Mapping[str, Any]) -> None:
         self._recording.add(entry)
+        self._feeds.add(entry)
 
     def motion(self) -> dict[str, float]:
         """Return the motion metrics of the trial so far."""
@@ -200,6 +219,9 @@ class TrialEntries:
         arguments = dict(command.arguments)
         if command.name == CommandName.START_TASK:
             arguments |= {"seed": self._seed, "trialId": self.trial_id}
+            if not arguments.get("procedure"):
+                # As in journals older than procedures.
+                arguments.pop("procedure", None)
         return {
             "kind": "command",
             **times,
@@ -225,7 +247,7 @@ class TrialEntries:
             trainee=training.trainee,
             task=training.task,
             mode=training.mode,
-            scenario=self._scenario,
+            scenario=self._setup.scenario.name,
             started_utc=self.started_utc,
             aborted_utc=utc,
             elapsed_s=before.elapsed,
@@ -235,7 +257,7 @@ class TrialEntries:
             rejected_touches=training.rejected,
             undone_touches=training.undone,
             versions=self.versions,
-            touch_rule=self._touch_rule.value,
+            touch_rule=self._setup.settings.training.touch_rule.value,
         )
 
     def _points(self, training: TrainingState) -> tuple[TouchedPoint, ...]:
@@ -257,7 +279,7 @@ class TrialEntries:
             trainee=training.trainee,
             task=training.task,
             mode=training.mode,
-            scenario=self._scenario,
+            scenario=self._setup.scenario.name,
             started_utc=self.started_utc,
             completed_utc=points[-1].utc,
             completion_time_s=training.touches[-1].elapsed,
@@ -265,9 +287,18 @@ class TrialEntries:
             rejected_touches=training.rejected,
             undone_touches=training.undone,
             versions=self.versions,
-            touch_rule=self._touch_rule.value,
+            touch_rule=self._setup.settings.training.touch_rule.value,
             display=self._display.summary(),
+            procedure=self._procedure_record(training),
         )
+
+    def _procedure_record(self, training: TrainingState) -> ProcedureRecord | None:
+        done = training.procedure
+        if done is None:
+            return None
+        plan = self._setup.scenario.procedure(done.name)
+        sha256 = self._setup.procedure_sha256[done.name]
+        return procedure_record(done, plan, sha256, self._feeds)
 
 
 def _input_entry(times: dict[str, Any], operator_input: OperatorInput) -> dict[str, Any]:
@@ -282,6 +313,7 @@ def _input_entry(times: dict[str, Any], operator_input: OperatorInput) -> dict[s
 
 
 def _sample_entry(times: dict[str, Any], state: SimulationState) -> dict[str, Any]:
+    is_fed = state.tool in (Tool.DRILL, Tool.ELECTRODE)
     return {
         "kind": "sample",
         **times,
@@ -289,4 +321,5 @@ def _sample_entry(times: dict[str, Any], state: SimulationState) -> dict[str, An
         "tipMm": [MM_PER_M * float(value) for value in state.tool_tip_to_world[:3, 3]],
         "clearanceMm": MM_PER_M * state.clearance,
         "depthMm": MM_PER_M * state.depth,
+        **({"feedMm": MM_PER_M * state.feed} if is_fed else {}),
     }

@@ -13,6 +13,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.replay_track import RecordedEvent, ReplayTrack, read_track
+from rastrainer.procedure.plan import Procedure
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
@@ -20,6 +21,9 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import stand_pose
+from rastrainer_simulator.procedure_state import ProcedureState, Tool
+from rastrainer_simulator.registration_state import TouchState
+from rastrainer_simulator.replay.recorded_procedure import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Event,
@@ -27,7 +31,6 @@ from rastrainer_simulator.state import (
     Motion,
     PlanInWorld,
     SimulationState,
-    TouchState,
     TrainingState,
 )
 from rastrainer_simulator.training.rules import TouchMoment
@@ -80,6 +83,8 @@ class RecordedTrial:
         is_same_robot = header["robot"] == setup.robot.name
         if not is_same_robot or not setup.is_of(header["scenario"]["sha256"]):
             raise InputError("The trial was recorded with another scenario or robot.")
+        if not setup.has_procedure_of(header):
+            raise InputError("The trial was recorded with another procedure.")
         if not track.events:
             raise InputError("The trial cannot be shown again: its journal holds no event.")
         self.trainee, self.task = str(header["trainee"]), str(header["task"])
@@ -93,8 +98,12 @@ class RecordedTrial:
         self._event_times = [event.time_s for event in track.events]
         self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])
         settings = setup.settings
+        name = header["procedure"]["name"] if "procedure" in header else ""
         self._situations = _situations(
-            track, scenario.task(self.task).labels, header["before"]["camera"] or settings.camera
+            track,
+            scenario.task(self.task).labels,
+            header["before"]["camera"] or settings.camera,
+            scenario.procedure(name) if name else None,
         )
         places = self._head_to_world[:3, :3] @ (scenario.task(self.task).fiducials / MM_PER_M).T
         places = (places + self._head_to_world[:3, 3:]).T
@@ -141,6 +150,7 @@ class RecordedTrial:
             camera=now.camera,
             planned_target=now.planned_target,
             depth=depth_m,
+            feed=self._feed(now.training, float(between(self._track.feed_mm)) / MM_PER_M),
             # The journal has one clearance for the whole tool: a contact counts as the tip's.
             touch=touch_stage(
                 TouchMoment(time_s, tip, clearance, depth_m),
@@ -151,6 +161,12 @@ class RecordedTrial:
                 self._training_settings,
             ),
         )
+
+    @staticmethod
+    def _feed(training: TrainingState, feed: float) -> float:
+        procedure = training.procedure
+        is_fed = procedure is not None and procedure.tool in (Tool.DRILL, Tool.ELECTRODE)
+        return feed if is_fed else 0.0
 
     def events_between(self, after_s: float, until_s: float) -> tuple[Event, ...]:
         """Return what happened later than one time and no later than another."""
@@ -189,19 +205,26 @@ class TrialLoading:
             raise InputError("The trial cannot be shown again: loading it was canceled.")
 
 
-def _situations(track: ReplayTrack, labels: tuple[str, ...], camera: str) -> list[_Situation]:
-    """Return the situation after each event."""
+def _situations(
+    track: ReplayTrack, labels: tuple[str, ...], camera: str, plan: Procedure | None
+) -> list[_Situation]:
+    """Return the situation after each event; `plan` is that of the trial's procedure, if any."""
     header = track.header
     training = TrainingState(
         trainee=header["trainee"],
         task=header["task"],
         mode=header["mode"],
         trial_id=header["trialId"],
+        procedure=None if plan is None else ProcedureState(plan.name),
     )
     situation = _Situation(training, Proximity.FREE, camera)
     situations = []
     for event in track.events:
         situation = _after(situation, event, labels)
+        training = situation.training
+        if plan is not None and training.procedure is not None:
+            procedure = procedure_after(training.procedure, event.entry, event.time_s, plan)
+            situation = replace(situation, training=replace(training, procedure=procedure))
         situations.append(situation)
     return situations
 
@@ -225,7 +248,10 @@ def _training_after(
 ) -> TrainingState:
     entry, touches = event.entry, before.touches
     if entry["kind"] == "rejected":
-        return replace(before, rejected=before.rejected + 1, instruction=entry["message"])
+        counts = "checkpoint" not in entry
+        return replace(before, rejected=before.rejected + counts, instruction=entry["message"])
+    if entry["kind"] == "checkpoint":
+        return before
     if entry["kind"] == "touch":
         place = _metres(entry["positionMm"])
         touch = TouchState(entry["label"], place, entry["simTime"], event.time_s)
@@ -254,7 +280,7 @@ def _training_after(
 def _elapsed(training: TrainingState, time_s: float) -> float:
     if training.phase is Phase.IDLE:
         return 0.0
-    if training.phase in (Phase.RUNNING, Phase.PAUSED):
+    if training.procedure is not None or training.phase in (Phase.RUNNING, Phase.PAUSED):
         return time_s
     return training.touches[-1].elapsed
 

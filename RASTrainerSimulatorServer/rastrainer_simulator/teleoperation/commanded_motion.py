@@ -126,7 +126,51 @@ class Moving:
         )
 
 
-CommandedMotion = JogCommand | MoveCommand
+VIA = 1e-3
+"""m: a waypoint this near is passed, whatever the direction of the tool there."""
+
+
+@dataclass(frozen=True)
+class PathCommand:
+    """Move the tip along waypoints; only the last one has to be reached exactly."""
+
+    waypoints: tuple[MoveCommand, ...]
+
+
+class FollowingPath:
+    """A path that is being followed."""
+
+    motion = Motion.MOVE
+
+    def __init__(self, command: PathCommand) -> None:
+        first, *following = command.waypoints
+        self._moving = Moving(first)
+        self._following = following
+
+    @property
+    def direction(self) -> Vector | None:
+        """Of the tool at the waypoint that is next."""
+        return self._moving.direction
+
+    @property
+    def goal(self) -> Vector:
+        """The waypoint that is next."""
+        return self._moving.goal
+
+    def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:
+        """Return this tick's displacement (m) from the velocity of the last tick (m/s)."""
+        return self._moving.displacement(dt, tip, velocity, acceleration)
+
+    def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
+        """Return how the path has ended, None while it lasts."""
+        if self._following and distance(tip, self.goal) <= VIA:
+            self._moving = Moving(self._following.pop(0))
+            return None
+        return self._moving.outcome(dt, tip, direction)
+
+
+CommandedMotion = JogCommand | MoveCommand | PathCommand
+Running = Jogging | Moving | FollowingPath
 
 
 def commanded_motion(command: OperatorCommand, camera: Axes, tool: Axes) -> CommandedMotion:
@@ -153,8 +197,10 @@ def _direction(given: Vector | None) -> Vector | None:
     return None if given is None or length(given) < 1e-9 else unit(given)
 
 
-def started(command: CommandedMotion) -> Jogging | Moving:
+def started(command: CommandedMotion) -> Running:
     """Return the motion that carries out a command."""
+    if isinstance(command, PathCommand):
+        return FollowingPath(command)
     return Jogging(command) if isinstance(command, JogCommand) else Moving(command)
 
 

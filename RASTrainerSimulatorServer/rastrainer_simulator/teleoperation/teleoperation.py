@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.state import Motion
 from rastrainer_simulator.teleoperation.axes import Axes
 from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
-    Jogging,
     MotionOutcome,
-    Moving,
+    Running,
     accelerated,
     started,
 )
 from rastrainer_simulator.teleoperation.tool_steering import (
     NearestSurface,
     SteeringSettings,
+    ToolDirection,
     ToolSteering,
 )
 from rastrainer_simulator.vectors import ZERO, Vector, scale, vector
@@ -118,9 +118,18 @@ class Teleoperation:
 
     def __init__(self, settings: TeleoperationSettings) -> None:
         self._settings = settings
-        self._steering = ToolSteering(settings.steering)
+        self._as_set = ToolSteering(settings.steering)
+        self._held = ToolSteering(replace(settings.steering, choice=ToolDirection.HELD))
+        self._steering = self._as_set
         self._velocity = ZERO
-        self._running: Jogging | Moving | None = None
+        self._running: Running | None = None
+
+    def hold_direction(self, is_held: bool) -> None:
+        """Have the operator hold and steer the tool's direction, whatever is set."""
+        steering = self._held if is_held else self._as_set
+        if steering is not self._steering:
+            steering.reset()
+            self._steering = steering
 
     def start(self, command: CommandedMotion) -> None:
         """Carry out a commanded motion in place of the one that is running."""
@@ -191,7 +200,7 @@ class Teleoperation:
 
     def _by_command(
         self,
-        running: Jogging | Moving,
+        running: Running,
         dt: float,
         tip: Tip,
         axes: Axes,

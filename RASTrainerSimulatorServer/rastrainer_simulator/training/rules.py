@@ -9,6 +9,7 @@ from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     FINISHED_PHASES,
     OPEN_PHASES,
+    PROCEDURE_PHASES,
     CommandName,
     Phase,
     TouchRule,
@@ -17,7 +18,8 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import TrainingState
-from rastrainer_simulator.vectors import Vector, distance
+from rastrainer_simulator.training.feed import NO_FEED, Feed
+from rastrainer_simulator.vectors import ZERO, Vector, distance
 
 RECORDING_FAILED = "RecordingFailed"
 """By it the control loop takes back what could not be written; clients cannot send it."""
@@ -25,25 +27,67 @@ RECORDING_FAILED = "RecordingFailed"
 INTERRUPTED = "Interrupted"
 """Pauses a trial that a server's end has cut short; clients cannot send it."""
 
-_AFTER_REGISTRATION = {Phase.IDLE: "no trial", **dict.fromkeys(OPEN_PHASES, "not registered")}
-_IN_A_TRIAL = {Phase.IDLE: "no trial", **dict.fromkeys(FINISHED_PHASES, "is registered")}
+_AT_THE_PROCEDURE = {
+    Phase.VERIFYING: "verifying now",
+    Phase.ALIGNING: "aligning now",
+    Phase.DRILLING: "drilling now",
+    Phase.INSERTING: "inserting now",
+}
+_FINISHED = dict.fromkeys(FINISHED_PHASES, "is registered")
+_AFTER_REGISTRATION = {
+    Phase.IDLE: "no trial",
+    **dict.fromkeys(OPEN_PHASES, "not registered"),
+    **_AT_THE_PROCEDURE,
+}
+_IN_A_TRIAL = {Phase.IDLE: "no trial", **_FINISHED}
 _NOT_PAUSED = {Phase.PAUSED: "is paused"}
+_AT_THE_TOUCHES = {**_IN_A_TRIAL, **_NOT_PAUSED, **_AT_THE_PROCEDURE}
+_ARM_IS_HELD = {phase: _AT_THE_PROCEDURE[phase] for phase in (Phase.DRILLING, Phase.INSERTING)}
+
+
+def _only_in(*phases: Phase) -> dict[Phase, str]:
+    """Return the refusals of a command that belongs to some phases of a procedure."""
+    before = dict.fromkeys((Phase.RUNNING, Phase.COMPLETE), "not at the procedure")
+    elsewhere = {**_IN_A_TRIAL, **before, **_NOT_PAUSED, **_AT_THE_PROCEDURE}
+    return {phase: key for phase, key in elsewhere.items() if phase not in phases}
+
 
 REFUSALS: Mapping[str, Mapping[Phase, str]] = {
     CommandName.LIST_TASKS: {},
-    CommandName.START_TASK: dict.fromkeys(OPEN_PHASES, "trial is open"),
-    CommandName.JOG: _NOT_PAUSED,
-    CommandName.MOVE_TIP_TO: _NOT_PAUSED,
-    CommandName.CAPTURE: {**_IN_A_TRIAL, **_NOT_PAUSED, Phase.COMPLETE: "all touched"},
-    CommandName.UNDO: {**_IN_A_TRIAL, **_NOT_PAUSED},
-    CommandName.REGISTER: {**_IN_A_TRIAL, **_NOT_PAUSED, Phase.RUNNING: "not all touched"},
+    CommandName.START_TASK: {
+        **dict.fromkeys(OPEN_PHASES, "trial is open"),
+        **dict.fromkeys(PROCEDURE_PHASES, "procedure is open"),
+    },
+    CommandName.JOG: {**_NOT_PAUSED, **_ARM_IS_HELD},
+    CommandName.MOVE_TIP_TO: {**_NOT_PAUSED, **_ARM_IS_HELD},
+    CommandName.CAPTURE: {
+        phase: key
+        for phase, key in {**_AT_THE_TOUCHES, Phase.COMPLETE: "all touched"}.items()
+        if phase is not Phase.VERIFYING
+    },
+    CommandName.UNDO: _AT_THE_TOUCHES,
+    CommandName.REGISTER: {**_AT_THE_TOUCHES, Phase.RUNNING: "not all touched"},
+    CommandName.USE_REGISTRATION: _only_in(Phase.VERIFYING),
+    CommandName.ACCEPT_REGISTRATION: _only_in(Phase.VERIFYING),
+    CommandName.REGISTER_AGAIN: _only_in(Phase.VERIFYING),
+    CommandName.ALIGN_GUIDE: _only_in(Phase.ALIGNING),
+    CommandName.LOCK_GUIDE: _only_in(Phase.ALIGNING),
+    CommandName.FEED: _only_in(Phase.DRILLING, Phase.INSERTING),
+    CommandName.RETRACT_DRILL: _only_in(Phase.DRILLING),
+    CommandName.START_INSERTION: _only_in(Phase.DRILLING),
+    CommandName.RELEASE_INSTRUMENT: _only_in(Phase.INSERTING),
     CommandName.ABORT: _IN_A_TRIAL,
     CommandName.PAUSE: {
         **_IN_A_TRIAL,
         Phase.PAUSED: "already paused",
         Phase.COMPLETE: "all touched",
     },
-    CommandName.RESUME: {**_IN_A_TRIAL, Phase.RUNNING: "not paused", Phase.COMPLETE: "all touched"},
+    CommandName.RESUME: {
+        **_IN_A_TRIAL,
+        Phase.RUNNING: "not paused",
+        Phase.COMPLETE: "all touched",
+        **_AT_THE_PROCEDURE,
+    },
     CommandName.SET_CAMERA: {},
     CommandName.SUBMIT_REGISTRATION: _AFTER_REGISTRATION,
     CommandName.TRIAL_SCORED: _AFTER_REGISTRATION,
@@ -57,7 +101,7 @@ REFUSALS: Mapping[str, Mapping[Phase, str]] = {
 ENDING_A_TRIAL = (CommandName.SUBMIT_REGISTRATION, CommandName.TRIAL_SCORED)
 """Commands by which a client ends a registered trial: its registration, then its score."""
 
-NAMING_A_TRIAL = (*ENDING_A_TRIAL, CommandName.GET_TRIAL)
+NAMING_A_TRIAL = (*ENDING_A_TRIAL, CommandName.USE_REGISTRATION, CommandName.GET_TRIAL)
 
 
 def refusal(command: OperatorCommand, state: TrainingState, texts: Texts) -> str | None:
@@ -107,12 +151,17 @@ class TouchMoment:
         tip: position of the tool's tip, World, m.
         tip_clearance: signed distance of the tip to the skin, m; below 0 within the head.
         depth: how far the tip is pressed in, m; see `SimulationState.depth`.
+        direction: of the tool, a unit vector from A7 to the tip, World; ZERO where it plays no
+            part.
+        feed: how far what is in the guide is beyond its tip; of LockGuide, what lies ahead of it.
     """
 
     sim_time: float
     tip: Vector
     tip_clearance: float
     depth: float = 0.0
+    direction: Vector = ZERO
+    feed: Feed = NO_FEED
 
 
 def refused_touch(

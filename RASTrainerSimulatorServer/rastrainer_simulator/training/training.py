@@ -1,4 +1,4 @@
-"""The trial: from StartTask over fifteen touches to the score."""
+"""The trial: from StartTask over fifteen touches, and perhaps a procedure, to the score."""
 
 from __future__ import annotations
 
@@ -9,17 +9,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import CommandName, Phase
+from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.state import (
-    Event,
-    EventKind,
-    FinalRegistration,
-    TouchState,
-    TrainingState,
-    TrialResult,
+from rastrainer_simulator.procedure_state import ProcedureState
+from rastrainer_simulator.registration_state import FinalRegistration, TouchState
+from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
+from rastrainer_simulator.training.feed import Feed, ProcedureSettings, recorded_feed
+from rastrainer_simulator.training.procedure_phases import (
+    OF_A_PROCEDURE,
+    PhaseStep,
+    ProcedurePhases,
+    RefusedStep,
 )
 from rastrainer_simulator.training.rules import (
     INTERRUPTED,
@@ -40,12 +42,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TrainingReply:
-    """What a command led to."""
+    """What a command led to; `feed` is what is in the guide from now on, None as before."""
 
     ok: bool
     message: str = ""
     data: Mapping[str, Any] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
+    feed: Feed | None = None
 
 
 class Training:
@@ -61,10 +64,14 @@ class Training:
         seed: int,
         settings: TrainingSettings | None = None,
         texts: Texts | None = None,
+        procedure: ProcedureSettings | None = None,
     ) -> None:
         self._scenario = scenario
         self._seed = seed
         self._settings = settings or TrainingSettings()
+        self._procedure_settings = procedure or ProcedureSettings()
+        self._phases: ProcedurePhases | None = None
+        self._feeds: dict[int, Feed] = {}
         self._texts = texts or Texts()
         self._number = 0
         self._clock = TrialClock(0.0)
@@ -85,6 +92,7 @@ class Training:
             CommandName.SUBMIT_REGISTRATION: self._take_registration,
             CommandName.TRIAL_SCORED: self._scored,
             CommandName.GET_TRIAL: self._get_trial,
+            **dict.fromkeys(OF_A_PROCEDURE, self._in_procedure),
             RECORDING_FAILED: self._recording_failed,
             INTERRUPTED: self._interrupted,
         }
@@ -122,20 +130,32 @@ class Training:
         sentence = refusal(command, self.state, self._texts)
         if sentence is not None:
             return TrainingReply(False, sentence)
-        return self._handlers[command.name](command, now)
+        left = self.state.revision
+        reply = self._handlers[command.name](command, now)
+        if self.state.revision != left:
+            self._feeds[left] = now.feed
+        return reply
 
     def elapsed(self, sim_time: float) -> float:
-        """Return the trial's time in s, pauses excluded; it ends with the last touch."""
-        if self.state.phase is Phase.IDLE:
+        """Return the trial's time in s, pauses excluded.
+
+        It ends with the last touch, or with the procedure.
+        """
+        phase, procedure = self.state.phase, self.state.procedure
+        if phase is Phase.IDLE:
             return 0.0
-        if self.state.phase in (Phase.RUNNING, Phase.PAUSED):
+        if procedure is not None and procedure.ended_s is not None:
+            return procedure.ended_s
+        if procedure is not None or phase in (Phase.RUNNING, Phase.PAUSED):
             return self._clock.elapsed(sim_time)
         return self.state.touches[-1].elapsed
 
     def _start(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         arguments = command.arguments
+        chosen_procedure = arguments.get("procedure") or ""
         try:
             task = self._scenario.task(arguments["task"])
+            self._phases = self._phases_of(chosen_procedure, task)
         except InputError as error:
             return TrainingReply(False, str(error))
         number = self._number
@@ -148,7 +168,7 @@ class Training:
         self._fiducials = dict(zip(self.truth.fiducials, map(tuple, places.tolist()), strict=True))
         self._clock = TrialClock(now.sim_time)
         idle = TrainingState(revision=self.state.revision)
-        self._history = {idle.revision: idle}
+        self._history, self._feeds = {idle.revision: idle}, {}
         started = TrainingState(
             phase=Phase.RUNNING,
             trainee=arguments["trainee"],
@@ -157,11 +177,52 @@ class Training:
             trial_id=arguments.get("trialId") or trial_id(self._seed, number),
             next_point=task.labels[0],
             revision=self.state.revision,
+            procedure=ProcedureState(chosen_procedure) if chosen_procedure else None,
         )
         event = self._enter(started, "start", now)
         return TrainingReply(True, data=self._summary(), events=(event,))
 
-    def _capture(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _phases_of(self, procedure: str, task: Task) -> ProcedurePhases | None:
+        """Return the phases of a procedure, None without one.
+
+        Raises:
+            InputError: the scenario has no such procedure.
+        """
+        if not procedure:
+            return None
+        plan = self._scenario.procedure(procedure)
+        settings = self._procedure_settings
+        return ProcedurePhases(plan, task.labels, self._settings, settings, self._texts)
+
+    def _in_procedure(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+        """Carry out a command of the procedure in its phase."""
+        assert self._phases is not None, "the phase has a procedure"
+        elapsed = self._clock.elapsed(now.sim_time)
+        step = self._phases.step(command, self.state, now, elapsed)
+        if isinstance(step, PhaseStep):
+            return self._taken(step, now)
+        return self._refused(step, now)
+
+    def _taken(self, step: PhaseStep, now: TouchMoment) -> TrainingReply:
+        if step.kind is EventKind.PHASE:
+            event = self._enter(step.state, step.key, now, **step.values)
+            event = replace(event, data={**event.data, **step.data, **step.recorded})
+            data = {**self._summary(), **step.data}
+            return TrainingReply(True, data=data, events=(event,), feed=step.feed)
+        self._keep(step.state, step.key, **step.values)
+        event = Event(step.kind, now.sim_time, step.data)
+        return TrainingReply(True, data=step.data, events=(event,), feed=step.feed)
+
+    def _refused(self, step: RefusedStep, now: TouchMoment) -> TrainingReply:
+        if step.data is None:
+            return TrainingReply(False, step.sentence)
+        self.state = replace(self.state, instruction=step.sentence)
+        event = Event(EventKind.REJECTED, now.sim_time, step.data)
+        return TrainingReply(False, step.sentence, events=(event,))
+
+    def _capture(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+        if self.state.phase is Phase.VERIFYING:
+            return self._in_procedure(command, now)
         state = self.state
         label, task = state.next_point, self._task
         assert label is not None
@@ -213,7 +274,9 @@ class Training:
             events.append(self._enter(undone, "undone", now, label=label))
         return TrainingReply(True, data=data, events=tuple(events))
 
-    def _register(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+    def _register(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+        if self._phases is not None:
+            return self._in_procedure(command, now)
         event = self._enter(replace(self.state, phase=Phase.REGISTERED), "registered", now)
         data = {**self._summary(), "completionTimeS": self.state.touches[-1].elapsed}
         return TrainingReply(True, data=data, events=(event,))
@@ -234,6 +297,10 @@ class Training:
 
     def _resume(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         self._clock.resume(now.sim_time)
+        procedure = self.state.procedure
+        if procedure is not None and procedure.stage in PROCEDURE_PHASES:
+            assert self._phases is not None
+            return self._taken(self._phases.resumed(self.state), now)
         return TrainingReply(
             True, events=(self._enter(replace(self.state, phase=Phase.RUNNING), "resumed", now),)
         )
@@ -297,14 +364,16 @@ class Training:
         if kept is None:
             return TrainingReply(True)
         sentence = self._texts.say("not recorded", reason=command.arguments["reason"])
-        if kept.phase is Phase.RUNNING:
+        if kept.phase in (Phase.RUNNING, *PROCEDURE_PHASES):
             self._clock.pause(now.sim_time)
             kept = replace(kept, phase=Phase.PAUSED)
         if kept.phase is Phase.IDLE:
             self._leave()
+        feed = self._feeds.get(kept.revision, now.feed)
         back = replace(kept, revision=self.state.revision)
-        event = self._enter(back, "not recorded", now, reason=command.arguments["reason"])
-        return TrainingReply(True, message=sentence, events=(event,))
+        then = replace(now, feed=feed)
+        event = self._enter(back, "not recorded", then, reason=command.arguments["reason"])
+        return TrainingReply(True, message=sentence, events=(event,), feed=feed)
 
     def _interrupted(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Pause a trial that runs; one whose points are all touched has no time to stop."""
@@ -313,14 +382,16 @@ class Training:
         else:
             self._clock.pause(now.sim_time)
             paused = replace(self.state, phase=Phase.PAUSED)
-            kept = len(paused.touches)
-            event = self._enter(paused, "interrupted", now, kept=kept)
+            procedure = paused.procedure
+            is_touching = procedure is None or procedure.stage not in PROCEDURE_PHASES
+            key = "interrupted" if is_touching else "interrupted procedure"
+            event = self._enter(paused, key, now, kept=len(paused.touches))
         return TrainingReply(True, events=(event,))
 
     def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
         """Enter another phase and return the event of it."""
         self._keep(state, key, **values)
-        data = {**self._summary(), "instruction": self.state.instruction}
+        data = {**self._summary(), "instruction": self.state.instruction, **recorded_feed(now.feed)}
         return Event(EventKind.PHASE, now.sim_time, data)
 
     def _keep(self, state: TrainingState, key: str, **values: object) -> None:
@@ -343,7 +414,7 @@ class Training:
 
     def _summary(self) -> dict[str, Any]:
         state = self.state
-        return {
+        summary: dict[str, Any] = {
             "trialId": state.trial_id,
             "phase": state.phase.value,
             "trainee": state.trainee,
@@ -351,6 +422,10 @@ class Training:
             "mode": state.mode,
             "nextPoint": state.next_point,
         }
+        if state.procedure is not None:
+            at = {"name": state.procedure.name, "stage": state.procedure.stage.value}
+            summary["procedure"] = {**at, "trajectory": state.procedure.trajectory}
+        return summary
 
     def _revealed(self, matrix: tuple[float, ...]) -> dict[str, Any]:
         touches = (

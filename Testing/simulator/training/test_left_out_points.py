@@ -13,7 +13,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import make_record
-from Testing.simulator.training.test_training import Trial
+from Testing.simulator.training.hand_driven import Trial
 
 TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
 BAD_MM = 4.0

@@ -3,7 +3,8 @@
 import pytest
 
 from rastrainer.protocol import Phase, Proximity
-from rastrainer_simulator.state import TouchStage, TouchState, TrainingState
+from rastrainer_simulator.registration_state import TouchState
+from rastrainer_simulator.state import TouchStage, TrainingState
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
 from rastrainer_simulator.training.touch_stage import touch_stage
 

@@ -6,60 +6,31 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import CommandName, Phase, TouchRule, check_arguments
+from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, TouchRule, check_arguments
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.english import ENGLISH
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.training.rules import (
     RECORDING_FAILED,
     REFUSALS,
-    TouchMoment,
     TrainingSettings,
 )
-from rastrainer_simulator.training.training import Training
-
-ANY_MATRIX = tuple(float(v) for v in np.eye(4).ravel())
-REGISTRATION = {"matrix": ANY_MATRIX, "freMm": 1.2, "expectedTreMm": 0.9}
-SCORE = {"score": 81.0, "details": {}}
-NAMING_A_TRIAL = (CommandName.SUBMIT_REGISTRATION, CommandName.TRIAL_SCORED, CommandName.GET_TRIAL)
-
-
-class Trial:
-    """A trial driven by hand: the tip is put wherever it is wanted."""
-
-    def __init__(self, scenario, seed=5, **others):
-        self.training = Training(scenario, seed, **others)
-        self.now = 10.0
-
-    def do(self, name, tip=(0.0, 0.0, 0.0), above_mm=0.0, **arguments):
-        command = OperatorCommand(name, arguments)
-        if name in NAMING_A_TRIAL:
-            trial_id = self.state.trial_id
-            command = OperatorCommand(name, {"trialId": trial_id, **arguments})
-        return self.training.handle(command, TouchMoment(self.now, tip, above_mm / MM_PER_M))
-
-    def start(self, task="task-1", **others):
-        return self.do(CommandName.START_TASK, task=task, trainee="P01", mode="desktop", **others)
-
-    def fiducial(self, label):
-        point = self.training.truth.fiducials[label]
-        return tuple(self.training.truth.in_world(point) / MM_PER_M)
-
-    def touch(self, count=1):
-        for _ in range(count):
-            reply = self.do(CommandName.CAPTURE, self.fiducial(self.state.next_point))
-            assert reply.ok, reply.message
-        return reply
-
-    @property
-    def state(self):
-        return self.training.state
+from Testing.simulator.training.hand_driven import (
+    DRILLED,
+    LOCKABLE,
+    REGISTRATION,
+    SCORE,
+    VERTEX,
+    Trial,
+    at_procedure,
+)
 
 
 def in_phase(scenario, phase):
-    """Return a trial that stands in a phase."""
+    """Return a trial that stands in a phase; those of a procedure belong to one with one."""
+    if phase in PROCEDURE_PHASES:
+        return at_procedure(scenario, phase)
     trial = Trial(scenario)
     if phase is Phase.IDLE:
         return trial
@@ -78,16 +49,31 @@ def in_phase(scenario, phase):
 
 RIGHT = {
     CommandName.START_TASK: {Phase.IDLE, Phase.REGISTERED, Phase.SCORED},
-    CommandName.CAPTURE: {Phase.RUNNING},
+    CommandName.CAPTURE: {Phase.RUNNING, Phase.VERIFYING},
     CommandName.UNDO: {Phase.RUNNING, Phase.COMPLETE},
     CommandName.REGISTER: {Phase.COMPLETE},
-    CommandName.ABORT: {Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE},
-    CommandName.PAUSE: {Phase.RUNNING},
+    CommandName.USE_REGISTRATION: {Phase.VERIFYING},
+    CommandName.ACCEPT_REGISTRATION: {Phase.VERIFYING},
+    CommandName.REGISTER_AGAIN: {Phase.VERIFYING},
+    CommandName.LOCK_GUIDE: {Phase.ALIGNING},
+    CommandName.RETRACT_DRILL: {Phase.DRILLING},
+    CommandName.START_INSERTION: {Phase.DRILLING},
+    CommandName.RELEASE_INSTRUMENT: {Phase.INSERTING},
+    CommandName.ABORT: {Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE, *PROCEDURE_PHASES},
+    CommandName.PAUSE: {Phase.RUNNING, *PROCEDURE_PHASES},
     CommandName.RESUME: {Phase.PAUSED},
     CommandName.SUBMIT_REGISTRATION: {Phase.REGISTERED, Phase.SCORED},
     CommandName.GET_TRIAL: set(Phase) - {Phase.IDLE},
 }
-WHAT_WOULD_BE_RIGHT = ("StartTask", "Register", "Capture", "Resume", "Abort", "Undo")
+WHAT_WOULD_BE_RIGHT = (
+    *("StartTask", "Register", "Capture", "Resume", "Abort", "Undo"),
+    *("AcceptRegistration", "LockGuide", "StartInsertion", "ReleaseInstrument"),
+)
+MOMENTS = {
+    CommandName.LOCK_GUIDE: LOCKABLE,
+    CommandName.START_INSERTION: DRILLED,
+    CommandName.RELEASE_INSTRUMENT: DRILLED,
+}
 
 
 @pytest.mark.parametrize(("name", "phase"), list(itertools.product(RIGHT, Phase)))
@@ -99,9 +85,10 @@ def test_each_command_is_carried_out_in_its_phases_and_else_refused_with_what_wo
     arguments = {
         CommandName.START_TASK: {"task": "task-2", "trainee": "P02", "mode": "hmd"},
         CommandName.SUBMIT_REGISTRATION: REGISTRATION,
+        CommandName.USE_REGISTRATION: trial.exact_registration(),
     }.get(name, {})
-    tip = trial.fiducial(before.next_point) if before.next_point else (0.0, 0.0, 0.0)
-    reply = trial.do(name, tip, **arguments)
+    tip = trial.fiducial(before.next_point) if before.next_point else trial.place(VERTEX)
+    reply = trial.do(name, tip, feed=MOMENTS.get(name), **arguments)
     assert reply.ok is (phase in RIGHT[name])
     if not reply.ok:
         assert trial.state is before

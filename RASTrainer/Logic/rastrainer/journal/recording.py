@@ -6,14 +6,14 @@ import math
 from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
-from rastrainer.protocol import Phase, Proximity
+from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
 
 _COLUMNS = 6
 _T = TypeVar("_T", bound="Recording")
@@ -23,8 +23,12 @@ class Recording:
     """Collects a journal's entries; `trajectory` is the result so far.
 
     The simulator adds entries while the trial runs, a reader adds them from the file: the numbers
-    are the same.
+    are the same. Of a trial with a procedure only the touching counts: in the phases after it the
+    time stands still, as in a pause, and what the tool does in them is left out.
     """
+
+    STANDING_STILL: ClassVar = frozenset(phase.value for phase in (Phase.PAUSED, *PROCEDURE_PHASES))
+    """Phases in which the trajectory's time stands still."""
 
     def __init__(self) -> None:
         self._start_s = self._tick_s = 0.0
@@ -99,6 +103,8 @@ class Recording:
     def _add_sample(self, entry: Mapping[str, Any]) -> bool:
         """Keep a sample that is later than the last one; return whether it was kept."""
         time = self._trial_time(entry["simTime"])
+        if self._paused_since is not None:
+            return False
         if self._samples and time <= self._samples[-_COLUMNS]:
             return False
         x, y, z = entry["tipMm"]
@@ -108,6 +114,8 @@ class Recording:
         return True
 
     def _trial_time(self, sim_time: float) -> float:
+        if self._paused_since is not None:
+            sim_time = self._paused_since
         return sim_time - self._start_s - self._paused_s
 
     def _event_time(self, entry: Mapping[str, Any]) -> float:
@@ -125,7 +133,8 @@ class Recording:
         self._touches.append(self._touch_of(entry))
 
     def _rejected(self, entry: Mapping[str, Any]) -> None:
-        self._refused.append(self._touch_of(entry))
+        if "checkpoint" not in entry:
+            self._refused.append(self._touch_of(entry))
 
     def _touch_of(self, entry: Mapping[str, Any]) -> Touch:
         x, y, z = entry["positionMm"]
@@ -140,10 +149,11 @@ class Recording:
 
     def _phase(self, entry: Mapping[str, Any]) -> None:
         now = entry["simTime"] - self._tick_s
-        if entry["phase"] == Phase.PAUSED.value and self._paused_since is None:
-            self._paused_since = now
-            self._pauses += 1
-        elif entry["phase"] == Phase.RUNNING.value and self._paused_since is not None:
+        if entry["phase"] in self.STANDING_STILL:
+            if self._paused_since is None:
+                self._paused_since = now
+                self._pauses += entry["phase"] == Phase.PAUSED.value
+        elif self._paused_since is not None:
             self._paused_s += now - self._paused_since
             self._paused_since = None
         # Touches that could not be written were undone, back to this fiducial.
@@ -159,11 +169,13 @@ class Recording:
     def _proximity(self, entry: Mapping[str, Any]) -> None:
         # This event is at the end of its tick, unlike those of commands.
         now, state = self._trial_time(entry["simTime"]), Proximity(entry["to"])
+        # What begins and ends while the time stands still is left out.
+        counts = self._paused_since is None
         if self._state is Proximity.FREE:
             self._near_since = now
-        if state is Proximity.FREE:
+        if state is Proximity.FREE and (counts or self._near_since < now):
             self._near.append(Interval(self._near_since, now))
-        if self._state is Proximity.CONTACT:
+        if self._state is Proximity.CONTACT and (counts or self._contact_since < now):
             self._press(entry)
             self._contacts.append(self._contact_until(now))
         if state is Proximity.CONTACT:
@@ -172,7 +184,7 @@ class Recording:
 
     def _press(self, entry: Mapping[str, Any]) -> None:
         """Update the depth of the contact; older journals have none."""
-        if self._state is Proximity.CONTACT:
+        if self._state is Proximity.CONTACT and self._paused_since is None:
             self._contact_depth = max(self._contact_depth, entry.get("depthMm", 0.0))
 
     def _contact_until(self, end_s: float) -> Interval:
@@ -185,6 +197,12 @@ class Recording:
             label: transforms.apply(head_to_world, np.array(position, dtype=float))
             for label, position in truth["fiducials"].items()
         }
+
+
+class WholeRecording(Recording):
+    """Also keeps what the tool does in the phases of a procedure; only a pause takes no time."""
+
+    STANDING_STILL: ClassVar = frozenset({Phase.PAUSED.value})
 
 
 def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray) -> Interval:

@@ -12,11 +12,22 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.journal.recording import Recording
+from rastrainer.journal.recording import WholeRecording
 from rastrainer.motion.trajectory import Trajectory
 
 EVENTS = frozenset(
-    {"phase", "touch", "undo", "rejected", "proximity", "camera", "plan", "registered", "aborted"}
+    {
+        "phase",
+        "touch",
+        "undo",
+        "rejected",
+        "checkpoint",
+        "proximity",
+        "camera",
+        "plan",
+        "registered",
+        "aborted",
+    }
 )
 """Kinds of entries that change the view besides the arm."""
 
@@ -36,12 +47,14 @@ class ReplayTrack:
         header: the journal's first entry.
         trajectory: of the tool's tip.
         q: (n, 7) float, joint angles in rad, one row per sample.
+        feed_mm: (n,) float, how far drill or instrument was beyond the guide's tip; 0 without.
         events: in order.
     """
 
     header: Mapping[str, Any]
     trajectory: Trajectory
     q: np.ndarray
+    feed_mm: np.ndarray
     events: tuple[RecordedEvent, ...]
 
 
@@ -73,15 +86,17 @@ def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTr
     trajectory, q = recording.trajectory(), np.array(recording.postures, dtype=np.float64)
     if len(q) < 2 or q.shape != (len(trajectory.times_s), 7):
         raise InputError(f"{path} holds no movement that could be shown again.")
-    return ReplayTrack(reading.header, trajectory, q, tuple(recording.events))
+    feeds = np.array(recording.feeds, dtype=np.float64)
+    return ReplayTrack(reading.header, trajectory, q, feeds, tuple(recording.events))
 
 
-class _ReplayRecording(Recording):
+class _ReplayRecording(WholeRecording):
     """Also keeps the joint angles of each kept sample, and the events."""
 
     def __init__(self) -> None:
         super().__init__()
         self.postures: list[list[float]] = []
+        self.feeds: list[float] = []
         self.events: list[RecordedEvent] = []
 
     def add(self, entry: Mapping[str, Any]) -> None:
@@ -96,4 +111,5 @@ class _ReplayRecording(Recording):
         counts = super()._add_sample(entry)
         if counts:
             self.postures.append(entry["q"])
+            self.feeds.append(entry.get("feedMm", 0.0))
         return counts

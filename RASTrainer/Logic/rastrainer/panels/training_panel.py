@@ -22,7 +22,7 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.protocol import TRIAL_RUN, Mode, Phase, Proximity
+from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN, Mode, Phase, Proximity
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.training_logic import TrialStatus
@@ -34,9 +34,14 @@ PHASES = {
     Phase.RUNNING.value: _("the trial is running"),
     Phase.PAUSED.value: _("the trial is paused"),
     Phase.COMPLETE.value: _("all points are touched"),
+    Phase.VERIFYING.value: _("the registration is being verified"),
+    Phase.ALIGNING.value: _("the guide is being aligned"),
+    Phase.DRILLING.value: _("the skull is being drilled"),
+    Phase.INSERTING.value: _("the instrument is being inserted"),
     Phase.REGISTERED.value: _("registered, being scored"),
     Phase.SCORED.value: _("the trial is scored"),
 }
+_PAUSABLE = (Phase.RUNNING, *PROCEDURE_PHASES)
 NEARNESS = {
     Proximity.FREE.value: (GREEN, _("free")),
     Proximity.PROXIMITY.value: (YELLOW, _("near the head")),
@@ -168,7 +173,7 @@ class TrainingPanel:
             setUsable(button, mayStart, tip, reason)
         isPaused = progress.phase == Phase.PAUSED.value
         ui.pauseButton.text = _("Resume") if isPaused else _("Pause")
-        mayPause = isConnected and (isPaused or progress.phase == Phase.RUNNING.value)
+        mayPause = isConnected and (isPaused or progress.phase in _PAUSABLE)
         noTrial = _("No trial is running.")
         setUsable(ui.pauseButton, mayPause, _("Pause the trial and its time."), noTrial)
         setUsable(

@@ -10,18 +10,18 @@ import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, pair
+from rastrainer.files.point_list import PointList
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.localization_error import error_along_surface
-from rastrainer.registration.registration import Registration, register_all_kinds
-from rastrainer.registration.target_error import TargetError, target_error
+from rastrainer.registration.registration import Registration
+from rastrainer.registration.target_error import TargetError
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial import ctps
 from rastrainer.trial.advice import advise
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
+from rastrainer.trial.score_reference import region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
+from rastrainer.trial.touch_registration import normals_at, register_touches
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
 
 
@@ -136,7 +136,7 @@ class TrialAnalysis:
             ScoreMeasures.of(record.completion_time_s, tre_mm, record.motion),
             score_reference(scenario, record.task, references),
         )
-        normals = _normals_at(scenario, record.task, self.rigid.labels)
+        normals = normals_at(scenario, record.task, self.rigid.labels)
         feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory)
         return replace(self, truth=truth, score=score, feedback=feedback)
 
@@ -173,35 +173,21 @@ def analyze_trial(
         InputError: the scenario has no such task or labels, or the points cannot be registered, or
             the trial's contacts were not measured.
     """
-    task = scenario.task(record.task)
-    labels, moving, fixed = pair(
-        PointList(record.labels, record.positions_mm), PointList(task.labels, task.fiducials)
-    )
-    fits = register_all_kinds(moving, fixed, labels)
-    normals = _normals_at(scenario, record.task, labels)
-    errors = {}
-    for kind, fit in fits.items():
-        pause()
-        localization = error_along_surface(fit, normals)
-        pause()
-        errors[kind] = target_error(fit, scenario.target_position, localization)
-    pause()
+    touches = PointList(record.labels, record.positions_mm)
+    registered = register_touches(touches, scenario, record.task, pause)
+    rigid = registered.rigid
+    normals = normals_at(scenario, record.task, rigid.labels)
     analysis = TrialAnalysis(
         record=record,
         target_name=scenario.target_name,
-        fits=fits,
-        target_errors=errors,
+        fits=registered.fits,
+        target_errors=registered.target_errors,
         truth=None,
         score=None,
-        published_score=published_score(record, fits[RIGID].fre_mm, cohort),
-        feedback=trial_feedback(None, fits[RIGID], normals, record.motion, trajectory),
+        published_score=published_score(record, rigid.fre_mm, cohort),
+        feedback=trial_feedback(None, rigid, normals, record.motion, trajectory),
     )
     return analysis if truth is None else analysis.scored(scenario, truth, references, trajectory)
-
-
-def _normals_at(scenario: Scenario, task_name: str, labels: Sequence[str]) -> np.ndarray:
-    task = scenario.task(task_name)
-    return fiducial_normals(scenario, task_name)[[task.labels.index(label) for label in labels]]
 
 
 def published_score(

@@ -8,16 +8,13 @@ from __future__ import annotations
 from typing import Any
 
 from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.trial.touch_registration import TouchRegistration
 
 
 def registration_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
     """Return the arguments of SubmitRegistration, ready for JSON."""
-    return {
-        "trialId": analysis.record.trial_id,
-        "matrix": [float(value) for value in analysis.rigid.matrix.ravel()],
-        "freMm": analysis.rigid.fre_mm,
-        "expectedTreMm": analysis.expected_tre.expected_mm,
-    }
+    registered = TouchRegistration(analysis.fits, analysis.target_errors)
+    return registered.arguments(analysis.record.trial_id)
 
 
 def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:

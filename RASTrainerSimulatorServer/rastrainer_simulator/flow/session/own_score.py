@@ -1,4 +1,4 @@
-"""The simulator's own score of a trial that ends where no Slicer is connected.
+"""The simulator's own registration and score of a trial where no Slicer is connected.
 
 It is computed as Slicer computes it and submitted as Slicer submits it: the registration first,
 which makes it final; then the truth is known; then the score. Whoever registers the trial later
@@ -12,7 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, check_arguments
@@ -23,6 +23,7 @@ from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.submission import registration_arguments, score_arguments
+from rastrainer.trial.touch_registration import register_touches, touches_of
 from rastrainer.trial.trainee_progress import PastTrial
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.commands import Submit
@@ -41,11 +42,31 @@ Ask = Callable[[str, Mapping[str, Any]], Mapping[str, Any]]
 _log = logging.getLogger(__name__)
 
 
+class _Job(NamedTuple):
+    """What is done alone: a trial is scored, or the touches of its n-th attempt registered."""
+
+    trial_id: str
+    phase: Phase
+    attempt: int
+
+
+def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
+    """Return what somebody has to do for a trial, None where nothing is to be done here."""
+    procedure = training.procedure
+    if training.phase is Phase.REGISTERED and not is_in_study:
+        return _Job(training.trial_id, training.phase, 0)
+    if training.phase is not Phase.VERIFYING or procedure is None:
+        return None
+    if procedure.registration is not None:
+        return None
+    return _Job(training.trial_id, training.phase, len(procedure.attempts))
+
+
 class OwnScore:
-    """Watches for a registered trial that nobody scores, and scores it in a thread.
+    """Watches for a trial that nobody registers or scores, and does it in a thread.
 
     Attributes:
-        problem: why the present trial cannot be scored, a sentence; empty otherwise.
+        problem: why the present trial cannot be registered or scored, a sentence; empty otherwise.
     """
 
     def __init__(
@@ -70,37 +91,46 @@ class OwnScore:
         self._attempts_of = attempts_of
         self._had_slicer = False
         self._alone_s = 0.0
-        self._begun = ""
+        self._begun: _Job | None = None
         self._thread: threading.Thread | None = None
 
     def advance(
         self, dt: float, training: TrainingState, scenario: Scenario, is_in_study: bool
     ) -> None:
-        """Begin to score the trial once it is registered and no Slicer is there, or comes back."""
-        if self._is_slicer_connected() or training.phase is not Phase.REGISTERED:
+        """Begin what no Slicer does: it is not connected, or has not been for a while.
+
+        A trial that is registered is scored, outside of a study. The touches of one with a
+        procedure are registered so that it can go on: that reveals nothing.
+        """
+        job = _job(training, is_in_study)
+        if self._is_slicer_connected() or job is None:
             self._had_slicer = self._had_slicer or self._is_slicer_connected()
-            self._alone_s, self._begun, self.problem = 0.0, "", ""
+            self._alone_s, self._begun, self.problem = 0.0, None, ""
             return
         self._alone_s += dt
         is_busy = self._thread is not None and self._thread.is_alive()
         may_return = self._had_slicer and self._alone_s < RETURN_S
-        if is_in_study or is_busy or may_return or self._begun == training.trial_id:
+        if is_busy or may_return or self._begun == job:
             return
-        self._begun = training.trial_id
-        earlier = [t for t in self._attempts_of(training.trainee) if t.trial_id != self._begun]
+        self._begun = job
+        earlier = [t for t in self._attempts_of(training.trainee) if t.trial_id != job.trial_id]
         self._thread = threading.Thread(
-            target=self._score, args=(self._begun, scenario, earlier), name="score", daemon=True
+            target=self._do, args=(job, scenario, earlier), name="score", daemon=True
         )
         self._thread.start()
 
-    def _score(self, trial_id: str, scenario: Scenario, earlier: Sequence[PastTrial]) -> None:
+    def _do(self, job: _Job, scenario: Scenario, earlier: Sequence[PastTrial]) -> None:
         try:
-            analysis = registered_alone(self._ask, trial_id, scenario)
+            if job.phase is Phase.VERIFYING:
+                register_open_trial(self._ask, job.trial_id, scenario)
+                return
+            analysis = registered_alone(self._ask, job.trial_id, scenario)
             if not self._is_slicer_connected():
                 score_alone(self._ask, analysis, scenario, earlier, self._records)
         except InputError as error:
-            _log.warning("The trial %s was not scored: %s", trial_id, error)
-            if self._begun == trial_id:
+            done = "scored" if job.phase is Phase.REGISTERED else "registered"
+            _log.warning("The trial %s was not %s: %s", job.trial_id, done, error)
+            if self._begun == job:
                 self.problem = str(error)
 
     def _ask(self, command: str, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -108,6 +138,17 @@ class OwnScore:
         if not answer.ok:
             raise InputError(answer.message)
         return answer.data
+
+
+def register_open_trial(ask: Ask, trial_id: str, scenario: Scenario) -> None:
+    """Register the touches of an open trial, and have its procedure go on by that.
+
+    Raises:
+        InputError: they cannot be registered, or another registration is in use.
+    """
+    told = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
+    registered = register_touches(touches_of(told), scenario, told["task"], pause=_rest)
+    _asked(ask, CommandName.USE_REGISTRATION, registered.arguments(trial_id))
 
 
 def registered_alone(ask: Ask, trial_id: str, scenario: Scenario) -> TrialAnalysis:

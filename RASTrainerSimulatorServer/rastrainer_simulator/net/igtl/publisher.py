@@ -20,6 +20,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.connection import ClientConnection
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
+from rastrainer_simulator.procedure_state import ProcedureState, Tool
 from rastrainer_simulator.state import SimulationState, TrainingState
 
 
@@ -27,6 +28,13 @@ def tool_tip(state: SimulationState, seq: int) -> Message:
     """Return the tool tip's pose, with what Slicer cannot read from a header in its metadata."""
     metadata = {"seq": str(seq), "simTime": f"{state.sim_time:.6f}", "TransformStatus": "OK"}
     return Message(DeviceName.TOOL_TIP_TO_WORLD, _transform(state.tool_tip_to_world), metadata)
+
+
+def instrument_tip(state: SimulationState, seq: int) -> Message:
+    """Return the pose of the tip of drill or electrode, on the axis of the tool."""
+    pose = state.tool_tip_to_world.copy()
+    pose[:3, 3] += state.feed * pose[:3, 2]
+    return Message(DeviceName.INSTRUMENT_TIP_TO_WORLD, _transform(pose), {"seq": str(seq)})
 
 
 def links(state: SimulationState, seq: int) -> tuple[Message, ...]:
@@ -65,6 +73,25 @@ def what_changes(state: SimulationState) -> dict[str, Any]:
         "depthMm": _rounded(MM_PER_M * state.depth, 3),
         "q": [_rounded(angle, 6) for angle in state.q],
         "operator": state.operator,
+        "procedure": None if training.procedure is None else _procedure(state, training.procedure),
+    }
+
+
+def _procedure(state: SimulationState, procedure: ProcedureState) -> dict[str, Any]:
+    """Return how far a procedure is: everything by the registration in use, mm and degrees."""
+    alignment = state.alignment
+    checked = procedure.checkpoints[-1:]
+    return {
+        "name": procedure.name,
+        "trajectory": procedure.trajectory,
+        "trajectories": len(procedure.trajectories),
+        "tool": procedure.tool.value,
+        "registrationInUse": procedure.registration is not None,
+        "entryDistanceMm": alignment and _rounded(MM_PER_M * alignment.entry_distance, 3),
+        "angleDeg": alignment and _rounded(math.degrees(alignment.angle), 3),
+        "standOffMm": alignment and _rounded(MM_PER_M * alignment.stand_off, 3),
+        "feedMm": _rounded(MM_PER_M * state.feed, 3),
+        "lastCheckMm": _rounded(MM_PER_M * checked[0].error, 3) if checked else None,
     }
 
 
@@ -83,6 +110,13 @@ def heartbeat(details: Mapping[str, Any]) -> Message:
     text = json.dumps({"protocolVersion": PROTOCOL_VERSION, **details}, allow_nan=False)
     status = Status(Status.OK, subcode=PROTOCOL_VERSION, message=text)
     return Message(DeviceName.SIM_SERVER, status)
+
+
+def _tips(state: SimulationState, seq: int) -> tuple[Message, ...]:
+    """Return the poses of the tool's tip and, where one is in the guide, of the instrument's."""
+    if state.tool in (Tool.DRILL, Tool.ELECTRODE):
+        return tool_tip(state, seq), instrument_tip(state, seq)
+    return (tool_tip(state, seq),)
 
 
 def _transform(pose: np.ndarray) -> Transform:
@@ -179,7 +213,7 @@ class Publisher:
             self._publish_state(everyone, state)
         tip_due = [client for client, poses in self._poses.items() if poses.tool_tip.is_due(now)]
         if tip_due:
-            self._publish_poses(tip_due, (tool_tip(state, self._number + 1),))
+            self._publish_poses(tip_due, _tips(state, self._number + 1))
         links_due = [client for client, poses in self._poses.items() if poses.links.is_due(now)]
         if links_due:
             self._publish_poses(links_due, links(state, self._number + 1))

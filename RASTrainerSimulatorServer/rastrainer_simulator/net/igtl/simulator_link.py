@@ -26,7 +26,13 @@ from rastrainer_simulator.net.igtl.server import IgtlServer
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, SimulationState
 
-_OWN_DEVICES = frozenset({DeviceName.TOOL_TIP_TO_WORLD, *DeviceName.LINK_TO_WORLD})
+_OWN_DEVICES = frozenset(
+    {
+        DeviceName.TOOL_TIP_TO_WORLD,
+        DeviceName.INSTRUMENT_TIP_TO_WORLD,
+        *DeviceName.LINK_TO_WORLD,
+    }
+)
 
 SubmitCommand = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
 OFFERS_AT_ONCE = 8

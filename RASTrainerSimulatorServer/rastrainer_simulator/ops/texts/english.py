@@ -38,6 +38,48 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "scored": "{trainee}, your score is {score:.0f} of 100: {fre:.2f} mm registration error, "
         "{tre:.2f} mm true error at the target.",
         "aborted": "{trainee}, the trial was aborted. Choose a task to start again.",
+        # A procedure, from the registration to the placed instrument.
+        "verifying": "{trainee}, your points are being registered.",
+        "verify": "{trainee}, your points are registered: FRE {fre:.2f} mm. Touch checkpoints, "
+        "then accept the registration or register again.",
+        "checked": "{trainee}, {name} is {error:.1f} mm off by your registration. Check another "
+        "point, accept the registration, or register again.",
+        "register again": "{trainee}, touch all points again. Begin with point {point}.",
+        "align": "{trainee}, bring the guide onto the planned line of {name}, then lock it.",
+        "align next": "{trainee}, the instrument is placed. Now bring the guide onto the planned "
+        "line of {name}.",
+        "drill": "{trainee}, the guide is locked. Drill through the skull along {name}.",
+        "realign": "{trainee}, the drill is out. Bring the guide onto the planned line of {name} "
+        "again.",
+        "insert": "{trainee}, advance the instrument to the target of {name}, then release it.",
+        "procedure done": "{trainee}, the procedure is done and is being scored.",
+        "interrupted procedure": "{trainee}, this trial was interrupted; everything is kept. "
+        "Continue the procedure when you are ready, or abort it.",
+        # What a procedure does not allow.
+        "no checkpoints": "This procedure has no checkpoints: AcceptRegistration or RegisterAgain.",
+        "too many checkpoints": "{most} checkpoints are touched, the most that a trial keeps: "
+        "AcceptRegistration or RegisterAgain.",
+        "too many attempts": "The points were registered {most} times, the most that a trial "
+        "keeps: AcceptRegistration, or Abort.",
+        "too far from checkpoints": "No checkpoint is here: {name}, the nearest by your "
+        "registration, is {distance:.1f} mm away; one counts within {radius:g} mm.",
+        "above a checkpoint": "{height:.1f} mm above the skin: lower the tip onto the checkpoint.",
+        "not in use yet": "The points are still being registered: UseRegistration comes first.",
+        "already in use": "Another registration is in use: AcceptRegistration or RegisterAgain.",
+        "not rigid": "UseRegistration needs a rigid transform: WorldToHead, row by row, in mm.",
+        "off the head": "The guide's axis does not meet the head: point it at the head before "
+        "LockGuide.",
+        "too far to lock": "The guide's tip is {distance:.0f} mm from the skin along its axis: "
+        "LockGuide needs at most {limit:.0f} mm.",
+        "no self-alignment": "The robot does not align the guide by itself in this setting: move "
+        "it onto the line by hand.",
+        "line out of reach": "The robot cannot hold the guide on this line with a stand-off of "
+        "{stand_off:g} mm: choose another stand-off, or move it by hand.",
+        "bone is cut": "The drill has cut bone: the hole stays where it is. Feed the drill, then "
+        "StartInsertion.",
+        "nothing drilled": "Nothing is drilled yet: Feed the drill before StartInsertion.",
+        "still in the guide": "The instrument is still in the guide: Feed it before "
+        "ReleaseInstrument.",
         # Touches that do not count.
         "too far": "Too far from point {point}: {distance:.1f} mm; a touch counts within "
         "{radius:g} mm.",
@@ -47,6 +89,18 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         # Commands in the wrong phase.
         "no trial": "No trial is running: begin one with StartTask.",
         "trial is open": "{trainee} is still at {task}: Register or Abort it before StartTask.",
+        "procedure is open": "{trainee} is still at the procedure after {task}: finish or Abort it "
+        "before StartTask.",
+        "not at the procedure": "This comes after Register, in a trial that StartTask began with a "
+        "procedure.",
+        "verifying now": "The registration is being verified: Capture checkpoints, then "
+        "AcceptRegistration or RegisterAgain.",
+        "aligning now": "The guide is being aligned: move it onto the planned line, then "
+        "LockGuide.",
+        "drilling now": "The drill is in the guide and the arm is held: Feed the drill, then "
+        "StartInsertion.",
+        "inserting now": "The instrument is in the guide and the arm is held: Feed it to its "
+        "target, then ReleaseInstrument.",
         "not all touched": "{kept} of {count} points are touched: Register comes after the last; "
         "point {point} is next.",
         "not paused": "The trial is not paused: Capture point {point}, or Pause it first.",

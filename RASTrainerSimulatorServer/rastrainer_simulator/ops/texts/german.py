@@ -120,6 +120,53 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "{tre:.2f} mm wahrer Fehler am Ziel.",
         "aborted": "{trainee}, der Versuch wurde abgebrochen. Wähle eine Aufgabe, um neu zu "
         "beginnen.",
+        # A procedure, from the registration to the placed instrument.
+        "verifying": "{trainee}, deine Punkte werden registriert.",
+        "verify": "{trainee}, deine Punkte sind registriert: FRE {fre:.2f} mm. Berühre "
+        "Kontrollpunkte, dann nimm die Registrierung an oder registriere neu.",
+        "checked": "{trainee}, {name} liegt nach deiner Registrierung {error:.1f} mm daneben. "
+        "Prüfe einen weiteren Punkt, nimm die Registrierung an oder registriere neu.",
+        "register again": "{trainee}, berühre alle Punkte noch einmal. Beginne mit Punkt {point}.",
+        "align": "{trainee}, bringe die Führung auf die geplante Linie von {name}, dann arretiere "
+        "sie.",
+        "align next": "{trainee}, das Instrument ist gesetzt. Bringe die Führung jetzt auf die "
+        "geplante Linie von {name}.",
+        "drill": "{trainee}, die Führung ist arretiert. Bohre entlang {name} durch den Schädel.",
+        "realign": "{trainee}, der Bohrer ist zurückgezogen. Bringe die Führung noch einmal auf "
+        "die geplante Linie von {name}.",
+        "insert": "{trainee}, schiebe das Instrument bis zum Ziel von {name} vor, dann löse es.",
+        "procedure done": "{trainee}, die Prozedur ist abgeschlossen und wird bewertet.",
+        "interrupted procedure": "{trainee}, dieser Versuch wurde unterbrochen; alles ist "
+        "gesichert. Setze die Prozedur fort, wenn du bereit bist, oder brich ihn ab.",
+        # What a procedure does not allow.
+        "no checkpoints": "Diese Prozedur hat keine Kontrollpunkte: AcceptRegistration oder "
+        "RegisterAgain.",
+        "too many checkpoints": "{most} Kontrollpunkte sind berührt, mehr behält ein Versuch "
+        "nicht: AcceptRegistration oder RegisterAgain.",
+        "too many attempts": "Die Punkte wurden {most}-mal registriert, öfter behält ein Versuch "
+        "es nicht: AcceptRegistration oder Abort.",
+        "too far from checkpoints": "Hier ist kein Kontrollpunkt: {name}, der nach deiner "
+        "Registrierung nächste, ist {distance:.1f} mm entfernt; einer zählt bis {radius:g} mm.",
+        "above a checkpoint": "{height:.1f} mm über der Haut: Senke die Spitze auf den "
+        "Kontrollpunkt.",
+        "not in use yet": "Die Punkte werden noch registriert: Zuerst kommt UseRegistration.",
+        "already in use": "Eine andere Registrierung ist in Gebrauch: AcceptRegistration oder "
+        "RegisterAgain.",
+        "not rigid": "UseRegistration braucht eine starre Transformation: WorldToHead, Zeile für "
+        "Zeile, in mm.",
+        "off the head": "Die Achse der Führung trifft den Kopf nicht: Richte sie vor LockGuide auf "
+        "den Kopf.",
+        "too far to lock": "Die Spitze der Führung ist entlang ihrer Achse {distance:.0f} mm von "
+        "der Haut entfernt: LockGuide braucht höchstens {limit:.0f} mm.",
+        "no self-alignment": "In dieser Einstellung richtet der Roboter die Führung nicht selbst "
+        "aus: Bringe sie von Hand auf die Linie.",
+        "line out of reach": "Der Roboter kann die Führung auf dieser Linie im Abstand von "
+        "{stand_off:g} mm nicht halten: Wähle einen anderen Abstand oder bewege sie von Hand.",
+        "bone is cut": "Der Bohrer hat Knochen abgetragen: Das Loch bleibt, wo es ist. Feed für "
+        "den Bohrer, dann StartInsertion.",
+        "nothing drilled": "Noch ist nichts gebohrt: Vor StartInsertion kommt Feed für den Bohrer.",
+        "still in the guide": "Das Instrument ist noch in der Führung: Vor ReleaseInstrument kommt "
+        "Feed.",
         # Touches that do not count.
         "too far": "Zu weit von Punkt {point}: {distance:.1f} mm; eine Berührung zählt bis "
         "{radius:g} mm.",
@@ -129,6 +176,18 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         # Commands in the wrong phase.
         "no trial": "Es läuft kein Versuch: Beginne einen mit StartTask.",
         "trial is open": "{trainee} ist noch bei {task}: Register oder Abort vor StartTask.",
+        "procedure is open": "{trainee} ist noch bei der Prozedur nach {task}: Beende sie, oder "
+        "Abort, vor StartTask.",
+        "not at the procedure": "Das kommt nach Register, in einem Versuch, den StartTask mit "
+        "einer Prozedur begonnen hat.",
+        "verifying now": "Die Registrierung wird geprüft: Capture für Kontrollpunkte, dann "
+        "AcceptRegistration oder RegisterAgain.",
+        "aligning now": "Die Führung wird ausgerichtet: Bringe sie auf die geplante Linie, dann "
+        "LockGuide.",
+        "drilling now": "Der Bohrer ist in der Führung, und der Arm wird gehalten: Feed für den "
+        "Bohrer, dann StartInsertion.",
+        "inserting now": "Das Instrument ist in der Führung, und der Arm wird gehalten: Feed bis "
+        "zum Ziel, dann ReleaseInstrument.",
         "not all touched": "{kept} von {count} Punkten sind berührt: Register kommt nach dem "
         "letzten; Punkt {point} ist an der Reihe.",
         "not paused": "Der Versuch ist nicht angehalten: Capture für Punkt {point}, oder erst "

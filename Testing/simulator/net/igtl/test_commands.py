@@ -16,6 +16,12 @@ from Testing.simulator.net.igtl.servers import LinkServer, answer_to
 
 TRIAL = "6f1e1b9e-6c3f-4a53-8a55-0d0f5a3b7c11"
 HELLO = {"protocolVersion": PROTOCOL_VERSION, "client": "test"}
+REGISTRATION = {
+    "trialId": TRIAL,
+    "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+    "freMm": 0.5,
+    "expectedTreMm": 0.6,
+}
 ARGUMENTS = {
     "Hello": HELLO,
     "LoadScenario": {"folder": "scenarios/colin27"},
@@ -23,12 +29,9 @@ ARGUMENTS = {
     "Jog": {"velocityMmS": [1, 2, 3]},
     "MoveTipTo": {"positionMm": [500, 0, 300], "direction": None},
     "SetCamera": {"camera": "far"},
-    "SubmitRegistration": {
-        "trialId": TRIAL,
-        "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
-        "freMm": 0.5,
-        "expectedTreMm": 0.6,
-    },
+    "SubmitRegistration": REGISTRATION,
+    "UseRegistration": REGISTRATION,
+    "Feed": {"velocityMmS": 2.5},
     "TrialScored": {"trialId": TRIAL, "score": 80},
     "PlanTarget": {"positionMm": [0, 0, 0]},
     "StudyStep": {"trainee": "P07", "kind": "trial", "task": "task-2", "mode": "hmd"},

@@ -17,7 +17,9 @@ from rastrainer.protocol import DeviceName, Phase, Proximity
 from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
 from rastrainer_simulator.net.state_feed import StateFeed
-from rastrainer_simulator.state import StepResult, TouchState, TrainingState
+from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
+from rastrainer_simulator.registration_state import CheckedPoint, FinalRegistration, TouchState
+from rastrainer_simulator.state import StepResult, TrainingState
 from Testing.simulator.net.igtl.servers import at_rest
 
 TICK_S = 0.004
@@ -185,7 +187,58 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
         "depthMm": 1.234,
         "q": [0.0] * 7,
         "operator": "gamepad",
+        "procedure": None,
     }
+
+
+def aligning(feed=0.0, phase=Phase.ALIGNING, **others):
+    """Return a state in which the guide points down, 3 mm aside of a line straight down."""
+    pose = np.array([[1, 0, 0, 0.5], [0, -1, 0, 0.0], [0, 0, -1, 0.4], [0, 0, 0, 1.0]])
+    line = PlannedLine("Left", (0.503, 0.0, 0.38), (0.503, 0.0, 0.3))
+    procedure = ProcedureState(
+        "dbs",
+        stage=phase,
+        registration=FinalRegistration((1.0,) * 16, 1.0, 1.0),
+        checkpoints=(CheckedPoint("Vertex", (0.0, 0.0, 0.0), 0.00123456, 1.0, 1.0),),
+        trajectories=(TrajectoryState(line), TrajectoryState(line)),
+    )
+    training = replace(RUNNING, phase=phase, procedure=procedure)
+    return at_rest(tool_tip_to_world=pose, training=training, feed=feed, **others)
+
+
+def test_a_procedure_is_reported_by_the_registration_in_use_in_mm_and_degrees(publisher, receiver):
+    publisher.publish(aligning(sim_time=1.0))
+    (message,) = receiver.of("SimState")
+    assert json.loads(message.content.text)["procedure"] == {
+        "name": "dbs",
+        "trajectory": 0,
+        "trajectories": 2,
+        "tool": "guide",
+        "registrationInUse": True,
+        "entryDistanceMm": 3.0,
+        "angleDeg": 0.0,
+        "standOffMm": 20.0,
+        "feedMm": 0.0,
+        "lastCheckMm": 1.235,
+    }
+
+
+@pytest.mark.parametrize("phase", [Phase.DRILLING, Phase.INSERTING])
+def test_the_instrument_s_tip_is_on_the_guide_s_axis_as_deep_as_it_is_fed(
+    publisher, receiver, phase
+):
+    publisher.publish(aligning(sim_time=1.0, phase=phase, feed=0.0125))
+    (message,) = receiver.of("InstrumentTipToWorld")
+    np.testing.assert_allclose(np.array(message.content.matrix)[:3, 3], (500, 0, 387.5), atol=1e-4)
+    publisher.publish(aligning(sim_time=2.0, phase=phase, feed=0.0125))
+    assert len(receiver.of("InstrumentTipToWorld")) == 1
+    publisher.publish(aligning(sim_time=3.0, phase=phase, feed=0.0135))
+    assert len(receiver.of("InstrumentTipToWorld")) == 2
+
+
+def test_nothing_is_in_the_guide_while_it_is_aligned(publisher, receiver):
+    publisher.publish(aligning(sim_time=1.0))
+    assert receiver.of("InstrumentTipToWorld") == []
 
 
 def test_clearance_without_a_head_is_reported_as_null(publisher, receiver):

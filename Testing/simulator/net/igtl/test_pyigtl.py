@@ -20,7 +20,8 @@ from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, Status, String, Transform
 from rastrainer.igtl.message import Message
 from rastrainer.igtl.points import Point, Points
-from rastrainer_simulator.state import TouchState, TrainingState
+from rastrainer_simulator.registration_state import TouchState
+from rastrainer_simulator.state import TrainingState
 from Testing.simulator.net.igtl.servers import PlainServer, at_rest
 
 MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])

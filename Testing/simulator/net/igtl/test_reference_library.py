@@ -14,7 +14,8 @@ from rastrainer.igtl.content import Command, Status, String, Transform
 from rastrainer.igtl.points import Point, Points
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.net.limits import LinkLimits
-from rastrainer_simulator.state import TouchState, TrainingState
+from rastrainer_simulator.registration_state import TouchState
+from rastrainer_simulator.state import TrainingState
 from Testing.simulator.net.igtl.servers import LinkServer, at_rest
 
 SOURCE = Path(__file__).with_name("reference_client.cpp")

@@ -140,6 +140,30 @@ _DURING_TRIAL = {
         _("All points are touched: the trainee registers them, or takes some back."),
         Section.REGISTRATION,
     ),
+    Phase.VERIFYING.value: (
+        NextAction.PAUSE,
+        _("Pause"),
+        _("The trainee verifies the registration."),
+        Section.TRAINING,
+    ),
+    Phase.ALIGNING.value: (
+        NextAction.PAUSE,
+        _("Pause"),
+        _("The trainee aligns the guide with the planned trajectory."),
+        Section.TRAINING,
+    ),
+    Phase.DRILLING.value: (
+        NextAction.PAUSE,
+        _("Pause"),
+        _("The trainee drills through the skull."),
+        Section.TRAINING,
+    ),
+    Phase.INSERTING.value: (
+        NextAction.PAUSE,
+        _("Pause"),
+        _("The trainee inserts the instrument."),
+        Section.TRAINING,
+    ),
     Phase.REGISTERED.value: (
         NextAction.WAIT,
         _("Scoring…"),

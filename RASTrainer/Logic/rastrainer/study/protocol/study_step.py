@@ -30,6 +30,7 @@ class StudyStep:
         minutes: Duration; 0 if unlimited.
         over: Minutes elapsed when sent; not compared, since a step is the same whenever it is sent.
         guidance: A `Guidance` to the next point; "" for the simulator's setting.
+        procedure: To be carried out after the registration; "" for the touches alone.
     """
 
     trainee: str
@@ -42,6 +43,7 @@ class StudyStep:
     minutes: float = 0.0
     over: float = field(default=0.0, compare=False)
     guidance: str = ""
+    procedure: str = ""
 
     @classmethod
     def of(cls, trainee: str, progress: Progress, now: datetime) -> StudyStep:

@@ -1,0 +1,180 @@
+"""The drill and the instrument in the locked guide: how far they go in, tick by tick.
+
+Rigid geometry: the drill passes everything, the instrument everything but bone that is not drilled
+through. Nothing of tissue mechanics is simulated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+from rastrainer.protocol import Phase
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.teleoperation.teleoperation import StickResponse
+
+LONGEST_FEED_M = 0.25
+"""How far drill and instrument reach beyond the guide's tip."""
+
+
+@dataclass(frozen=True)
+class ProcedureSettings:
+    """How a procedure is carried out.
+
+    Attributes:
+        self_alignment: whether the robot may align the guide by itself.
+        checkpoint_radius: how far a checkpoint may be from where it is touched, by the registration
+            in use, m.
+        drill_speed: fastest feed of the drill, m/s.
+        fine_drill_speed: the same while the trigger for fine speed is held, m/s.
+        insertion_speed: fastest feed of the instrument, m/s.
+        fine_insertion_speed: the same while the trigger for fine speed is held, m/s.
+    """
+
+    self_alignment: bool = True
+    checkpoint_radius: float = 0.030
+    drill_speed: float = 0.005
+    fine_drill_speed: float = 0.001
+    insertion_speed: float = 0.010
+    fine_insertion_speed: float = 0.001
+
+    def fastest(self, phase: Phase, fine: bool) -> float:
+        """Return the fastest feed in a phase, m/s."""
+        if phase is Phase.DRILLING:
+            return self.fine_drill_speed if fine else self.drill_speed
+        return self.fine_insertion_speed if fine else self.insertion_speed
+
+
+class FeedLayer(str, Enum):
+    """What the drill is cutting, or what the instrument meets: as a hand feels it.
+
+    `THROUGH` is past the inner table, `BLOCKED` an instrument that stands on uncut bone.
+    """
+
+    FREE = "free"
+    SCALP = "scalp"
+    BONE = "bone"
+    THROUGH = "through"
+    BLOCKED = "blocked"
+
+
+@dataclass(frozen=True)
+class HeadAhead:
+    """What lies ahead along the guide's axis: distances from its tip, m, None where it is missed.
+
+    Only the simulator knows them; the trainee feels them.
+
+    Attributes:
+        skin: where the axis enters the head.
+        outer: where it enters the skull.
+        inner: where it leaves the skull again.
+    """
+
+    skin: float | None = None
+    outer: float | None = None
+    inner: float | None = None
+
+    def to_json(self) -> dict[str, float | None]:
+        """Return what the journal keeps, mm."""
+        named = {"skinMm": self.skin, "outerMm": self.outer, "innerMm": self.inner}
+        return {name: None if m is None else MM_PER_M * m for name, m in named.items()}
+
+
+@dataclass(frozen=True)
+class Feed:
+    """How far the instrument in the guide is beyond its tip, m.
+
+    Attributes:
+        depth: of what is in the guide.
+        drilled: the deepest that the drill was.
+        ahead: what lies ahead.
+    """
+
+    depth: float = 0.0
+    drilled: float = 0.0
+    ahead: HeadAhead = HeadAhead()
+
+    @property
+    def has_cut_bone(self) -> bool:
+        """Whether the drill has reached the skull."""
+        return self.ahead.outer is not None and self.drilled > self.ahead.outer
+
+    @property
+    def is_through(self) -> bool:
+        """Whether no uncut bone is in the way of an instrument."""
+        ahead = self.ahead
+        return ahead.outer is None or (ahead.inner is not None and self.drilled >= ahead.inner)
+
+    @property
+    def instrument_limit(self) -> float:
+        """How far an instrument can go, m."""
+        if self.is_through:
+            return LONGEST_FEED_M
+        assert self.ahead.outer is not None, "without bone it is through"
+        return max(self.drilled, self.ahead.outer)
+
+    def moved(self, phase: Phase, way: float) -> Feed:
+        """Return the feed after `way` m in a phase, as far as it goes."""
+        if phase is Phase.DRILLING:
+            depth = min(max(self.depth + way, 0.0), LONGEST_FEED_M)
+            return replace(self, depth=depth, drilled=max(self.drilled, depth))
+        depth = min(max(self.depth + way, 0.0), self.instrument_limit)
+        return replace(self, depth=depth)
+
+    def layer(self, phase: Phase) -> FeedLayer:
+        """Return what the drill has cut to, or what the instrument meets."""
+        ahead = self.ahead
+        if phase is Phase.DRILLING:
+            if ahead.inner is not None and self.drilled >= ahead.inner:
+                return FeedLayer.THROUGH
+            if self.has_cut_bone:
+                return FeedLayer.BONE
+            is_in_scalp = ahead.skin is not None and self.drilled > ahead.skin
+            return FeedLayer.SCALP if is_in_scalp else FeedLayer.FREE
+        is_blocked = not self.is_through and self.depth >= self.instrument_limit
+        return FeedLayer.BLOCKED if is_blocked else FeedLayer.FREE
+
+
+NO_FEED = Feed()
+"""Nothing is in the guide."""
+
+
+def recorded_feed(feed: Feed) -> dict[str, float]:
+    """Return what an event keeps of the feed at which it happened, mm; nothing where none is."""
+    if feed.drilled <= 0.0:
+        return {}
+    return {"feedMm": MM_PER_M * feed.depth, "drilledMm": MM_PER_M * feed.drilled}
+
+
+class FeedDrive:
+    """Turns the stick, or a commanded feed, into the way of a tick."""
+
+    def __init__(self, settings: ProcedureSettings, response: StickResponse) -> None:
+        """`response` is that of the sticks that move the arm."""
+        self._settings = settings
+        self._response = response
+        self._velocity = 0.0
+        self._remaining = 0.0
+
+    def start(self, velocity_mm_s: float, duration_s: float) -> None:
+        """Feed at a velocity, inward above 0, for a time; the stick overrides it."""
+        self._velocity, self._remaining = velocity_mm_s / MM_PER_M, duration_s
+
+    def stop(self) -> None:
+        """End a commanded feed."""
+        self._remaining = 0.0
+
+    def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> float:
+        """Return how far to feed in `dt` s, m: up retracts, down goes in."""
+        up = self._response(operator_input.translation)[2]
+        fastest = self._settings.fastest(phase, operator_input.fine)
+        if up != 0.0:
+            self.stop()
+            return -up * fastest * dt
+        if self._remaining <= 1e-3 * dt:
+            return 0.0
+        time = min(dt, self._remaining)
+        self._remaining -= dt
+        fastest = self._settings.fastest(phase, fine=False)
+        return min(max(self._velocity, -fastest), fastest) * time

@@ -1,0 +1,358 @@
+"""The phases of a procedure: which command leads from which to which, and what it leaves behind.
+
+Nothing here knows where the head is. What the trainee is shown and told is by their registration;
+the true distances in the moment of LockGuide only decide whether the guide may be locked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS
+from rastrainer.protocol import STAND_OFF_LIMIT_MM, CommandName, Phase, TouchRule
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.operator_input import OperatorCommand
+from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.procedure_state import (
+    GuideAlignment,
+    GuideAxis,
+    ProcedureState,
+    TrajectoryState,
+)
+from rastrainer_simulator.registration_state import (
+    CheckedPoint,
+    FinalRegistration,
+    RegistrationAttempt,
+)
+from rastrainer_simulator.state import EventKind, TrainingState
+from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
+from rastrainer_simulator.training.registered_plan import RegisteredPlan
+from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
+
+if TYPE_CHECKING:
+    from rastrainer.procedure.plan import Procedure
+
+AT_EACH_STAGE: Mapping[Phase, str] = {
+    Phase.ALIGNING: "align",
+    Phase.DRILLING: "drill",
+    Phase.INSERTING: "insert",
+}
+"""What is said when the trial continues there after a pause."""
+
+
+OF_A_PROCEDURE = (
+    CommandName.USE_REGISTRATION,
+    CommandName.ACCEPT_REGISTRATION,
+    CommandName.REGISTER_AGAIN,
+    CommandName.LOCK_GUIDE,
+    CommandName.RETRACT_DRILL,
+    CommandName.START_INSERTION,
+    CommandName.RELEASE_INSTRUMENT,
+)
+"""Commands that lead a procedure from one phase to the next."""
+
+
+@dataclass(frozen=True)
+class PhaseStep:
+    """What a command leads to.
+
+    Attributes:
+        state: of the trial.
+        key: of the instruction that goes with it.
+        values: that are filled in.
+        data: goes into the answer and the event, ready for JSON.
+        recorded: goes into the event alone: clients never learn it.
+        kind: of the event.
+        feed: what is in the guide from now on; None as before.
+    """
+
+    state: TrainingState
+    key: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+    data: Mapping[str, Any] = field(default_factory=dict)
+    recorded: Mapping[str, Any] = field(default_factory=dict)
+    kind: EventKind = EventKind.PHASE
+    feed: Feed | None = None
+
+
+@dataclass(frozen=True)
+class RefusedStep:
+    """Why a command is refused; `data` is that of a touch that does not count."""
+
+    sentence: str
+    data: Mapping[str, Any] | None = None
+
+
+@dataclass(frozen=True)
+class ProcedureMoment:
+    """When and where a command of a procedure is carried out; `elapsed` is the trial's time, s."""
+
+    state: TrainingState
+    now: TouchMoment
+    elapsed: float
+
+    @property
+    def procedure(self) -> ProcedureState:
+        """How far the procedure is."""
+        assert self.state.procedure is not None, "the phase has a procedure"
+        return self.state.procedure
+
+    def entering(self, phase: Phase, **changes: Any) -> TrainingState:
+        """Return the state in another phase, with changes to how far the procedure is."""
+        entered = replace(self.procedure.entering(phase, self.elapsed), **changes)
+        return replace(self.state, phase=phase, procedure=entered)
+
+
+class ProcedurePhases:
+    """The state machine from Register to the last ReleaseInstrument, of one procedure."""
+
+    def __init__(
+        self,
+        procedure: Procedure,
+        labels: Sequence[str],
+        touches: TrainingSettings,
+        settings: ProcedureSettings,
+        texts: Texts,
+    ) -> None:
+        """`labels` are those of the task's fiducials; `touches` is what counts as a touch."""
+        self._procedure = procedure
+        self._labels = tuple(labels)
+        self._touches = touches
+        self._settings = settings
+        self._texts = texts
+        self._handlers: Mapping[
+            str, Callable[[ProcedureMoment, OperatorCommand], PhaseStep | RefusedStep]
+        ] = {
+            CommandName.REGISTER: self._verify,
+            CommandName.CAPTURE: self._check_point,
+            CommandName.USE_REGISTRATION: self._use_registration,
+            CommandName.ACCEPT_REGISTRATION: self._accept,
+            CommandName.REGISTER_AGAIN: self._register_again,
+            CommandName.LOCK_GUIDE: self._lock,
+            CommandName.RETRACT_DRILL: self._retract,
+            CommandName.START_INSERTION: self._start_insertion,
+            CommandName.RELEASE_INSTRUMENT: self._release,
+        }
+
+    def step(
+        self, command: OperatorCommand, state: TrainingState, now: TouchMoment, elapsed: float
+    ) -> PhaseStep | RefusedStep:
+        """Return what a command leads to that is allowed in the phase of a state."""
+        return self._handlers[command.name](ProcedureMoment(state, now, elapsed), command)
+
+    def resumed(self, state: TrainingState) -> PhaseStep:
+        """Return the step by which a paused procedure continues in its stage."""
+        procedure = state.procedure
+        assert procedure is not None
+        running = replace(state, phase=procedure.stage)
+        if procedure.stage is Phase.VERIFYING:
+            if procedure.registration is None:
+                return PhaseStep(running, "verifying")
+            return PhaseStep(running, "verify", {"fre": procedure.registration.fre_mm})
+        name = _present(state).line.name
+        return PhaseStep(running, AT_EACH_STAGE[procedure.stage], {"name": name})
+
+    def _verify(self, moment: ProcedureMoment, _command: OperatorCommand) -> PhaseStep:
+        elapsed_s = moment.state.touches[-1].elapsed
+        data = {"completionTimeS": elapsed_s}
+        return PhaseStep(moment.entering(Phase.VERIFYING), "verifying", data=data)
+
+    def _use_registration(
+        self, moment: ProcedureMoment, command: OperatorCommand
+    ) -> PhaseStep | RefusedStep:
+        """Show the plan by a registration from now on; a second one is refused unless equal."""
+        registration = FinalRegistration.from_arguments(command.arguments)
+        known = moment.procedure.registration
+        if known is not None and not known.agrees_with(registration):
+            return RefusedStep(self._texts.say("already in use"))
+        plan = RegisteredPlan.of(registration.matrix)
+        if plan is None:
+            return RefusedStep(self._texts.say("not rigid"))
+        used = known or registration
+        procedure = replace(
+            moment.procedure,
+            registration=used,
+            trajectories=tuple(
+                TrajectoryState(plan.line(each)) for each in self._procedure.trajectories
+            ),
+        )
+        state = replace(moment.state, procedure=procedure)
+        data = {
+            "registration": {
+                "matrix": list(used.matrix),
+                "freMm": used.fre_mm,
+                "expectedTreMm": used.expected_tre_mm,
+            }
+        }
+        return PhaseStep(state, "verify", {"fre": used.fre_mm}, data)
+
+    def _check_point(
+        self, moment: ProcedureMoment, _command: OperatorCommand
+    ) -> PhaseStep | RefusedStep:
+        """Touch the nearest checkpoint; its error is by the trainee's own registration."""
+        procedure, now = moment.procedure, moment.now
+        name, error = self._nearest_checkpoint(procedure, now)
+        place = {
+            "checkpoint": name,
+            "positionMm": [MM_PER_M * value for value in now.tip],
+            "clearanceMm": MM_PER_M * now.tip_clearance,
+            "depthMm": MM_PER_M * now.depth,
+        }
+        sentence = self._refused_check(procedure, name, error, now)
+        if sentence is not None:
+            return RefusedStep(sentence, {**place, "message": sentence})
+        checked = CheckedPoint(name, now.tip, error, now.sim_time, moment.elapsed)
+        checkpoints = (*procedure.checkpoints, checked)
+        state = replace(moment.state, procedure=replace(procedure, checkpoints=checkpoints))
+        error_mm = MM_PER_M * error
+        data = {**place, "errorMm": error_mm, "kept": len(checkpoints)}
+        said = {"name": name, "error": error_mm}
+        return PhaseStep(state, "checked", said, data, kind=EventKind.CHECKPOINT)
+
+    def _nearest_checkpoint(self, procedure: ProcedureState, now: TouchMoment) -> tuple[str, float]:
+        """Return the checkpoint nearest to the tip by the registration in use, and how far, m."""
+        if procedure.registration is None or not self._procedure.checkpoints:
+            return "", 0.0
+        plan = RegisteredPlan.of(procedure.registration.matrix)
+        assert plan is not None, "what is in use is rigid"
+        return plan.nearest_checkpoint(self._procedure.checkpoints, now.tip)
+
+    def _refused_check(
+        self, procedure: ProcedureState, name: str, error: float, now: TouchMoment
+    ) -> str | None:
+        """Return why a touch of a checkpoint does not count, None where it does."""
+        say, radius = self._texts.say, self._settings.checkpoint_radius
+        if procedure.registration is None:
+            return say("not in use yet")
+        if not name:
+            return say("no checkpoints")
+        done = sum(len(each.checkpoints) for each in procedure.attempts)
+        if done + len(procedure.checkpoints) >= MAX_TOUCHED_CHECKPOINTS:
+            return say("too many checkpoints", most=MAX_TOUCHED_CHECKPOINTS)
+        if error > radius:
+            away, within = MM_PER_M * error, MM_PER_M * radius
+            return say("too far from checkpoints", name=name, distance=away, radius=within)
+        is_above = now.tip_clearance > self._touches.skin_tolerance
+        if self._touches.touch_rule is TouchRule.ON_SKIN and is_above:
+            return say("above a checkpoint", height=MM_PER_M * now.tip_clearance)
+        return None
+
+    def _accept(
+        self, moment: ProcedureMoment, _command: OperatorCommand
+    ) -> PhaseStep | RefusedStep:
+        procedure = moment.procedure
+        if procedure.registration is None:
+            return RefusedStep(self._texts.say("not in use yet"))
+        attempts = (*procedure.attempts, _attempt(moment))
+        state = moment.entering(Phase.ALIGNING, attempts=attempts, trajectory=0)
+        return PhaseStep(state, "align", {"name": procedure.trajectories[0].line.name})
+
+    def _register_again(
+        self, moment: ProcedureMoment, _command: OperatorCommand
+    ) -> PhaseStep | RefusedStep:
+        """Touch all points again; what was touched stays in the record as an attempt."""
+        attempts = (*moment.procedure.attempts, _attempt(moment))
+        if len(attempts) >= MAX_ATTEMPTS:
+            return RefusedStep(self._texts.say("too many attempts", most=MAX_ATTEMPTS))
+        state = moment.entering(
+            Phase.RUNNING, registration=None, checkpoints=(), trajectories=(), attempts=attempts
+        )
+        again = replace(state, touches=(), next_point=self._labels[0])
+        return PhaseStep(again, "register again", {"point": self._labels[0]})
+
+    def _lock(self, moment: ProcedureMoment, _command: OperatorCommand) -> PhaseStep | RefusedStep:
+        """Lock the guide where it is, if a drill in it would meet the head."""
+        now, limit_mm = moment.now, STAND_OFF_LIMIT_MM
+        ahead = now.feed.ahead
+        if ahead.skin is None:
+            return RefusedStep(self._texts.say("off the head"))
+        distance_mm = MM_PER_M * ahead.skin
+        if distance_mm > limit_mm:
+            return RefusedStep(
+                self._texts.say("too far to lock", distance=distance_mm, limit=limit_mm)
+            )
+        entered = moment.entering(Phase.DRILLING)
+        aligned = _present(entered)
+        guide = GuideAxis(now.tip, now.direction)
+        locked = replace(
+            aligned,
+            alignments=aligned.alignments + 1,
+            guide=guide,
+            is_self_aligned=GuideAlignment.of(guide, aligned.line).is_exact,
+            drill_depth=0.0,
+        )
+        return PhaseStep(
+            _with_present(entered, locked),
+            "drill",
+            {"name": locked.line.name},
+            {
+                "positionMm": [MM_PER_M * value for value in now.tip],
+                "direction": list(now.direction),
+            },
+            {"ahead": ahead.to_json()},
+            feed=Feed(ahead=ahead),
+        )
+
+    def _retract(
+        self, moment: ProcedureMoment, _command: OperatorCommand
+    ) -> PhaseStep | RefusedStep:
+        """Take the drill out and align again: only before it has cut bone."""
+        if moment.now.feed.has_cut_bone:
+            return RefusedStep(self._texts.say("bone is cut"))
+        state = moment.entering(Phase.ALIGNING)
+        return PhaseStep(state, "realign", {"name": _present(state).line.name}, feed=NO_FEED)
+
+    def _start_insertion(
+        self, moment: ProcedureMoment, _command: OperatorCommand
+    ) -> PhaseStep | RefusedStep:
+        """Exchange the drill for the instrument, which begins at the guide's tip."""
+        feed = moment.now.feed
+        if feed.drilled <= 0.0:
+            return RefusedStep(self._texts.say("nothing drilled"))
+        entered = moment.entering(Phase.INSERTING)
+        drilled = replace(_present(entered), drill_depth=feed.drilled)
+        return PhaseStep(
+            _with_present(entered, drilled),
+            "insert",
+            {"name": drilled.line.name},
+            feed=replace(feed, depth=0.0),
+        )
+
+    def _release(
+        self, moment: ProcedureMoment, _command: OperatorCommand
+    ) -> PhaseStep | RefusedStep:
+        """Leave the instrument where it is; the next line follows, or the end."""
+        depth = moment.now.feed.depth
+        if depth <= 0.0:
+            return RefusedStep(self._texts.say("still in the guide"))
+        procedure = moment.procedure
+        following = procedure.trajectory + 1
+        is_last = following == len(procedure.trajectories)
+        entered = moment.entering(Phase.REGISTERED if is_last else Phase.ALIGNING)
+        placed = replace(_present(entered), instrument_depth=depth)
+        state = _with_present(entered, placed)
+        assert state.procedure is not None
+        if is_last:
+            ended = replace(state.procedure, ended_s=moment.elapsed)
+            return PhaseStep(replace(state, procedure=ended), "procedure done", feed=NO_FEED)
+        onward = replace(state, procedure=replace(state.procedure, trajectory=following))
+        name = procedure.trajectories[following].line.name
+        return PhaseStep(onward, "align next", {"name": name}, feed=NO_FEED)
+
+
+def _attempt(moment: ProcedureMoment) -> RegistrationAttempt:
+    procedure = moment.procedure
+    return RegistrationAttempt(moment.state.touches, procedure.registration, procedure.checkpoints)
+
+
+def _present(state: TrainingState) -> TrajectoryState:
+    """Return the trajectory at hand, also of a state that has just left its phases."""
+    assert state.procedure is not None
+    return state.procedure.trajectories[state.procedure.trajectory]
+
+
+def _with_present(state: TrainingState, trajectory: TrajectoryState) -> TrainingState:
+    assert state.procedure is not None
+    return replace(state, procedure=state.procedure.with_present(trajectory))

@@ -1,0 +1,228 @@
+"""A whole procedure over OpenIGTLink, against a simulator that is killed in each of its phases."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.protocol import Phase
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.touch_registration import register_touches, touches_of
+from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.replay.resimulation import replay
+from Testing.end_to_end.onto_skin import lower_onto_skin
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.test_trial_over_openigtlink import SPEED, TASK, Player, play
+from Testing.simulator.planned_procedures import write_scenario
+
+STAND_OFF_MM = 25.0
+DRILLED_MM = 60.0
+PLACED_MM = 70.0
+LOST_MM = 2.0
+"""At most what 0.2 s feed, which may not be written yet."""
+
+
+class Surgeon:
+    """A client that carries a procedure out; the server is killed and started again beneath it."""
+
+    def __init__(self, folder: Path):
+        self.records = folder / "records"
+        self.scenario = write_scenario(folder / "scenario")
+        self.resumed: list[dict] = []
+        self._start()
+
+    def _start(self) -> None:
+        options = ("--scenario", str(self.scenario), "--speed", SPEED)
+        self.simulator = SimulatorProcess(self.records, *options)
+        self.player = Player(self.simulator.port)
+
+    def close(self) -> None:
+        self.player.close()
+        self.simulator.kill()
+
+    def kill_and_resume(self) -> dict:
+        """Kill the server, start it again, and resume; return the state that it resumed in."""
+        self.close()
+        self._start()
+        paused = self.state(lambda state: state["phase"] == Phase.PAUSED.value)
+        self.player.do("Resume")
+        resumed = self.state(lambda state: state["phase"] != Phase.PAUSED.value)
+        self.resumed.append(resumed)
+        return paused
+
+    def state(self, is_wanted) -> dict:
+        found = self.player.wait_for(
+            "SimState", lambda message: is_wanted(json.loads(message.content.text)), 20
+        )
+        return json.loads(found.content.text)
+
+    def procedure(self, is_wanted=bool) -> dict:
+        return self.state(lambda state: is_wanted(state["procedure"]))["procedure"]
+
+    def feed(self, tool: str, to_mm: float, velocity_mm_s: float) -> None:
+        """Feed a tool again and again until the state reports the depth."""
+        while (before := self.depth(tool)) < to_mm:
+            self.player.do("Feed", velocityMmS=velocity_mm_s, durationS=2.0)
+            self.depth(tool, before)
+
+    def depth(self, tool: str, after: float = -1.0) -> float:
+        """Return how deep a tool is, as soon as it is deeper than before."""
+
+        def is_news(procedure: dict) -> bool:
+            return procedure["tool"] == tool and procedure["feedMm"] > after
+
+        return self.procedure(is_news)["feedMm"]
+
+
+@pytest.fixture(scope="module")
+def seen(tmp_path_factory) -> dict:
+    """What a client saw of a procedure with two lines."""
+    surgeon = Surgeon(tmp_path_factory.mktemp("procedure"))
+    try:
+        return perform(surgeon) | {"surgeon": surgeon}
+    finally:
+        surgeon.close()
+
+
+def perform(surgeon: Surgeon) -> dict:
+    scenario = load_scenario(surgeon.scenario)
+    seen = {"tasks": surgeon.player.do("ListTasks")}
+    seen |= play(surgeon.player, scenario, procedure="dbs")
+    trial_id = seen["StartTask"]["trialId"]
+    surgeon.kill_and_resume()
+    told = surgeon.player.do("GetTrial", trialId=trial_id)
+    registered = register_touches(touches_of(told), scenario, TASK)
+    seen["UseRegistration"] = surgeon.player.do("UseRegistration", **registered.arguments(trial_id))
+    head_to_world = transforms.inverse(registered.rigid.matrix)
+    check = transforms.apply(head_to_world, scenario.procedures[0].checkpoints[0].position)
+    seen["checked"] = touch_checkpoint(surgeon, check, head_to_world, scenario)
+    surgeon.kill_and_resume()
+    surgeon.player.do("AcceptRegistration")
+    seen["aligned"], seen["paused drill"], seen["paused instrument"] = [], [], []
+    for number in range(2):
+        surgeon.player.do("AlignGuide", standOffMm=STAND_OFF_MM)
+        if number == 0:
+            surgeon.kill_and_resume()
+            surgeon.player.do("AlignGuide", standOffMm=STAND_OFF_MM)
+        seen["aligned"].append(surgeon.procedure(is_aligned_with(number)))
+        surgeon.player.do("LockGuide")
+        surgeon.feed("drill", DRILLED_MM, 5.0)
+        if number == 0:
+            seen["drilled"] = surgeon.procedure()
+            seen["paused drill"] = surgeon.kill_and_resume()
+        surgeon.player.do("StartInsertion")
+        surgeon.feed("electrode", PLACED_MM, 10.0)
+        if number == 1:
+            seen["inserted"] = surgeon.procedure()
+            seen["paused instrument"] = surgeon.kill_and_resume()
+        surgeon.player.do("ReleaseInstrument")
+    seen["offer"] = surgeon.player.next_offer()
+    seen["before"] = surgeon.player.do("GetTrial", trialId=trial_id)
+    seen["truth"] = surgeon.player.do("SubmitRegistration", **registered.arguments(trial_id))
+    surgeon.player.do("TrialScored", trialId=trial_id, score=77)
+    seen["scored"] = surgeon.state(lambda state: state["phase"] == Phase.SCORED.value)
+    surgeon.player.do("AcknowledgeTrial", trialId=trial_id)
+    seen["exit"] = surgeon.simulator.stop()
+    (seen["journal"],) = surgeon.records.glob("*.journal")
+    return seen
+
+
+def touch_checkpoint(surgeon: Surgeon, place, head_to_world, scenario) -> dict:
+    center = transforms.apply(head_to_world, scenario.target_position)
+    outward = (place - center) / np.linalg.norm(place - center)
+    surgeon.player.move_to(place + 40.0 * outward)
+    lower_onto_skin(surgeon.player, place, center)
+    return surgeon.player.do("Capture")
+
+
+def is_aligned_with(number: int):
+    def is_aligned(procedure: dict) -> bool:
+        if (procedure["tool"], procedure["trajectory"]) != ("guide", number):
+            return False
+        off = abs(procedure["standOffMm"] - STAND_OFF_MM)
+        return max(procedure["entryDistanceMm"], procedure["angleDeg"], off) < 0.001
+
+    return is_aligned
+
+
+def test_the_procedures_are_listed_with_their_lines(seen):
+    listed = {each["name"]: each for each in seen["tasks"]["procedures"]}
+    assert listed["dbs"] == {
+        "name": "dbs",
+        "title": "Dbs",
+        "kind": "dbs",
+        "trajectories": ["Line 0", "Line 1"],
+    }
+
+
+def test_after_each_kill_the_procedure_continues_in_its_phase(seen):
+    assert [state["phase"] for state in seen["surgeon"].resumed] == [
+        "verifying",
+        "verifying",
+        "aligning",
+        "drilling",
+        "inserting",
+    ]
+    assert [state["procedure"]["registrationInUse"] for state in seen["surgeon"].resumed] == [
+        False,
+        *(True,) * 4,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("before", "after"), [("drilled", "paused drill"), ("inserted", "paused instrument")]
+)
+def test_drill_and_instrument_are_where_they_were_before_the_kill(seen, before, after):
+    lost_mm = seen[before]["feedMm"] - seen[after]["procedure"]["feedMm"]
+
+    assert 0.0 <= lost_mm <= LOST_MM
+    assert seen[after]["procedure"]["tool"] == seen[before]["tool"]
+
+
+def test_the_robot_aligns_the_guide_exactly_on_the_plan(seen):
+    for aligned in seen["aligned"]:
+        assert aligned["entryDistanceMm"] <= 0.05
+        assert aligned["angleDeg"] <= 0.05
+
+
+def test_the_record_holds_the_whole_procedure(seen):
+    record = TrialRecord.from_json(seen["offer"])
+    procedure = record.procedure
+    assert (procedure.procedure, procedure.kind.value) == ("dbs", "dbs")
+    (attempt,) = procedure.attempts
+    assert attempt.registration.matrix == tuple(seen["UseRegistration"]["registration"]["matrix"])
+    (checkpoint,) = attempt.checkpoints
+    assert checkpoint.name == seen["checked"]["checkpoint"] == "Check 0"
+    assert checkpoint.error_mm == seen["checked"]["errorMm"]
+    for instrument in procedure.instruments:
+        assert instrument.self_aligned
+        assert instrument.alignments == 1
+        assert DRILLED_MM - LOST_MM <= instrument.drill_depth_mm <= DRILLED_MM + 10.0
+        assert PLACED_MM - LOST_MM <= instrument.instrument_depth_mm <= PLACED_MM + 20.0
+        assert instrument.feed["drill_path_mm"] >= instrument.drill_depth_mm - 5.0
+    assert record.completion_time_s < procedure.duration_s
+    assert sum(procedure.phase_times_s.values()) == pytest.approx(procedure.duration_s)
+
+
+def test_the_truth_stays_secret_until_the_registration_is_submitted(seen):
+    told = [seen[name] for name in ("UseRegistration", "checked", "offer", "before")]
+    assert "headToWorld" not in json.dumps(told)
+    assert "headToWorld" in seen["truth"]
+    assert seen["scored"]["phase"] == "scored"
+
+
+def test_the_trial_is_played_again_to_the_last_bit_through_all_its_interruptions(seen):
+    reading = read_journal(seen["journal"])
+    assert reading.integrity is Integrity.INTACT
+    report = replay(reading, setup_of(reading.header, seen["surgeon"].scenario))
+    assert report.difference is None
+    assert report.compared["continued"] == 5
+    assert report.compared["checkpoint"] == 1
+    assert report.compared["feed"] >= 4
+    assert seen["exit"] == (0, "")

@@ -1,0 +1,116 @@
+"""How far drill and instrument go in the guide, and what is felt on the way."""
+
+import math
+
+import pytest
+
+from rastrainer.protocol import Phase
+from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
+from rastrainer_simulator.teleoperation.teleoperation import StickResponse
+from rastrainer_simulator.training.feed import (
+    LONGEST_FEED_M,
+    NO_FEED,
+    Feed,
+    FeedDrive,
+    FeedLayer,
+    HeadAhead,
+    ProcedureSettings,
+)
+
+DT = 0.004
+AHEAD = HeadAhead(skin=0.02, outer=0.027, inner=0.034)
+DRILLING, INSERTING = Phase.DRILLING, Phase.INSERTING
+
+
+@pytest.fixture
+def drive():
+    return FeedDrive(ProcedureSettings(), StickResponse())
+
+
+def stick(up, fine=False):
+    return OperatorInput(translation=(0.0, 0.0, up), fine=fine)
+
+
+@pytest.mark.parametrize(
+    ("phase", "fine", "fastest"),
+    [
+        (DRILLING, False, 0.005),
+        (DRILLING, True, 0.001),
+        (INSERTING, False, 0.010),
+        (INSERTING, True, 0.001),
+    ],
+)
+def test_the_stick_feeds_down_into_the_head_within_the_limit(drive, phase, fine, fastest):
+    assert drive.way(DT, phase, stick(-1.0, fine)) == pytest.approx(fastest * DT)
+    assert drive.way(DT, phase, stick(1.0, fine)) == pytest.approx(-fastest * DT)
+    assert 0.0 < drive.way(DT, phase, stick(-0.5, fine)) < 0.5 * fastest * DT
+    assert drive.way(DT, phase, stick(0.1, fine)) == 0.0
+
+
+def test_a_broken_stick_feeds_nothing(drive):
+    for up in (math.nan, math.inf):
+        assert drive.way(DT, DRILLING, stick(up)) == 0.0
+
+
+def test_a_commanded_feed_lasts_its_time_within_the_limit(drive):
+    drive.start(50.0, 0.1)
+    ways = [drive.way(DT, DRILLING, HANDS_OFF) for _ in range(30)]
+    assert sum(ways) == pytest.approx(0.005 * 0.1)
+    assert ways[25:] == [0.0] * 5
+    drive.start(-2.0, 0.01)
+    assert sum(drive.way(DT, DRILLING, HANDS_OFF) for _ in range(5)) == pytest.approx(-2e-5)
+
+
+def test_the_stick_overrides_a_commanded_feed(drive):
+    drive.start(5.0, 2.0)
+    assert drive.way(DT, DRILLING, stick(1.0)) < 0.0
+    assert drive.way(DT, DRILLING, HANDS_OFF) == 0.0
+
+
+def test_the_drill_goes_from_the_guide_s_tip_to_its_length_and_its_depth_is_kept():
+    feed = Feed(ahead=AHEAD)
+    assert feed.moved(DRILLING, -0.01).depth == 0.0
+    deep = feed.moved(DRILLING, 1.0)
+    assert deep.depth == deep.drilled == LONGEST_FEED_M
+    back = feed.moved(DRILLING, 0.03).moved(DRILLING, -0.02)
+    assert (back.depth, back.drilled) == pytest.approx((0.01, 0.03))
+
+
+@pytest.mark.parametrize(
+    ("drilled", "limit"),
+    [(0.001, 0.027), (0.027, 0.027), (0.030, 0.030), (0.0339, 0.0339), (0.034, LONGEST_FEED_M)],
+)
+def test_an_instrument_stops_at_bone_that_is_not_drilled_through(drilled, limit):
+    feed = Feed(drilled=drilled, ahead=AHEAD)
+    assert feed.moved(INSERTING, 1.0).depth == limit
+
+
+def test_an_axis_that_misses_the_skull_stops_no_instrument():
+    assert Feed(drilled=0.001, ahead=HeadAhead(0.02)).moved(INSERTING, 1.0).depth == LONGEST_FEED_M
+
+
+def test_what_is_felt_changes_at_the_skin_and_at_both_tables():
+    feed, felt = Feed(ahead=AHEAD), []
+    for _ in range(40):
+        feed = feed.moved(DRILLING, 0.001)
+        felt.append(feed.layer(DRILLING))
+    assert list(dict.fromkeys(felt)) == [
+        FeedLayer.FREE,
+        FeedLayer.SCALP,
+        FeedLayer.BONE,
+        FeedLayer.THROUGH,
+    ]
+    # A hole that is drilled stays one.
+    assert feed.moved(DRILLING, -0.02).layer(DRILLING) is FeedLayer.THROUGH
+
+
+def test_an_instrument_on_uncut_bone_is_felt_to_be_stopped():
+    feed = Feed(drilled=0.030, ahead=AHEAD)
+    assert feed.moved(INSERTING, 0.02).layer(INSERTING) is FeedLayer.FREE
+    assert feed.moved(INSERTING, 0.05).layer(INSERTING) is FeedLayer.BLOCKED
+
+
+def test_bone_is_cut_beyond_the_outer_table_alone():
+    assert not Feed(drilled=0.0269, ahead=AHEAD).has_cut_bone
+    assert Feed(drilled=0.0271, ahead=AHEAD).has_cut_bone
+    assert not NO_FEED.has_cut_bone

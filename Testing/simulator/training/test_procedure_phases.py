@@ -1,0 +1,344 @@
+"""From the registration to the placed instrument: what each command leads to, and what it keeps."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.procedure_state import Tool
+from rastrainer_simulator.state import EventKind
+from rastrainer_simulator.training.feed import Feed, HeadAhead
+from rastrainer_simulator.training.rules import RECORDING_FAILED
+from Testing.simulator.training.hand_driven import (
+    AHEAD,
+    DRILLED,
+    LOCKABLE,
+    PROCEDURE,
+    REGISTRATION,
+    VERTEX,
+    Trial,
+    at_procedure,
+)
+
+
+def place_line(trial):
+    """Go from aligning to the release of the instrument, a second in each phase."""
+    for command, feed in (
+        (CommandName.LOCK_GUIDE, LOCKABLE),
+        (CommandName.START_INSERTION, DRILLED),
+        (CommandName.RELEASE_INSTRUMENT, DRILLED),
+    ):
+        trial.now += 1.0
+        reply = trial.must(command, (0.5, 0.0, 0.4), feed=feed)
+    return reply
+
+
+def test_a_trial_without_a_procedure_has_none_of_its_phases(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    trial.touch(15)
+    trial.must(CommandName.REGISTER)
+    assert trial.state.phase is Phase.REGISTERED
+    assert trial.procedure is None
+
+
+def test_an_unknown_procedure_is_refused_with_those_there_are(scenario):
+    reply = Trial(scenario).start(procedure="craniotomy")
+    assert not reply.ok
+    assert "it has dbs, plain" in reply.message
+
+
+def test_a_whole_procedure_goes_through_its_phases_with_each_tool(scenario):
+    trial = at_procedure(scenario, Phase.VERIFYING)
+    tools = [trial.procedure.tool]
+    trial.must(CommandName.ACCEPT_REGISTRATION)
+    for name in ("Left", "Right"):
+        assert name in trial.state.instruction
+        tools.append(trial.procedure.tool)
+        trial.must(CommandName.LOCK_GUIDE, (0.5, 0.0, 0.4), feed=LOCKABLE)
+        tools.append(trial.procedure.tool)
+        trial.must(CommandName.START_INSERTION, feed=DRILLED)
+        tools.append(trial.procedure.tool)
+        trial.must(CommandName.RELEASE_INSTRUMENT, feed=DRILLED)
+    assert trial.state.phase is Phase.REGISTERED
+    fed = [Tool.GUIDE, Tool.DRILL, Tool.ELECTRODE]
+    assert tools == [Tool.POINTER, *fed, *fed]
+    assert len(trial.state.touches) == 15
+
+
+def test_the_times_of_the_phases_add_up_to_the_trial_s_without_pauses(scenario):
+    trial = at_procedure(scenario, Phase.ALIGNING)
+    place_line(trial)
+    trial.must(CommandName.PAUSE)
+    trial.now += 60.0
+    trial.must(CommandName.RESUME)
+    place_line(trial)
+    procedure = trial.procedure
+    assert procedure.times_s == pytest.approx({Phase.RUNNING: 1.0, Phase.VERIFYING: 1.0})
+    for line in procedure.trajectories:
+        assert line.times_s == pytest.approx(
+            dict.fromkeys((Phase.ALIGNING, Phase.DRILLING, Phase.INSERTING), 1.0)
+        )
+    assert procedure.ended_s == pytest.approx(8.0)
+    trial.now += 30.0
+    assert trial.training.elapsed(trial.now) == procedure.ended_s
+    assert trial.state.touches[-1].elapsed == 0.0
+
+
+def test_the_answer_to_a_registration_reveals_nothing_of_the_truth(scenario):
+    trial = at_procedure(scenario, Phase.VERIFYING, shift_mm=(1.0, 0.0, 0.0))
+    again = trial.must(CommandName.USE_REGISTRATION, **trial.exact_registration((1.0, 0.0, 0.0)))
+    assert set(again.data["registration"]) == {"matrix", "freMm", "expectedTreMm"}
+    whole = str(again.data)
+    assert "headToWorld" not in whole
+    assert "true" not in whole.lower()
+    assert "headToWorld" not in trial.must(CommandName.GET_TRIAL).data
+
+
+def test_what_truly_lies_ahead_of_the_guide_is_recorded_and_never_answered(scenario):
+    trial = at_procedure(scenario, Phase.ALIGNING)
+    reply = trial.must(CommandName.LOCK_GUIDE, (0.5, 0.0, 0.4), feed=LOCKABLE)
+    assert "ahead" not in reply.data
+    (event,) = reply.events
+    assert event.data["ahead"] == pytest.approx({"skinMm": 20.0, "outerMm": 27.0, "innerMm": 34.0})
+    assert reply.feed == Feed(ahead=AHEAD)
+
+
+def test_a_second_registration_is_refused_unless_it_is_the_same(scenario):
+    trial = at_procedure(scenario, Phase.VERIFYING)
+    assert trial.do(CommandName.USE_REGISTRATION, **trial.exact_registration()).ok
+    other = trial.do(CommandName.USE_REGISTRATION, **trial.exact_registration((0.0, 0.0, 1.0)))
+    assert not other.ok
+    assert "Another registration is in use" in other.message
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {0: 1.1},
+        {0: -1.0},
+        {12: 0.5},
+        {15: 2.0},
+        {1: 0.01},
+        {0: 0.0, 5: 0.0, 10: 0.0},
+    ],
+    ids=["stretched", "mirrored", "projective", "scaled", "sheared", "flat"],
+)
+def test_a_registration_that_is_not_rigid_is_refused(scenario, change):
+    trial = Trial(scenario)
+    trial.start(procedure="dbs")
+    trial.touch(15)
+    trial.must(CommandName.REGISTER)
+    matrix = list(REGISTRATION["matrix"])
+    for place, value in change.items():
+        matrix[place] = value
+    reply = trial.do(CommandName.USE_REGISTRATION, **{**REGISTRATION, "matrix": tuple(matrix)})
+    assert not reply.ok
+    assert "rigid" in reply.message
+    assert trial.procedure.registration is None
+
+
+def test_the_plan_is_shown_where_the_registration_has_it(scenario):
+    shift = np.array([2.0, -1.0, 0.5])
+    trial = at_procedure(scenario, Phase.ALIGNING, shift_mm=shift)
+    for line, planned in zip(trial.procedure.trajectories, PROCEDURE.trajectories, strict=True):
+        # A registration that maps everything by the shift too far shows the plan so much short.
+        assert line.line.name == planned.name
+        assert line.line.entry == pytest.approx(trial.place(planned.entry - shift), abs=1e-12)
+        assert line.line.target == pytest.approx(trial.place(planned.target - shift), abs=1e-12)
+
+
+@pytest.mark.parametrize("shift_mm", [0.0, 4.0])
+def test_the_error_of_a_checkpoint_is_by_the_trainee_s_own_registration(scenario, shift_mm):
+    trial = at_procedure(scenario, Phase.VERIFYING, shift_mm=(shift_mm, 0.0, 0.0))
+    reply = trial.must(CommandName.CAPTURE, trial.place(VERTEX + np.array([0.0, 3.0, 0.0])))
+    expected = math.hypot(shift_mm, 3.0)
+    assert reply.data["checkpoint"] == "Vertex"
+    assert reply.data["errorMm"] == pytest.approx(expected, abs=1e-9)
+    assert f"Vertex is {expected:.1f} mm off by your registration" in trial.state.instruction
+    (point,) = trial.procedure.checkpoints
+    assert MM_PER_M * point.error == pytest.approx(expected, abs=1e-9)
+    assert [event.kind for event in reply.events] == [EventKind.CHECKPOINT]
+
+
+@pytest.mark.parametrize(
+    ("offset_mm", "above_mm", "words"),
+    [
+        ((0.0, 0.0, 30.1), 0.0, "Vertex, the nearest by your registration, is 30.1 mm away"),
+        ((0.0, 0.0, 0.0), 2.5, "2.5 mm above the skin"),
+    ],
+)
+def test_a_touch_that_is_no_check_is_refused_with_what_would_be_one(
+    scenario, offset_mm, above_mm, words
+):
+    trial = at_procedure(scenario, Phase.VERIFYING)
+    reply = trial.do(CommandName.CAPTURE, trial.place(VERTEX + offset_mm), above_mm)
+    assert not reply.ok
+    assert words in reply.message
+    assert trial.state.instruction == reply.message
+    assert trial.state.rejected == 0
+    assert trial.procedure.checkpoints == ()
+    assert [event.kind for event in reply.events] == [EventKind.REJECTED]
+
+
+def test_before_there_is_a_registration_nothing_is_checked_or_accepted(scenario):
+    trial = Trial(scenario)
+    trial.start(procedure="dbs")
+    trial.touch(15)
+    trial.must(CommandName.REGISTER)
+    for command in (CommandName.CAPTURE, CommandName.ACCEPT_REGISTRATION):
+        assert "UseRegistration comes first" in trial.do(command, trial.place(VERTEX)).message
+    assert trial.do(CommandName.REGISTER_AGAIN).ok
+
+
+def test_a_procedure_without_checkpoints_says_so(scenario):
+    trial = at_procedure(scenario, Phase.VERIFYING, "plain")
+    assert "no checkpoints" in trial.do(CommandName.CAPTURE, trial.place(VERTEX)).message
+    assert trial.do(CommandName.ACCEPT_REGISTRATION).ok
+
+
+def test_who_registers_again_touches_all_again_and_the_first_attempt_stays_in_the_record(scenario):
+    trial = at_procedure(scenario, Phase.VERIFYING, shift_mm=(9.0, 0.0, 0.0))
+    trial.must(CommandName.CAPTURE, trial.place(VERTEX))
+    trial.now += 2.0
+    trial.must(CommandName.REGISTER_AGAIN)
+    assert (trial.state.phase, trial.state.touches, trial.state.next_point) == (
+        Phase.RUNNING,
+        (),
+        "1",
+    )
+    trial.now += 3.0
+    trial.touch(15)
+    trial.must(CommandName.REGISTER)
+    trial.must(CommandName.USE_REGISTRATION, **trial.exact_registration())
+    trial.must(CommandName.ACCEPT_REGISTRATION)
+    first, accepted = trial.procedure.attempts
+    assert len(first.touches) == len(accepted.touches) == 15
+    assert [point.name for point in first.checkpoints] == ["Vertex"]
+    assert accepted.checkpoints == ()
+    assert first.registration.matrix[3] == pytest.approx(accepted.registration.matrix[3] + 9.0)
+    assert trial.state.touches[-1].elapsed == pytest.approx(6.0)
+    assert trial.procedure.times_s == pytest.approx({Phase.RUNNING: 4.0, Phase.VERIFYING: 2.0})
+
+
+def test_so_many_attempts_and_checks_are_kept_that_a_record_can_hold_them(scenario, monkeypatch):
+    phases = "rastrainer_simulator.training.procedure_phases"
+    monkeypatch.setattr(f"{phases}.MAX_ATTEMPTS", 2)
+    monkeypatch.setattr(f"{phases}.MAX_TOUCHED_CHECKPOINTS", 3)
+    trial = at_procedure(scenario, Phase.VERIFYING)
+    for _ in range(2):
+        trial.must(CommandName.CAPTURE, trial.place(VERTEX))
+    trial.must(CommandName.REGISTER_AGAIN)
+    trial.touch(15)
+    trial.must(CommandName.REGISTER)
+    trial.must(CommandName.USE_REGISTRATION, **trial.exact_registration())
+    trial.must(CommandName.CAPTURE, trial.place(VERTEX))
+    assert "3 checkpoints" in trial.do(CommandName.CAPTURE, trial.place(VERTEX)).message
+    assert "2 times" in trial.do(CommandName.REGISTER_AGAIN).message
+    assert trial.do(CommandName.ACCEPT_REGISTRATION).ok
+
+
+@pytest.mark.parametrize(
+    ("skin_m", "words"),
+    [
+        (None, "does not meet the head"),
+        (0.0801, "80 mm from the skin along its axis: LockGuide needs at most 80 mm"),
+    ],
+)
+def test_a_guide_that_cannot_be_drilled_through_is_not_locked(scenario, skin_m, words):
+    trial = at_procedure(scenario, Phase.ALIGNING)
+    before = trial.state
+    reply = trial.do(CommandName.LOCK_GUIDE, feed=Feed(ahead=HeadAhead(skin=skin_m)))
+    assert words in reply.message
+    assert trial.state is before
+
+
+def test_the_guide_is_kept_as_it_was_locked_last(scenario):
+    trial = at_procedure(scenario, Phase.DRILLING)
+    trial.must(CommandName.RETRACT_DRILL, feed=Feed(0.01, 0.01, AHEAD))
+    assert trial.state.phase is Phase.ALIGNING
+    tip, direction = (0.48, 0.01, 0.39), (0.0, 0.6, -0.8)
+    trial.must(CommandName.LOCK_GUIDE, tip, feed=LOCKABLE, direction=direction)
+    line = trial.procedure.trajectories[0]
+    assert (line.guide.tip, line.guide.direction, line.alignments) == (tip, direction, 2)
+    assert not line.is_self_aligned
+
+
+def test_a_guide_that_lies_on_the_plan_counts_as_aligned_by_the_robot(scenario):
+    trial = at_procedure(scenario, Phase.ALIGNING)
+    line = trial.procedure.present.line
+    tip = tuple(e - 0.03 * d for e, d in zip(line.entry, line.direction, strict=True))
+    trial.must(CommandName.LOCK_GUIDE, tip, feed=LOCKABLE, direction=line.direction)
+    assert trial.procedure.present.is_self_aligned
+
+
+def test_a_drill_that_has_cut_bone_stays_in_its_hole_however_far_it_is_drawn_back(scenario):
+    trial = at_procedure(scenario, Phase.DRILLING)
+    reply = trial.do(CommandName.RETRACT_DRILL, feed=Feed(0.0, 0.0271, AHEAD))
+    assert "has cut bone" in reply.message
+    assert trial.state.phase is Phase.DRILLING
+
+
+def test_without_a_hole_no_instrument_and_without_a_way_no_release(scenario):
+    trial = at_procedure(scenario, Phase.DRILLING)
+    assert "Nothing is drilled" in trial.do(CommandName.START_INSERTION, feed=LOCKABLE).message
+    exchanged = trial.must(CommandName.START_INSERTION, feed=DRILLED)
+    assert exchanged.feed == Feed(0.0, 0.036, AHEAD)
+    reply = trial.do(CommandName.RELEASE_INSTRUMENT, feed=exchanged.feed)
+    assert "still in the guide" in reply.message
+    trial.must(CommandName.RELEASE_INSTRUMENT, feed=Feed(0.09, 0.036, AHEAD))
+    line = trial.procedure.trajectories[0]
+    assert (line.drill_depth, line.instrument_depth) == (0.036, 0.09)
+
+
+@pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
+def test_a_pause_ends_in_the_phase_that_it_began_in(scenario, phase):
+    trial = at_procedure(scenario, phase)
+    said = trial.state.instruction
+    elapsed = trial.training.elapsed(trial.now)
+    trial.must(CommandName.PAUSE)
+    assert trial.procedure.stage is phase
+    trial.now += 50.0
+    assert trial.training.elapsed(trial.now) == elapsed
+    trial.must(CommandName.RESUME)
+    assert trial.state.phase is phase
+    assert trial.state.instruction == said
+    assert trial.training.elapsed(trial.now) == elapsed
+
+
+@pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
+def test_an_abort_ends_a_procedure_in_each_phase(scenario, phase):
+    trial = at_procedure(scenario, phase)
+    trial.must(CommandName.ABORT)
+    assert trial.state.phase is Phase.IDLE
+    assert trial.procedure is None
+    assert trial.start().ok
+    assert trial.procedure is None
+
+
+@pytest.mark.parametrize(
+    ("phase", "command", "feed"),
+    [
+        (Phase.VERIFYING, CommandName.ACCEPT_REGISTRATION, None),
+        (Phase.VERIFYING, CommandName.REGISTER_AGAIN, None),
+        (Phase.ALIGNING, CommandName.LOCK_GUIDE, LOCKABLE),
+        (Phase.DRILLING, CommandName.RETRACT_DRILL, Feed(0.01, 0.012, AHEAD)),
+        (Phase.DRILLING, CommandName.START_INSERTION, DRILLED),
+        (Phase.INSERTING, CommandName.RELEASE_INSTRUMENT, Feed(0.08, 0.036, AHEAD)),
+    ],
+)
+def test_what_could_not_be_written_is_undone_with_the_feed_that_was_there(
+    scenario, phase, command, feed
+):
+    trial = at_procedure(scenario, phase)
+    kept, given = trial.state, feed or Feed()
+    trial.must(command, (0.5, 0.0, 0.4), feed=feed)
+    now = Feed(0.002, 0.002, AHEAD)
+    reply = trial.do(RECORDING_FAILED, feed=now, revision=kept.revision, reason="disk full")
+    assert trial.state.phase is Phase.PAUSED
+    assert trial.procedure == kept.procedure
+    assert reply.feed == given
+    trial.must(CommandName.RESUME)
+    assert trial.state.phase is phase
