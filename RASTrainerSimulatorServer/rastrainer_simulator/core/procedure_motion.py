@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.head_outline import HeadOutline
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.true_head import TrueHead
 from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.ops.texts.texts import LocalizedText, Texts
 from rastrainer_simulator.procedure_state import GuideAxis, ProcedureState
 from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.teleoperation.commanded_motion import PathCommand
@@ -23,6 +27,17 @@ FED = (Phase.DRILLING, Phase.INSERTING)
 """The arm is held, and the instrument in the guide moves."""
 
 
+class Fed(NamedTuple):
+    """What a tick did to the instrument in the guide."""
+
+    has_moved: bool = False
+    is_by_stick: bool = False
+    events: tuple[Event, ...] = ()
+
+
+NOT_FED = Fed()
+
+
 class ProcedureMotion:
     """The feed of drill and instrument, and the geometry that a procedure needs of the head.
 
@@ -30,10 +45,12 @@ class ProcedureMotion:
         feed: what is in the guide.
     """
 
-    def __init__(self, setup: SimulationSetup, head: HeadMesh) -> None:
+    def __init__(self, setup: SimulationSetup, head: HeadMesh, reach: PlanReach) -> None:
         """`head` is the scenario's; without procedures nothing is made of it."""
         settings, scenario = setup.settings, setup.scenario
         self.feed = NO_FEED
+        self._may_align = settings.procedure.self_alignment
+        self._reach = reach
         self._drive = FeedDrive(settings.procedure, settings.teleoperation.response)
         self._true_head: TrueHead | None = None
         self._outline: HeadOutline | None = None
@@ -55,43 +72,58 @@ class ProcedureMotion:
         """Feed at a velocity, inward above 0, for a time; the stick overrides it."""
         self._drive.start(velocity_mm_s, duration_s)
 
-    def step(
-        self, dt: float, phase: Phase, operator_input: OperatorInput, sim_time: float
-    ) -> tuple[Event, ...]:
-        """Feed for `dt` s; return an event where what is felt changes."""
+    def step(self, dt: float, phase: Phase, operator_input: OperatorInput, sim_time: float) -> Fed:
+        """Feed for `dt` s in a phase, with an event where what is felt changes."""
+        if phase not in FED:
+            return NOT_FED
         before = self.feed
-        self.feed = before.moved(phase, self._drive.way(dt, phase, operator_input))
+        way = self._drive.way(dt, phase, operator_input)
+        if way.distance == 0.0:
+            return NOT_FED
+        self.feed = before.moved(phase, way.distance)
         layer = self.feed.layer(phase)
+        has_moved = self.feed.depth != before.depth
         if layer is before.layer(phase):
-            return ()
-        data = {
-            "phase": phase.value,
-            "layer": layer.value,
-            "feedMm": MM_PER_M * self.feed.depth,
-        }
-        return (Event(EventKind.FEED, sim_time, data),)
+            return Fed(has_moved, way.is_by_stick)
+        depth_mm = MM_PER_M * self.feed.depth
+        data = {"phase": phase.value, "layer": layer.value, "feedMm": depth_mm}
+        event = Event(EventKind.FEED, sim_time, data)
+        return Fed(has_moved, way.is_by_stick, (event,))
 
     def stop(self) -> None:
         """End a commanded feed, as a pause does."""
         self._drive.stop()
 
-    def path(self, guide: GuideAxis, procedure: ProcedureState, stand_off: float) -> PathCommand:
-        """Return the robot's own way onto the planned line at hand, by the registration in use.
+    def way(
+        self,
+        guide: GuideAxis,
+        procedure: ProcedureState | None,
+        stand_off_mm: float,
+        texts: Texts,
+    ) -> PathCommand | LocalizedText:
+        """Return the robot's own way onto the planned line, or why there is none.
 
         Args:
             guide: where it is now.
-            procedure: in the phase `aligning`.
-            stand_off: of the tip before the line's entry at the end, m.
+            procedure: in the phase `aligning`; the line is by the registration in use.
+            stand_off_mm: of the tip before the line's entry at the end.
+            texts: the sentences.
         """
-        registration, present, outline = procedure.registration, procedure.present, self._outline
-        assert registration is not None, "it is accepted"
-        assert present is not None, "the phase has a trajectory"
-        assert outline is not None, "the phase has a procedure"
-        plan = RegisteredPlan.of(registration.matrix)
+        if not self._may_align:
+            return texts.say("no self-alignment")
+        outline = self._outline
+        assert procedure is not None, "the phase has a procedure"
+        assert procedure.registration is not None, "it is accepted"
+        assert procedure.present is not None, "the phase has a trajectory"
+        assert outline is not None, "the scenario has a procedure"
+        line, stand_off = procedure.present.line, stand_off_mm / MM_PER_M
+        if not self._reach.judge_guide(line.entry, line.direction, [stand_off]).reachable:
+            return texts.say("line out of reach", stand_off=stand_off_mm)
+        plan = RegisteredPlan.of(procedure.registration.matrix)
         assert plan is not None, "what is in use is rigid"
 
         def radius(direction: Vector) -> float:
             return outline.radius(vector(dot(row, direction) for row in plan.rows))
 
         middle = plan.in_world(outline.middle.tolist())
-        return guide_path(guide, present.line, stand_off, middle, radius)
+        return guide_path(guide, line, stand_off, middle, radius)

@@ -18,8 +18,9 @@ from rastrainer_simulator.collision.proximity import Pressing, next_proximity
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
 from rastrainer_simulator.core.procedure_motion import FED, ProcedureMotion
+from rastrainer_simulator.core.scene_view import SceneView, stand_pose
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
+from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.procedure_state import GuideAxis
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -33,12 +34,16 @@ from rastrainer_simulator.state import (
     StartingPoint,
     StepResult,
 )
-from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
-from rastrainer_simulator.teleoperation.commanded_motion import MotionOutcome, commanded_motion
+from rastrainer_simulator.teleoperation.commanded_motion import (
+    CommandedMotion,
+    MotionOutcome,
+    commanded_motion,
+)
 from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
+from rastrainer_simulator.training.replies import TrainingReply
 from rastrainer_simulator.training.rules import TouchMoment, refusal
 from rastrainer_simulator.training.touch_stage import touch_stage
-from rastrainer_simulator.training.training import Training, TrainingReply
+from rastrainer_simulator.training.training import Training
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, subtract, vector
 
@@ -74,10 +79,10 @@ class Simulation:
         self.kinematics_name = type(kinematics).__name__
         self._contact = Contact(self._collision, kinematics)
         self._plan_reach = PlanReach(setup.robot, kinematics, self._collision)
+        self._procedure_motion = ProcedureMotion(setup, head, self._plan_reach)
         self._postures = Postures(setup.robot)
         self._start = start_joints(setup.robot, setup.scenario, settings.start_height)
         self._joint_motion = JointMotion(setup.robot, self._start, settings.fabrik)
-        self._procedure_motion = ProcedureMotion(setup, head)
         self._put_in_place()
         self.state = self._state(0, 0.0, Motion.NONE)
 
@@ -137,25 +142,15 @@ class Simulation:
             events.extend(self._move(dt, motion_request, sim_time))
             if motion_request.motion is Motion.STICK:
                 self._operator = operator_input.operator
-        motion = self._feed(dt, operator_input, sim_time, events) or motion_request.motion
+        fed = self._procedure_motion.step(dt, self._training.state.phase, operator_input, sim_time)
+        events.extend(fed.events)
+        if fed.is_by_stick:
+            self._operator = operator_input.operator
+        motion = Motion.FEED if fed.has_moved else motion_request.motion
         self.state = self._state(before.tick + 1, sim_time, motion)
         if self._proximity is not proximity:
             events.append(_proximity(proximity, self.state, self._pressing, sim_time))
         return StepResult(self.state, tuple(events), tuple(answers))
-
-    def _feed(
-        self, dt: float, operator_input: OperatorInput, sim_time: float, events: list[Event]
-    ) -> Motion | None:
-        """Feed what is in the locked guide; return the motion, None where there is none."""
-        phase, before = self._training.state.phase, self._procedure_motion.feed.depth
-        if phase not in FED:
-            return None
-        events.extend(self._procedure_motion.step(dt, phase, operator_input, sim_time))
-        if self._procedure_motion.feed.depth == before:
-            return None
-        if operator_input.translation != HANDS_OFF.translation:
-            self._operator = operator_input.operator
-        return Motion.FEED
 
     def _carry_out(self, command: OperatorCommand, sim_time: float) -> TrainingReply:
         if self._training.handles(command.name):
@@ -165,10 +160,7 @@ class Simulation:
             return TrainingReply(False, sentence)
         arguments = command.arguments
         if command.name == CommandName.LIST_TASKS:
-            scenario = self.setup.scenario
-            names = {"scenario": scenario.name, "title": scenario.title}
-            planned = {"tasks": self._tasks(), "procedures": self._procedures()}
-            return TrainingReply(True, data={**names, **planned})
+            return TrainingReply(True, data=listed(self.setup.scenario))
         if command.name == CommandName.SET_CAMERA:
             self._view.camera = arguments["camera"]
             return TrainingReply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
@@ -178,10 +170,18 @@ class Simulation:
             self._procedure_motion.start(arguments["velocityMmS"], arguments["durationS"])
             self._operator = command.sender
             return TrainingReply(True)
+        motion: CommandedMotion | str
         if command.name == CommandName.ALIGN_GUIDE:
-            return self._align(command)
-        tool = self._posture.tool_axes
-        self._teleoperation.start(commanded_motion(command, self._view.camera_axes, tool))
+            procedure = self._training.state.procedure
+            motion = self._procedure_motion.way(
+                self._guide_axis, procedure, arguments["standOffMm"], self._texts
+            )
+        else:
+            tool = self._posture.tool_axes
+            motion = commanded_motion(command, self._view.camera_axes, tool)
+        if isinstance(motion, str):
+            return TrainingReply(False, motion)
+        self._teleoperation.start(motion)
         self._operator = command.sender
         return TrainingReply(True)
 
@@ -195,40 +195,6 @@ class Simulation:
         )
         event = Event(EventKind.PLAN, sim_time, {**arguments, "reachable": answer.reachable})
         return TrainingReply(True, data=answer._asdict(), events=(event,))
-
-    def _align(self, command: OperatorCommand) -> TrainingReply:
-        """Have the robot bring the guide onto the planned line, if it may and can."""
-        if not self.setup.settings.procedure.self_alignment:
-            return TrainingReply(False, self._texts.say("no self-alignment"))
-        procedure = self._training.state.procedure
-        assert procedure is not None, "the phase has a procedure"
-        assert procedure.present is not None, "the phase has a trajectory"
-        line = procedure.present.line
-        stand_off = command.arguments["standOffMm"] / MM_PER_M
-        path = self._procedure_motion.path(self._guide_axis, procedure, stand_off)
-        if not self._plan_reach.judge_guide(line.entry, line.direction, [stand_off]).reachable:
-            values = {"stand_off": command.arguments["standOffMm"]}
-            return TrainingReply(False, self._texts.say("line out of reach", **values))
-        self._teleoperation.start(path)
-        self._operator = command.sender
-        return TrainingReply(True)
-
-    def _tasks(self) -> list[dict[str, object]]:
-        return [
-            {"name": task.name, "title": task.title, "complexity": task.complexity}
-            for task in self.setup.scenario.tasks
-        ]
-
-    def _procedures(self) -> list[dict[str, object]]:
-        return [
-            {
-                "name": procedure.name,
-                "title": procedure.title,
-                "kind": procedure.kind.value,
-                "trajectories": [trajectory.name for trajectory in procedure.trajectories],
-            }
-            for procedure in self.setup.scenario.procedures
-        ]
 
     def _motion_request(self, dt: float, operator_input: OperatorInput) -> MotionRequest:
         """Return the requested motion; none while the trial is paused or the guide locked."""
@@ -347,36 +313,25 @@ class Simulation:
         return TouchMoment(sim_time, tip, clearance.tip_m, self._pressing.depth)
 
 
-class SceneView:
-    """The chosen camera and the planned target."""
-
-    def __init__(self, scenario: Scenario, camera: str, choice: AxesChoice) -> None:
-        self._choice = choice
-        self._axes_of_cameras = {
-            name: camera_axes(
-                tuple((view.focal_point - view.position).tolist()), tuple(view.view_up.tolist())
-            )
-            for name, view in scenario.cameras.items()
-        }
-        self.camera = camera
-        self.planned_target: PlanInWorld | None = None
-
-    @property
-    def camera_axes(self) -> Axes:
-        """Right, forward and up as the chosen camera sees them."""
-        return self._axes_of_cameras[self.camera]
-
-    @property
-    def stick_axes(self) -> Axes:
-        """Right, forward and up as the sticks mean them."""
-        return self.camera_axes if self._choice is AxesChoice.CAMERA else ROBOT_AXES
-
-
-def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
-    """Return StandToWorld, (4, 4) float, m; `base` is the middle of the head's base, (3,) float."""
-    stand_to_world = np.eye(4)
-    stand_to_world[:3, 3] = head_to_world[:3, :3] @ base + head_to_world[:3, 3]
-    return stand_to_world
+def listed(scenario: Scenario) -> dict[str, Any]:
+    """Return the answer to ListTasks, ready for JSON."""
+    return {
+        "scenario": scenario.name,
+        "title": scenario.title,
+        "tasks": [
+            {"name": task.name, "title": task.title, "complexity": task.complexity}
+            for task in scenario.tasks
+        ],
+        "procedures": [
+            {
+                "name": procedure.name,
+                "title": procedure.title,
+                "kind": procedure.kind.value,
+                "trajectories": [trajectory.name for trajectory in procedure.trajectories],
+            }
+            for procedure in scenario.procedures
+        ],
+    }
 
 
 def _collision(setup: SimulationSetup, head: HeadMesh) -> Collision:

@@ -19,8 +19,8 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.arm import moving_links
+from rastrainer_simulator.core.scene_view import stand_pose
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.core.simulation import stand_pose
 from rastrainer_simulator.procedure_state import ProcedureState, Tool
 from rastrainer_simulator.registration_state import TouchState
 from rastrainer_simulator.replay.recorded_procedure import procedure_after

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import Enum
+from typing import NamedTuple
 
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
@@ -147,6 +148,13 @@ def recorded_feed(feed: Feed) -> dict[str, float]:
     return {"feedMm": MM_PER_M * feed.depth, "drilledMm": MM_PER_M * feed.drilled}
 
 
+class FeedWay(NamedTuple):
+    """How far to feed in a tick, m, inward above 0."""
+
+    distance: float
+    is_by_stick: bool = False
+
+
 class FeedDrive:
     """Turns the stick, or a commanded feed, into the way of a tick."""
 
@@ -165,16 +173,16 @@ class FeedDrive:
         """End a commanded feed."""
         self._remaining = 0.0
 
-    def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> float:
-        """Return how far to feed in `dt` s, m: up retracts, down goes in."""
+    def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> FeedWay:
+        """Return how far to feed in `dt` s."""
         up = self._response(operator_input.translation)[2]
         fastest = self._settings.fastest(phase, operator_input.fine)
         if up != 0.0:
             self.stop()
-            return -up * fastest * dt
+            return FeedWay(-up * fastest * dt, is_by_stick=True)
         if self._remaining <= 1e-3 * dt:
-            return 0.0
+            return FeedWay(0.0)
         time = min(dt, self._remaining)
         self._remaining -= dt
         fastest = self._settings.fastest(phase, fine=False)
-        return min(max(self._velocity, -fastest), fastest) * time
+        return FeedWay(min(max(self._velocity, -fastest), fastest) * time)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,13 +16,15 @@ from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.procedure_state import ProcedureState
 from rastrainer_simulator.registration_state import FinalRegistration, TouchState
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
-from rastrainer_simulator.training.feed import Feed, ProcedureSettings, recorded_feed
+from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
+from rastrainer_simulator.training.kept_states import KeptStates
 from rastrainer_simulator.training.procedure_phases import (
     OF_A_PROCEDURE,
     PhaseStep,
     ProcedurePhases,
     RefusedStep,
 )
+from rastrainer_simulator.training.replies import TrainingReply, revealed, summary, touched
 from rastrainer_simulator.training.rules import (
     INTERRUPTED,
     RECORDING_FAILED,
@@ -33,22 +35,11 @@ from rastrainer_simulator.training.rules import (
 )
 from rastrainer_simulator.training.trial_clock import TrialClock, trial_id, trial_seed
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import Vector
 
 if TYPE_CHECKING:
     from rastrainer.scenario.scenario import Scenario
     from rastrainer.scenario.tasks import Task
-
-
-@dataclass(frozen=True)
-class TrainingReply:
-    """What a command led to; `feed` is what is in the guide from now on, None as before."""
-
-    ok: bool
-    message: str = ""
-    data: Mapping[str, Any] = field(default_factory=dict)
-    events: tuple[Event, ...] = ()
-    feed: Feed | None = None
 
 
 class Training:
@@ -71,16 +62,16 @@ class Training:
         self._settings = settings or TrainingSettings()
         self._procedure_settings = procedure or ProcedureSettings()
         self._phases: ProcedurePhases | None = None
-        self._feeds: dict[int, Feed] = {}
         self._texts = texts or Texts()
         self._number = 0
         self._clock = TrialClock(0.0)
         self._task: Task | None = None
         self._fiducials: dict[str, Vector] = {}
         self.trial_seed = 0
-        self.truth = self._truth(scenario.head_to_world, None)
+        self.truth = Truth.of(scenario, scenario.head_to_world)
         self.state = TrainingState(instruction=self._texts.say("idle"))
-        self._history = {0: self.state}
+        self._kept = KeptStates()
+        self._kept.begin(self.state)
         self._handlers: dict[str, Callable[[OperatorCommand, TouchMoment], TrainingReply]] = {
             CommandName.START_TASK: self._start,
             CommandName.CAPTURE: self._capture,
@@ -100,7 +91,7 @@ class Training:
     def restart_from(self, revision: int) -> None:
         """Count revisions on from another simulation's, before the first trial."""
         self.state = replace(self.state, revision=revision)
-        self._history = {revision: self.state}
+        self._kept.begin(self.state)
 
     def resume_trial(
         self, revision: int, steps: Iterable[tuple[OperatorCommand, TouchMoment]]
@@ -112,7 +103,7 @@ class Training:
         """
         self._leave()
         self.state = TrainingState(revision=revision)
-        self._history = {revision: self.state}
+        self._kept.begin(self.state)
         for command, moment in steps:
             self.handle(command, moment)
 
@@ -133,7 +124,7 @@ class Training:
         left = self.state.revision
         reply = self._handlers[command.name](command, now)
         if self.state.revision != left:
-            self._feeds[left] = now.feed
+            self._kept.leave(left, now.feed)
         return reply
 
     def elapsed(self, sim_time: float) -> float:
@@ -163,12 +154,14 @@ class Training:
         chosen = arguments.get("seed")
         self.trial_seed = trial_seed(self._seed, number) if chosen is None else chosen
         self._task = task
-        self.truth = self._truth(self._scenario.perturbed_head_to_world(self.trial_seed), task)
+        self.truth = Truth.of(
+            self._scenario, self._scenario.perturbed_head_to_world(self.trial_seed), task
+        )
         places = self.truth.in_world(np.array(list(self.truth.fiducials.values()))) / MM_PER_M
         self._fiducials = dict(zip(self.truth.fiducials, map(tuple, places.tolist()), strict=True))
         self._clock = TrialClock(now.sim_time)
         idle = TrainingState(revision=self.state.revision)
-        self._history, self._feeds = {idle.revision: idle}, {}
+        self._kept.begin(idle)
         started = TrainingState(
             phase=Phase.RUNNING,
             trainee=arguments["trainee"],
@@ -180,7 +173,7 @@ class Training:
             procedure=ProcedureState(chosen_procedure) if chosen_procedure else None,
         )
         event = self._enter(started, "start", now)
-        return TrainingReply(True, data=self._summary(), events=(event,))
+        return TrainingReply(True, data=summary(self.state), events=(event,))
 
     def _phases_of(self, procedure: str, task: Task) -> ProcedurePhases | None:
         """Return the phases of a procedure, None without one.
@@ -207,7 +200,7 @@ class Training:
         if step.kind is EventKind.PHASE:
             event = self._enter(step.state, step.key, now, **step.values)
             event = replace(event, data={**event.data, **step.data, **step.recorded})
-            data = {**self._summary(), **step.data}
+            data = {**summary(self.state), **step.data}
             return TrainingReply(True, data=data, events=(event,), feed=step.feed)
         self._keep(step.state, step.key, **step.values)
         event = Event(step.kind, now.sim_time, step.data)
@@ -278,14 +271,14 @@ class Training:
         if self._phases is not None:
             return self._in_procedure(command, now)
         event = self._enter(replace(self.state, phase=Phase.REGISTERED), "registered", now)
-        data = {**self._summary(), "completionTimeS": self.state.touches[-1].elapsed}
+        data = {**summary(self.state), "completionTimeS": self.state.touches[-1].elapsed}
         return TrainingReply(True, data=data, events=(event,))
 
     def _abort(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         aborted = self.state
         self._leave()
         idle = TrainingState(revision=aborted.revision)
-        self._history = {}
+        self._kept.begin()
         event = self._enter(idle, "aborted", now, trainee=aborted.trainee)
         return TrainingReply(True, data={"trialId": aborted.trial_id}, events=(event,))
 
@@ -312,10 +305,11 @@ class Training:
         if known is not None and not known.agrees_with(registration):
             return TrainingReply(False, self._texts.say("registration is final"))
         matrix = registration.matrix if known is None else known.matrix
-        data = {"trialId": self.state.trial_id, **self._revealed(matrix)}
+        data = {"trialId": self.state.trial_id, **revealed(self.truth, self.state, matrix)}
         if known is not None:
             return TrainingReply(True, data=data)
-        self._keep(replace(self.state, registration=registration), "registered")
+        key = "registered" if self._phases is None else "procedure done"
+        self._keep(replace(self.state, registration=registration), key)
         event = Event(EventKind.REGISTRATION, now.sim_time, {"trialId": self.state.trial_id})
         return TrainingReply(True, data=data, events=(event,))
 
@@ -326,7 +320,7 @@ class Training:
             return TrainingReply(False, self._texts.say("no registration"))
         result = TrialResult(
             registration=registration,
-            true_tre_mm=self._revealed(registration.matrix)["trueTreMm"],
+            true_tre_mm=revealed(self.truth, self.state, registration.matrix)["trueTreMm"],
             score=arguments["score"],
             details=arguments["details"],
         )
@@ -345,31 +339,23 @@ class Training:
 
     def _get_trial(self, _command: OperatorCommand, _now: TouchMoment) -> TrainingReply:
         state = self.state
-        data = self._summary()
-        data["touches"] = [
-            {
-                "label": touch.label,
-                "positionMm": [MM_PER_M * value for value in touch.position],
-                "simTime": touch.sim_time,
-            }
-            for touch in state.touches
-        ]
+        data = {**summary(state), "touches": touched(state)}
         if state.registration is not None:
-            data.update(self._revealed(state.registration.matrix))
+            data.update(revealed(self.truth, state, state.registration.matrix))
         return TrainingReply(True, data=data)
 
     def _recording_failed(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Go back to the last revision that is on the disk, and pause."""
-        kept = self._history.get(command.arguments["revision"])
-        if kept is None:
+        found = self._kept.find(command.arguments["revision"])
+        if found is None:
             return TrainingReply(True)
+        kept, feed = found[0], found[1] or now.feed
         sentence = self._texts.say("not recorded", reason=command.arguments["reason"])
         if kept.phase in (Phase.RUNNING, *PROCEDURE_PHASES):
             self._clock.pause(now.sim_time)
             kept = replace(kept, phase=Phase.PAUSED)
         if kept.phase is Phase.IDLE:
             self._leave()
-        feed = self._feeds.get(kept.revision, now.feed)
         back = replace(kept, revision=self.state.revision)
         then = replace(now, feed=feed)
         event = self._enter(back, "not recorded", then, reason=command.arguments["reason"])
@@ -391,7 +377,11 @@ class Training:
     def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
         """Enter another phase and return the event of it."""
         self._keep(state, key, **values)
-        data = {**self._summary(), "instruction": self.state.instruction, **recorded_feed(now.feed)}
+        data = {
+            **summary(self.state),
+            "instruction": self.state.instruction,
+            **recorded_feed(now.feed),
+        }
         return Event(EventKind.PHASE, now.sim_time, data)
 
     def _keep(self, state: TrainingState, key: str, **values: object) -> None:
@@ -405,36 +395,9 @@ class Training:
         revision = state.revision + 1
         instruction = self._texts.say(key, **words)
         self.state = replace(state, revision=revision, instruction=instruction)
-        self._history[revision] = self.state
+        self._kept.keep(self.state)
 
     def _leave(self) -> None:
         """Between trials the head is where it nominally is."""
-        self.truth = self._truth(self._scenario.head_to_world, None)
+        self.truth = Truth.of(self._scenario, self._scenario.head_to_world)
         self._fiducials = {}
-
-    def _summary(self) -> dict[str, Any]:
-        state = self.state
-        summary: dict[str, Any] = {
-            "trialId": state.trial_id,
-            "phase": state.phase.value,
-            "trainee": state.trainee,
-            "task": state.task,
-            "mode": state.mode,
-            "nextPoint": state.next_point,
-        }
-        if state.procedure is not None:
-            at = {"name": state.procedure.name, "stage": state.procedure.stage.value}
-            summary["procedure"] = {**at, "trajectory": state.procedure.trajectory}
-        return summary
-
-    def _revealed(self, matrix: tuple[float, ...]) -> dict[str, Any]:
-        touches = (
-            (touch.label, vector(MM_PER_M * v for v in touch.position))
-            for touch in self.state.touches
-        )
-        return self.truth.revealed(np.array(matrix, dtype=float).reshape(4, 4), touches)
-
-    def _truth(self, head_to_world: np.ndarray, task: Task | None) -> Truth:
-        fiducials = dict(zip(task.labels, task.fiducials, strict=True)) if task else {}
-        target = self._scenario.target_position
-        return Truth(np.asarray(head_to_world, dtype=float), target, fiducials)

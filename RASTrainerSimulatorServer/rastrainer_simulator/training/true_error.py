@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rastrainer.registration.target_error import true_errors
+
+if TYPE_CHECKING:
+    from rastrainer.scenario.scenario import Scenario
+    from rastrainer.scenario.tasks import Task
 
 
 @dataclass(frozen=True)
@@ -24,6 +28,12 @@ class Truth:
     head_to_world: np.ndarray
     target: np.ndarray
     fiducials: Mapping[str, np.ndarray]
+
+    @classmethod
+    def of(cls, scenario: Scenario, head_to_world: np.ndarray, task: Task | None = None) -> Truth:
+        """Return the truth of a trial of a task, or without one, by the head's pose, mm."""
+        fiducials = dict(zip(task.labels, task.fiducials, strict=True)) if task else {}
+        return cls(np.asarray(head_to_world, dtype=float), scenario.target_position, fiducials)
 
     def in_world(self, points: np.ndarray) -> np.ndarray:
         """Return a point of the head, or n of them, (3,) or (n, 3) float, RAS mm, in World, mm."""

@@ -342,3 +342,11 @@ def test_what_could_not_be_written_is_undone_with_the_feed_that_was_there(
     assert reply.feed == given
     trial.must(CommandName.RESUME)
     assert trial.state.phase is phase
+
+
+def test_entries_that_could_not_be_written_leave_the_drill_where_it_is(scenario):
+    trial = at_procedure(scenario, Phase.DRILLING)
+    now = Feed(0.02, 0.02, AHEAD)
+    revision = trial.state.revision
+    reply = trial.do(RECORDING_FAILED, feed=now, revision=revision, reason="disk full")
+    assert (trial.state.phase, reply.feed) == (Phase.PAUSED, now)
