@@ -44,7 +44,7 @@ def main() -> None:
 
 def _line(cells) -> str:
     texts = [f"{cell:.4g}" if isinstance(cell, float) else str(cell or "") for cell in cells]
-    widths = (26, 10, 10, 6, 24, 12, 12, 9, 8)
+    widths = (26, 10, 10, 6, 27, 12, 12, 9, 8)
     return " ".join(text.ljust(width) for text, width in zip(texts, widths, strict=True))
 
 

@@ -14,13 +14,14 @@ from rastrainer.scenario.library import user_library
 from rastrainer.scenario.package import pack, unpack
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
-from rastrainer.slicer.head import own_process
+from rastrainer.slicer.head import scenario_build
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.segment import forSegment, volumeOfSegment
 from rastrainer.slicer.head.volume import Volume
 from rastrainer.slicer.logic import scenario_logic
 from rastrainer.slicer.logic.head_preview import HeadPreview
+from rastrainer.slicer.program.own_process import OwnProcess
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.scene import Role, findNode
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
@@ -153,7 +154,7 @@ def test_a_found_head_is_a_segment_with_the_base_and_threshold_that_are_shown(ho
     assert node.GetSegmentation().GetNumberOfSegments() == 1
     bounds = findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW).GetPolyData().GetBounds()
     assert bounds[5] == pytest.approx(70.0 * SIZE, abs=1.5)
-    preview = HeadPreview(host.scene, Path(sys.executable))
+    preview = HeadPreview(host.scene, OwnProcess(Path(sys.executable)))
     settings = HeadSettings()
     found = findHead(
         volumeOfSegment(preview.segment(volume, settings)), forSegment(settings), ignore
@@ -170,7 +171,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     host, monkeypatch
 ):
     made = host.widget.logic.session.scenario.find("colin27")
-    monkeypatch.setattr(own_process, "buildScenario", lambda *_arguments: (made, []))
+    monkeypatch.setattr(scenario_build, "buildScenario", lambda *_arguments: (made, []))
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
     volume.AddAndObserveDisplayNodeID(rendering.GetID())

@@ -4,7 +4,6 @@ import csv
 import json
 import sqlite3
 import sys
-import threading
 import uuid
 from pathlib import Path
 
@@ -14,7 +13,6 @@ import slicer
 from PySide6 import QtCore
 
 from rastrainer import transforms
-from rastrainer.journal.journal_file import read_journal
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.scenario.scenario import load_scenario
@@ -501,32 +499,6 @@ def test_a_trial_has_feedback_and_is_shown_again(panels, add_trial):
     panels.press("worstTouchButton")
     tool = panels.scene.GetFirstNodeByName("T-001, task-1: tool")
     assert tool.GetTransformNodeID() is not None
-
-
-def test_no_journal_is_read_by_the_main_thread(panels, add_trial, monkeypatch):
-    readers = []
-
-    def watched(path, rest):
-        readers.append(threading.get_ident())
-        return read_journal(path, rest)
-
-    for module in ("replay_track", "folder"):
-        monkeypatch.setattr(f"rastrainer.journal.{module}.read_journal", watched)
-    add_trial(1, "T-001")
-    write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
-    panels.press("createTraineeButton")
-    panels.choose("traineeComboBox", "T-001")
-    panels.wait_until(lambda: panels.text("feedbackText").startswith("Score "), "it is judged")
-    panels.press("replayButton")
-    assert len(readers) == 2
-    assert threading.get_ident() not in readers
-    # What is in the scene already is not read again, unless a node of it is gone.
-    panels.press("worstTouchButton")
-    assert len(readers) == 2
-    panels.scene.RemoveNode(panels.scene.GetFirstNodeByName("T-001, task-1: tool model"))
-    panels.press("replayButton")
-    assert len(readers) == 3
-    assert panels.scene.GetFirstNodeByName("T-001, task-1: tool model") is not None
 
 
 def test_a_replay_that_is_canceled_or_whose_scene_is_closed_leaves_nothing_behind(

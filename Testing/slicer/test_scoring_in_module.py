@@ -1,39 +1,70 @@
 """A trial arrives in the module as Slicer runs it: the main thread keeps Python's lock."""
 
+import os
+import sys
 import uuid
 from pathlib import Path
 
 import numpy as np
+import pytest
+import slicer
 
 from rastrainer import transforms
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
+from Testing.slicer.host.opened_journals import OpenedJournals
 from Testing.slicer.recorded_trial import write_recorded_trial
 
 SEED = 3
 TRIAL = str(uuid.UUID(int=9))
 
 
-def test_a_trial_is_kept_scored_and_judged_while_the_window_answers(host, simulator, make_record):
-    colin = load_scenario(asset_path("scenarios", "colin27"))
-    head_to_world = colin.perturbed_head_to_world(SEED)
-    touched = transforms.apply(head_to_world, colin.task("task-1").fiducials)
-    record = make_record(TRIAL, scenario="colin27")
-    for point, position in zip(record["points"], touched.tolist(), strict=True):
-        point["positionMm"] = position
+@pytest.fixture
+def head_to_world():
+    return load_scenario(asset_path("scenarios", "colin27")).perturbed_head_to_world(SEED)
+
+
+@pytest.fixture
+def connected(host, simulator, head_to_world):
+    """The module with a chosen trainee and a simulator that has recorded their trial."""
+    write_recorded_trial(Path.home() / "RASTrainer" / "trials", TRIAL, 16.0)
 
     def answer(name, _arguments):
         truth = {"headToWorld": head_to_world.ravel().tolist(), "trueTreMm": 0.5}
         return truth if name == "SubmitRegistration" else {}
 
     simulator.responder = answer
-    write_recorded_trial(Path.home() / "RASTrainer" / "trials", TRIAL, 16.0)
     host.open()
     host.type("pseudonymLineEdit", "T-001")
     host.press("createTraineeButton")
-    link = host.widget.logic.session.link
-    link.connectTo(port=simulator.port)
+    host.widget.logic.session.link.connectTo(port=simulator.port)
     host.wait_until(lambda: simulator.commands, "it is connected")
+    return host
+
+
+@pytest.fixture
+def record(make_record, head_to_world):
+    """A trial whose touches are exact."""
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    touched = transforms.apply(head_to_world, colin.task("task-1").fiducials)
+    record = make_record(TRIAL, scenario="colin27")
+    for point, position in zip(record["points"], touched.tolist(), strict=True):
+        point["positionMm"] = position
+    return record
+
+
+@pytest.fixture
+def journals(connected):  # noqa: ARG001 (Slicer runs)
+    """Who reads journals."""
+    opened = OpenedJournals(Path(slicer.app.slicerHome))
+    yield opened
+    opened.close()
+
+
+def test_a_trial_is_kept_scored_and_judged_while_the_window_answers(
+    connected, simulator, record, journals
+):
+    host = connected
     host.keeps_lock = True
     simulator.send_command("TrialCompleted", record)
     host.wait_until(lambda: host.find("historyTable").rowCount == 1, "the trial is kept")
@@ -46,5 +77,20 @@ def test_a_trial_is_kept_scored_and_judged_while_the_window_answers(host, simula
     true_error = lambda: host.find("historyTable").item(0, 4).text()  # noqa: E731
     host.wait_until(lambda: true_error() != "–", "the history shows the true error")
     assert np.isfinite(float(true_error()))
+    # The journal is read once, and where there is Slicer's Python, by a process of it.
+    (pid,) = journals.pids()
+    assert (pid == os.getpid()) is (sys.platform == "win32")
     # Nothing is left to do, and no timer runs for it.
     host.wait_until(lambda: not host.widget._workTimer.active, "the work is done")
+
+
+def test_a_trial_that_is_not_scored_has_feedback_all_the_same(
+    connected, simulator, record, journals
+):
+    simulator.responder = lambda name, _arguments: (
+        "Another registration was submitted." if name == "SubmitRegistration" else {}
+    )
+    simulator.send_command("TrialCompleted", record)
+    told = lambda: connected.text("feedbackText")  # noqa: E731
+    connected.wait_until(lambda: told().startswith(("Point ", "No touch ")), "it is judged")
+    assert len(journals.pids()) == 1

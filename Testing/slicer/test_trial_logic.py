@@ -306,7 +306,7 @@ def reviews(monkeypatch):
         done.append((analysis.record.trial_id, threading.get_ident()))
         return review(analysis, *arguments)
 
-    monkeypatch.setattr("rastrainer.slicer.logic.trial_logic.analyze_trial", registered)
+    monkeypatch.setattr("rastrainer.slicer.logic.trial_work.analyze_trial", registered)
     monkeypatch.setattr("rastrainer.slicer.logic.trial_logic.review", scored)
     return done
 

@@ -41,10 +41,11 @@ def wait_keeping_lock() -> None:
 PLENTY = 1 << 40
 
 
-def lend_references_to_none() -> None:
-    """Give None more references than a test session can drop."""
+def lend_references() -> None:
+    """Give None and the truth values more references than a test session can drop."""
     if sys.version_info < (3, 12):
-        ctypes.c_ssize_t.from_address(id(None)).value += PLENTY
+        for value in (None, True, False):
+            ctypes.c_ssize_t.from_address(id(value)).value += PLENTY
 
 
 TICK_MS = 5
@@ -54,9 +55,16 @@ LOOK_AFTER_S = 0.03
 
 @dataclass(frozen=True)
 class Stall:
-    """A time without a turn of the loop, and the innermost lines of ours that ran then."""
+    """A time without a turn of the loop.
+
+    Attributes:
+        seconds: how long it was.
+        own_s: without what the main thread waited for a processor, which other programs had.
+        ran: the innermost lines of ours that ran then.
+    """
 
     seconds: float
+    own_s: float
     ran: str
 
 
@@ -66,13 +74,14 @@ class StallWatch:
     Attributes:
         stalls: each gap between two turns that was longer than a look.
         longest_s: of all gaps.
+        longest_own_s: of all gaps, without what the main thread waited for a processor.
     """
 
     def __init__(self) -> None:
         self.stalls: list[Stall] = []
-        self.longest_s = 0.0
+        self.longest_s = self.longest_own_s = 0.0
         self._main = threading.get_ident()
-        self._last = time.perf_counter()
+        self._last, self._waited_s = time.perf_counter(), waited_for_processor_s()
         self._ran = ""
         self._ends = threading.Event()
         self._timer = QtCore.QTimer()
@@ -82,7 +91,7 @@ class StallWatch:
         self._sampler = threading.Thread(target=self._look, daemon=True)
 
     def __enter__(self) -> StallWatch:
-        self._last = time.perf_counter()
+        self._last, self._waited_s = time.perf_counter(), waited_for_processor_s()
         self._timer.start()
         self._sampler.start()
         return self
@@ -94,17 +103,28 @@ class StallWatch:
         self._sampler.join()
 
     def _tick(self) -> None:
-        now = time.perf_counter()
+        now, waited_s = time.perf_counter(), waited_for_processor_s()
         seconds, self._last = now - self._last, now
+        own_s, self._waited_s = seconds - (waited_s - self._waited_s), waited_s
         self.longest_s = max(self.longest_s, seconds)
+        self.longest_own_s = max(self.longest_own_s, own_s)
         if seconds > LOOK_AFTER_S:
-            self.stalls.append(Stall(seconds, self._ran))
+            self.stalls.append(Stall(seconds, own_s, self._ran))
         self._ran = ""
 
     def _look(self) -> None:
         while not self._ends.wait(TICK_MS / 1000):
             if not self._ran and time.perf_counter() - self._last > LOOK_AFTER_S:
                 self._ran = " < ".join(_ours(sys._current_frames().get(self._main))[:4])
+
+
+def waited_for_processor_s() -> float:
+    """Return how long this thread could have run so far, but other programs had the processors.
+
+    Known on Linux only; 0 elsewhere.
+    """
+    path = Path(f"/proc/self/task/{threading.get_native_id()}/schedstat")
+    return int(path.read_text().split()[1]) / 1e9 if path.exists() else 0.0
 
 
 def _ours(frame: FrameType | None) -> list[str]:

@@ -16,7 +16,7 @@ from rastrainer_headless.connector import HeadlessConnector
 from Testing.slicer.host import appearance
 from Testing.slicer.host.answers import ANSWERS, Message
 from Testing.slicer.host.application import Application
-from Testing.slicer.host.event_loop import lend_references_to_none
+from Testing.slicer.host.event_loop import lend_references
 from Testing.slicer.host.failures import FAILURES, VtkMessages
 from Testing.slicer.host.installation import Home, Installation
 from Testing.slicer.host.layout import LayoutManager
@@ -56,7 +56,7 @@ class Host(User):
             connector: whether the extension SlicerOpenIGTLink is installed.
             window: False is Slicer without a main window, as in its generic tests.
         """
-        lend_references_to_none()
+        lend_references()
         self.keeps_lock = False
         appearance.application()
         ANSWERS.clear()

@@ -58,10 +58,8 @@ class ReplayTrack:
     events: tuple[RecordedEvent, ...]
 
 
-def find_track(
-    records: Path, trial_id: str, pause: Callable[[], None] = lambda: None
-) -> ReplayTrack:
-    """Return the track of a trial from a folder of journals; `pause` as in `read_journal`.
+def find_track(records: Path, trial_id: str) -> ReplayTrack:
+    """Return the track of a trial from a folder of journals.
 
     Raises:
         InputError: there is no journal, or it has no movement.
@@ -72,7 +70,7 @@ def find_track(
             f"The journal of this trial is not in {records}: it can be shown again only on the "
             "computer whose simulator has recorded it."
         )
-    return read_track(paths[0], pause)
+    return read_track(paths[0])
 
 
 def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTrack:

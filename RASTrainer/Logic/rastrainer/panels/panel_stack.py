@@ -20,7 +20,6 @@ from rastrainer.panels.trainees_panel import TraineesPanel
 from rastrainer.panels.training_panel import TrainingPanel
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction
-from rastrainer.slicer.main_turn import mainTurn
 
 SECTIONS = (
     SetupPanel,
@@ -69,10 +68,9 @@ class PanelStack:
         """Show what no signal reports: the scene, and time; nothing while a scene is loaded."""
         if slicer.mrmlScene.IsBatchProcessing():
             return
-        with mainTurn():
-            for panel in self._panels:
-                if hasattr(panel, "showState"):
-                    panel.showState()
+        for panel in self._panels:
+            if hasattr(panel, "showState"):
+                panel.showState()
 
     def close(self) -> None:
         """Stop listening."""

@@ -201,7 +201,8 @@ class ScorePanel:
 
     def _showFeedback(self) -> None:
         """Show the feedback on the trial when it is known."""
-        sentences, self._worst = [], ""
+        sentences: list[str] = []
+        self._worst = ""
         try:
             trial = self._trial()
             feedback = None if trial is None else self._session.replay.feedback(trial)
@@ -212,7 +213,8 @@ class ScorePanel:
                 # The score is one paragraph: the whole panel fits a laptop's screen.
                 parts = len(feedback.score_sentences)
                 score, others = feedback.sentences[:parts], feedback.sentences[parts:]
-                sentences, self._worst = [" ".join(score), *others], feedback.worst.label
+                sentences = [*filter(None, [" ".join(score)]), *others]
+                self._worst = feedback.worst.label
             elif trial is not None:
                 sentences = [_("Feedback on the trial is being prepared.")]
         setSentence(self._ui.feedbackText, "\n".join(sentences))

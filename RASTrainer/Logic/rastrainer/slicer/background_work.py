@@ -22,7 +22,6 @@ from typing import Any, Generic, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.progress import Progress
-from rastrainer.slicer.main_turn import workersTurn
 from rastrainer.slicer.signal import Signal
 
 T = TypeVar("T")
@@ -35,6 +34,8 @@ SWITCH_INTERVAL_S = 0.0002
 """How soon a worker returns Python's lock to a main thread that wants it."""
 CLOSING_S = 1.0
 """How long closing waits for running work."""
+LEAVING_S = 0.2
+"""How long it then waits until that has ended what it had started."""
 
 
 class _Workers:
@@ -96,8 +97,7 @@ class Job(Generic[T]):
 
     def giveTime(self, seconds: float = TIME_S) -> None:
         """Let the thread run, and return when it has ended or the time is over."""
-        with workersTurn():
-            self._thread.join(seconds)
+        self._thread.join(seconds)
 
     def leave(self) -> None:
         """Stop supervising the thread: it has ended, or nobody waits for it."""
@@ -136,6 +136,7 @@ class BackgroundWork:
         self._slices: deque[Callable[[], None]] = deque()
         self._underWay: tuple[Job[Any], _Waiting] | None = None
         self._isClosed = False
+        self._isLeft = threading.Event()
 
     @property
     def isBusy(self) -> bool:
@@ -195,6 +196,11 @@ class BackgroundWork:
         finally:
             self._startNext()
 
+    def checkWanted(self, _step: str = "", _share: float = 0.0) -> None:
+        """End running work, which calls this in its thread, once nobody waits for it any more."""
+        if self._isLeft.is_set():
+            raise _BrokenOffError
+
     def close(self) -> None:
         """Wait briefly for running work, deliver it, and do nothing more."""
         self._isClosed = True
@@ -205,8 +211,11 @@ class BackgroundWork:
         job = self._underWay[0]
         job.giveTime(CLOSING_S)
         self.process()
-        job.leave()
-        self._underWay = None
+        if self._underWay is not None:
+            self._isLeft.set()
+            job.giveTime(LEAVING_S)
+            job.leave()
+            self._underWay = None
 
     def _startNext(self) -> None:
         """Start waiting work after postponed functions: both at once would share Python's lock."""

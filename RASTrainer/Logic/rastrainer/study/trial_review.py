@@ -68,50 +68,59 @@ def store_delivered(
     return DeliveredTrial(record, analysis)
 
 
-def review(
-    analysis: TrialAnalysis,
-    truth: RevealedTruth,
-    scenario: Scenario,
-    study: Study,
-    records: Path | None = None,
-    pause: Callable[[], None] = lambda: None,
-) -> TrialAnalysis:
-    """Score a registered trial as its study's protocol says, with the feedback of its journal.
-
-    Args:
-        analysis: of the trial, as it was registered.
-        truth: what the simulator has revealed.
-        scenario: in which it was played.
-        study: whose protocol sets the references of the score.
-        records: folder of journals; None, or one that is not there, explains less of the touches.
-        pause: called again and again while the journal is read; a thread may wait in it.
-
-    Raises:
-        InputError: the trial cannot be scored, or the study not be read.
-    """
-    protocol = StudyProgress(study).protocol()
-    references = None if protocol is None else protocol.references
-    return scored_with_journal(analysis, truth, scenario, references, records, pause)
+References = Mapping[str, ScoreReference]
+"""References of the score, by task."""
+ScoreComputation = Callable[
+    [TrialAnalysis, RevealedTruth, Scenario, References | None], TrialAnalysis
+]
 
 
 def scored_with_journal(
     analysis: TrialAnalysis,
     truth: RevealedTruth,
     scenario: Scenario,
-    references: Mapping[str, ScoreReference] | None = None,
+    references: References | None = None,
     records: Path | None = None,
     pause: Callable[[], None] = lambda: None,
 ) -> TrialAnalysis:
-    """Score a registered trial, with the feedback of its journal; all as of `review`.
+    """Score a registered trial, with the feedback of its journal.
 
     Args:
-        references: of the score, by task, as a study's protocol sets them; None without one.
+        analysis: of the trial, as it was registered.
+        truth: what the simulator has revealed.
+        scenario: in which it was played.
+        references: as a study's protocol sets them; None without one.
+        records: folder of journals; None, or one that is not there, explains less of the touches.
+        pause: called again and again while the journal is read; a thread may wait in it.
 
     Raises:
         InputError: the trial cannot be scored.
     """
     trajectory = trajectory_of(analysis.record, records, pause)
     return analysis.scored(scenario, truth, references, trajectory)
+
+
+def review(
+    analysis: TrialAnalysis,
+    truth: RevealedTruth,
+    scenario: Scenario,
+    study: Study,
+    score: ScoreComputation = scored_with_journal,
+) -> TrialAnalysis:
+    """Score a registered trial as its study's protocol says.
+
+    Args:
+        analysis: of the trial, as it was registered.
+        truth: what the simulator has revealed.
+        scenario: in which it was played.
+        study: whose protocol sets the references of the score.
+        score: computes the score with the protocol's references.
+
+    Raises:
+        InputError: the trial cannot be scored, or the study not be read.
+    """
+    protocol = StudyProgress(study).protocol()
+    return score(analysis, truth, scenario, None if protocol is None else protocol.references)
 
 
 def trajectory_of(

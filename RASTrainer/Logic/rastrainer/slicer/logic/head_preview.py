@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.progress import Progress
 from rastrainer.slicer.background_work import inBackground
-from rastrainer.slicer.head.own_process import inOwnProcess
+from rastrainer.slicer.program.own_process import Run
 from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, trianglesPolyData
 from rastrainer.slicer.scene.scene import Role, findNode, findOrAddNode
 from rastrainer.slicer.translation import _
@@ -24,12 +23,12 @@ SETTINGS_ATTRIBUTE = "RASTrainer.previewedWith"
 
 
 def findSkin(
-    python: Path, volumeNode: Any, settings: HeadSettings | None, progress: Progress
+    run: Run, volumeNode: Any, settings: HeadSettings | None, progress: Progress
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
     """Return the head of a `vtkMRMLScalarVolumeNode`, its skin, and warnings.
 
     Args:
-        python: runs the process that looks for it.
+        run: runs the function that looks for it.
         volumeNode: MRI or CT of a head.
         settings: what to choose otherwise than usual.
         progress: called with each step and the share of the work done, many times a second; it may
@@ -43,7 +42,7 @@ def findSkin(
     image, scene = imageOfNode(volumeNode), volumeNode.GetScene()
 
     def find(report: Progress) -> tuple[HeadBody, HeadMesh, list[str]]:
-        found, skin, warnings = inOwnProcess(python, FIND_SKIN, report, image, settings)
+        found, skin, warnings = run(FIND_SKIN, report, image, settings)
         # Computed here rather than when the segment is shown.
         _ = found.labels
         return found, skin, warnings
@@ -64,10 +63,10 @@ _DRAFT = (
 class HeadPreview:
     """A model of the head that is found, and a segment of it that the Segment Editor may change."""
 
-    def __init__(self, scene: Any, python: Path) -> None:
-        """`python` runs the process that looks for heads."""
+    def __init__(self, scene: Any, run: Run) -> None:
+        """`run` runs the function that looks for heads."""
         self._scene = scene
-        self._python = python
+        self._run = run
 
     def show(self, volumeNode: Any, settings: HeadSettings, progress: Progress) -> list[str]:
         """Show the head in a `vtkMRMLScalarVolumeNode`; return warnings, one sentence each.
@@ -77,7 +76,7 @@ class HeadPreview:
         """
         from rastrainer.slicer.head.segment import showSegment
 
-        found, skin, warnings = findSkin(self._python, volumeNode, settings, progress)
+        found, skin, warnings = findSkin(self._run, volumeNode, settings, progress)
         node = self._node("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT, "Head to be edited")
         showSegment(node, found)
         node.SetReferenceImageGeometryParameterFromVolumeNode(volumeNode)

@@ -24,7 +24,7 @@ from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.main_turn import mainTurn
+from rastrainer.slicer.program.own_process import OwnProcess
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.scene.registration_nodes import followPlacement
@@ -47,7 +47,7 @@ class ModulePaths:
 
     Attributes:
         assets: folder of scenarios, robots and published studies.
-        python: that sets the simulator up and runs it.
+        python: that sets the simulator up, runs it, and does long work in separate processes.
         simulator: private folder of the simulator.
         study: file of the study, until another is chosen.
         records: folder of the journals of the simulator that is started from here.
@@ -123,14 +123,13 @@ class ModuleSession:
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
         self.work = BackgroundWork()
         self.link = Link(scene, findKit, callSoon=callSoon)
+        run = OwnProcess(places.python)
         setup = SimulatorSetup(places.python, places.simulator, places.package)
         self.simulator = SimulatorLogic(self.link, setup, places.records)
         self.trainees = TraineeLogic(self.openStudy, places.records, self.openStudyPatiently)
-        self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, places.python)
+        self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, run)
         self.images = VolumeLoader(scene, self.work)
-        self.scenarioMaker = ScenarioMaker(
-            scene, self.simulator, cache, places.library, places.python
-        )
+        self.scenarioMaker = ScenarioMaker(scene, self.simulator, cache, places.library, run)
         self.scenarioFiles = ScenarioFiles(self.simulator, cache, places.library)
         self.training = TrainingLogic(scene, self.link, cache.find)
         self.slices = SliceFollower(scene, self.training)
@@ -143,6 +142,7 @@ class ModuleSession:
             self.work,
             self.cohort,
             places.records,
+            run,
         )
         self.aborted = AbortedTrialsLogic(self.link, self.openStudyPatiently, self.work)
         self.replay = ReplayLogic(
@@ -153,6 +153,8 @@ class ModuleSession:
             places.records,
             places.assets / ROBOT,
             self._isTrialOpen,
+            run,
+            self.trials.isBeingScored,
         )
         self.registration = RegistrationLogic(scene, self.work)
         self.plan = PlanLogic(scene, self.link, self.registration)
@@ -201,10 +203,6 @@ class ModuleSession:
 
     def process(self) -> None:
         """Do what is due; while a scene is loaded or cleared, nothing is."""
-        with mainTurn():
-            self._process()
-
-    def _process(self) -> None:
         self.simulator.process()
         if self._scene.IsBatchProcessing():
             return
@@ -230,8 +228,7 @@ class ModuleSession:
         """Let work in the background run for a moment; return whether there still is any."""
         self.work.giveTime()
         if not self._scene.IsBatchProcessing():
-            with mainTurn():
-                self.work.process()
+            self.work.process()
         return self.work.isBusy
 
     def sceneWasCleared(self) -> None:

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.replay_track import find_track
+from rastrainer.journal.replay_track import ReplayTrack
 from rastrainer.progress import Progress
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
-from rastrainer.slicer.main_turn import giveWay
+from rastrainer.slicer.logic.trial_work import EXPLAIN, READ_TRACK
+from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.robot_scene import URDF
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.trial_replay import (
@@ -32,8 +33,7 @@ from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
-from rastrainer.study.trial_review import trajectory_of, with_progress
-from rastrainer.trial.analysis import analyze_trial
+from rastrainer.study.trial_review import with_progress
 from rastrainer.trial.trial_feedback import TrialFeedback
 
 
@@ -54,17 +54,21 @@ class ReplayLogic:
         records: Path,
         robot: Path,
         isTrialOpen: Callable[[], bool] = lambda: False,
+        run: Run = runHere,
+        isBeingScored: Callable[[str], bool] = lambda _trialId: False,
     ) -> None:
         """Show trials again.
 
         Args:
             scene: the scene.
             openStudy: opens the study, in any thread; it may wait for a lock there.
-            work: in which journals are read.
+            work: in which trials are judged.
             findScenario: gives the scenario of a name, in any thread.
             records: folder of journals.
             robot: folder of the URDF.
             isTrialOpen: returns whether the scene shows a trial that is being played.
+            run: runs the functions that read journals.
+            isBeingScored: returns whether a trial is being scored, which gives feedback, too.
         """
         self.feedbackFound = Signal()
         self.shown = Signal()
@@ -75,6 +79,9 @@ class ReplayLogic:
         self._findScenario = findScenario
         self._records = records
         self._robot = robot
+        self._run = run
+        self._isBeingScored = isBeingScored
+        self._awaitedId = ""
         self._known: tuple[str, TrialFeedback | Exception] | None = None
         self._requestedId = ""
         self._until: float | None = None
@@ -90,19 +97,21 @@ class ReplayLogic:
             if isinstance(self._known[1], Exception):
                 raise self._known[1]
             return self._known[1]
-        if self._requestedId != trialId:
+        if self._isBeingScored(trialId):
+            self._awaitedId = trialId
+        elif self._requestedId != trialId:
             self._requestedId = trialId
 
             def take(found: TrialFeedback | Exception) -> None:
                 if self._requestedId == trialId:
                     self.takeFeedback(trialId, found)
 
-            self._work.do(lambda: self._judge(trial), take, take)
+            self._work.do(lambda: self._judge(trial, self._work.checkWanted), take, take)
         return None
 
     def takeFeedback(self, trialId: str, feedback: TrialFeedback | Exception) -> None:
         """Take feedback on a trial that was prepared elsewhere."""
-        self._known, self._requestedId = (trialId, feedback), ""
+        self._known, self._requestedId, self._awaitedId = (trialId, feedback), "", ""
         self.feedbackFound.emit()
 
     def retryFeedback(self) -> None:
@@ -133,13 +142,13 @@ class ReplayLogic:
     ) -> None:
         """Show again how the worst touch came about; otherwise as `show`."""
         if self._known is None or self._known[0] != trial.record.trial_id:
-            judged = inBackground(lambda _report: self._judge(trial), progress)
+            judged = inBackground(lambda report: self._judge(trial, report), progress)
             self.takeFeedback(trial.record.trial_id, judged)
         feedback = self.feedback(trial)
         interval = None if feedback is None else feedback.worst.replay_s
         if interval is None:
             trialId = trial.record.trial_id
-            inBackground(lambda _report: find_track(self._records, trialId, giveWay), progress)
+            inBackground(lambda report: self._track(trialId, report), progress)
             raise InputError(_("The journal does not say when the worst touch was made."))
         self._put(trial, progress)
         goTo(self._scene, interval[0])
@@ -154,7 +163,10 @@ class ReplayLogic:
         return _("{time:.1f} s, clearance {clearance}").format(time=now[0], clearance=now[1])
 
     def process(self) -> None:
-        """Stop where the worst touch was made."""
+        """Stop where the worst touch was made; have feedback asked for that no score has given."""
+        if self._awaitedId and not self._isBeingScored(self._awaitedId):
+            self._awaitedId = ""
+            self.feedbackFound.emit()
         now, browser = moment(self._scene), findReplay(self._scene)
         if self._until is None or now is None or browser is None:
             return
@@ -162,14 +174,15 @@ class ReplayLogic:
             browser.SetPlaybackActive(False)
             self._until = None
 
-    def _judge(self, trial: StoredTrial) -> TrialFeedback:
-        record = trial.record
+    def _judge(self, trial: StoredTrial, progress: Progress) -> TrialFeedback:
+        scenario = self._findScenario(trial.record.scenario)
+        analysis = self._run(EXPLAIN, progress, trial.record, scenario, self._records)
         with self._openStudy() as study:
-            scenario = self._findScenario(record.scenario)
-            trajectory = trajectory_of(record, self._records, giveWay)
-            analysis = analyze_trial(record, scenario, trajectory=trajectory)
             # A score keeps its version, however it would be made today.
             return with_progress(analysis.scored_as(trial.score), study).feedback
+
+    def _track(self, trialId: str, progress: Progress) -> ReplayTrack:
+        return self._run(READ_TRACK, progress, self._records, trialId)
 
     def _put(self, trial: StoredTrial, progress: Progress) -> None:
         self._checkNoTrialIsOpen()
@@ -179,8 +192,8 @@ class ReplayLogic:
         stopReplay(self._scene)
         isThere = isReplayOf(self._scene, record.trial_id)
         track, chain, scenario = inBackground(
-            lambda _report: (
-                None if isThere else find_track(self._records, record.trial_id, giveWay),
+            lambda report: (
+                None if isThere else self._track(record.trial_id, report),
                 readArmChain(self._robot / URDF),
                 self._findScenario(record.scenario),
             ),

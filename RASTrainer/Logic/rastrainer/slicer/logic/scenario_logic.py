@@ -15,6 +15,7 @@ from rastrainer.slicer.logic.head_preview import findSkin
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.program.child_process import runChild
+from rastrainer.slicer.program.own_process import Run
 from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import followPlacement, isPlanned, showPlannedPlace
@@ -34,12 +35,12 @@ from rastrainer.slicer.translation import _
 class ScenarioLogic:
     """What the Scenario panel does."""
 
-    def __init__(self, scene: Any, cache: ScenarioCache, robotFolder: Path, python: Path) -> None:
-        """`python` runs the process that looks for heads."""
+    def __init__(self, scene: Any, cache: ScenarioCache, robotFolder: Path, run: Run) -> None:
+        """`run` runs the function that looks for heads."""
         self._scene = scene
         self._cache = cache
         self._robotFolder = robotFolder
-        self._python = python
+        self._run = run
 
     def listed(self) -> tuple[ListedScenario, ...]:
         """Return the scenarios that come with the module and those of the user."""
@@ -94,7 +95,7 @@ class ScenarioLogic:
         return model, warnings
 
     def _skinOf(self, volumeNode: Any, progress: Progress) -> tuple[Any, list[str]]:
-        _body, mesh, warnings = findSkin(self._python, volumeNode, None, progress)
+        _body, mesh, warnings = findSkin(self._run, volumeNode, None, progress)
         name = f"Head of {volumeNode.GetName()}"
         model = self._scene.AddNewNodeByClass("vtkMRMLModelNode", name)
         model.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))

@@ -15,11 +15,11 @@ from rastrainer.files.point_list import PointList
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario.setup import SetUp, write_setup
-from rastrainer.slicer.head.own_process import inOwnProcess
 from rastrainer.slicer.logic.head_preview import HeadPreview
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.scenario_logic import planWords
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
+from rastrainer.slicer.program.own_process import Run
 from rastrainer.slicer.scene.control_points import handPlacedLists, labelsOf, worldPoints
 from rastrainer.slicer.translation import _
 
@@ -89,7 +89,7 @@ class ScenarioMaker:
         simulator: SimulatorLogic,
         cache: ScenarioCache,
         library: Path,
-        python: Path,
+        run: Run,
     ) -> None:
         """Make scenarios.
 
@@ -98,14 +98,14 @@ class ScenarioMaker:
             simulator: whose program plans the tasks.
             cache: of the scenarios that there are.
             library: into which they come, each into a separate folder.
-            python: runs the process that makes the head.
+            run: runs the functions that find and make the head.
         """
         self._scene = scene
         self._simulator = simulator
         self._cache = cache
         self._library = library
-        self._python = python
-        self._preview = HeadPreview(scene, python)
+        self._run = run
+        self._preview = HeadPreview(scene, run)
 
     def preview(
         self, volumeNode: Any, options: NewScenarioOptions, progress: Progress
@@ -140,7 +140,7 @@ class ScenarioMaker:
         Raises:
             InputError: something cannot be used; the sentence says what.
         """
-        from rastrainer.slicer.head.own_process import buildScenario
+        from rastrainer.slicer.head.scenario_build import buildScenario
 
         with self._planned(volumeNode, options) as planned:
             folder = self._library / self._cache.newName(planned.title)
@@ -163,7 +163,7 @@ class ScenarioMaker:
 
         Arguments, warnings and errors are those of `make`.
         """
-        from rastrainer.slicer.head.own_process import planScenario
+        from rastrainer.slicer.head.scenario_build import planScenario
 
         with self._planned(
             volumeNode, replace(options, hasSkull=False, hasVolume=False)
@@ -192,8 +192,7 @@ class ScenarioMaker:
             folder = Path(temporary)
             yield _Planned(
                 title,
-                lambda report: inOwnProcess(
-                    self._python,
+                lambda report: self._run(
                     MAKE_DRAFT,
                     report,
                     image,

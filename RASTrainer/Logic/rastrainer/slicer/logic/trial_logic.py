@@ -23,13 +23,14 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.trial_delivery import Delivery, DeliveryQueue
 from rastrainer.slicer.logic.trial_scoring import TrialScoring
-from rastrainer.slicer.main_turn import giveWay
+from rastrainer.slicer.logic.trial_work import REGISTER, SCORE
+from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import DeliveredTrial, review, store_delivered
-from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
 
@@ -60,6 +61,7 @@ class TrialLogic:
         work: BackgroundWork,
         cohort: Sequence[Trial] = (),
         records: Path | None = None,
+        run: Run = runHere,
     ) -> None:
         """Receive the trials of a link.
 
@@ -71,6 +73,7 @@ class TrialLogic:
             work: in which trials are scored and kept.
             cohort: what CTPS compares with.
             records: folder of the simulator's journals, if it is on this computer.
+            run: runs the functions that register and score trials.
         """
         self.trialKept = Signal()
         self.trialScored = Signal()
@@ -82,6 +85,7 @@ class TrialLogic:
         self._work = work
         self._cohort = cohort
         self._records = records
+        self._run = run
         self._scoring = TrialScoring(link, work, openStudy, self._review)
         self._scored: dict[str, _Scoring] = {}
         self._unscored: deque[TrialRecord] = deque()
@@ -119,12 +123,16 @@ class TrialLogic:
         """Whether a trial is being scored."""
         return _Scoring.UNDER_WAY in self._scored.values()
 
+    def isBeingScored(self, trialId: str) -> bool:
+        """Whether a trial is being scored."""
+        return self._scored.get(trialId) is _Scoring.UNDER_WAY
+
     def _followTraining(self, state: Mapping[str, Any]) -> None:
         self._state = state
 
     def _storing(self, delivery: Delivery) -> Callable[[], DeliveredTrial]:
         """Return what checks, registers and stores a trial, in the background."""
-        isUnderWay = self._scored.get(delivery.get("trialId", "")) is _Scoring.UNDER_WAY
+        isUnderWay = self.isBeingScored(delivery.get("trialId", ""))
 
         def store() -> DeliveredTrial:
             with self._openStudy() as study:
@@ -140,18 +148,21 @@ class TrialLogic:
         if record.trial_id not in self.received:
             self.received.append(record.trial_id)
             self.trialKept.emit(record)
-        if analysis is not None and self._scored.get(record.trial_id) is not _Scoring.UNDER_WAY:
+        if analysis is not None and not self.isBeingScored(record.trial_id):
             self._score(analysis, self._queue.report)
             self._work.later(lambda: self._show(analysis))
 
     def _analyze(self, record: TrialRecord) -> TrialAnalysis:
-        # To register it nothing is needed of its journal, which takes long to read.
         scenario = self._findScenario(record.scenario)
-        return analyze_trial(record, scenario, self._cohort, pause=giveWay)
+        return self._run(REGISTER, self._work.checkWanted, record, scenario, self._cohort)
 
     def _review(self, analysis: TrialAnalysis, study: Study, truth: RevealedTruth) -> TrialAnalysis:
         scenario = self._findScenario(analysis.record.scenario)
-        return review(analysis, truth, scenario, study, self._records, giveWay)
+
+        def score(*values: Any) -> TrialAnalysis:
+            return self._run(SCORE, self._work.checkWanted, *values, self._records)
+
+        return review(analysis, truth, scenario, study, score)
 
     def _resume(self) -> None:
         """Score the trials that were not scored before the connection was lost."""

@@ -121,6 +121,10 @@ PERIOD_S = 0.02
 SLICER = "Slicer"
 
 
+class NotStartedError(InputError):
+    """A program cannot be started."""
+
+
 class ChildProcess:
     """A program with its output; only `close` waits, and briefly.
 
@@ -134,7 +138,7 @@ class ChildProcess:
         """Start the program, in the environment of `childEnvironment` unless another is given.
 
         Raises:
-            InputError: it cannot be started.
+            NotStartedError: it cannot be started.
         """
         self.arguments = [str(argument) for argument in arguments]
         self._lines: deque[str] = deque(maxlen=LINES_KEPT)
@@ -152,7 +156,7 @@ class ChildProcess:
                 **OPTIONS,
             )
         except OSError as error:
-            raise InputError(
+            raise NotStartedError(
                 f"{self.arguments[0]} cannot be started: {error.strerror or error}."
             ) from None
         self._group = ProcessGroup(self._process)
@@ -254,7 +258,7 @@ def runChild(command: Sequence[str | Path], progress: Progress, firstStep: str =
         firstStep: passed to `progress` until the program prints a step.
 
     Raises:
-        InputError: it cannot be started.
+        NotStartedError: it cannot be started.
     """
     child = ChildProcess(command)
     step, lastLine = (firstStep, 0.0), ""

@@ -1,5 +1,6 @@
-"""A head is made in a separate process: its results, its errors, and its cancellation."""
+"""Work in a separate process: its results, its errors, its end, and what there is without it."""
 
+import logging
 import os
 import subprocess
 import sys
@@ -11,12 +12,13 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.head_draft import findSkin
-from rastrainer.slicer.head.own_process import LOGIC, inOwnProcess
 from rastrainer.slicer.head.volume import Volume
+from rastrainer.slicer.program.own_process import LOGIC, OwnProcess, runHere
 from Testing.slicer.head.phantoms import phantom
 
 FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
 PYTHON = Path(sys.executable)
+WHOSE = "import os\ndef work(progress):\n    return os.getpid()\n"
 
 
 def ignore(_step, _share):
@@ -26,8 +28,8 @@ def ignore(_step, _share):
 def test_the_head_is_the_one_that_is_made_here():
     scan = phantom(spacing=(3.0, 3.0, 3.0), size=0.75)
     told = []
-    body, skin, warnings = inOwnProcess(
-        PYTHON, FIND_SKIN, lambda *step: told.append(step), scan, None
+    body, skin, warnings = OwnProcess(PYTHON)(
+        FIND_SKIN, lambda *step: told.append(step), scan, None
     )
     expected, expected_skin, expected_warnings = findSkin(scan)
     assert body.baseMm == expected.baseMm
@@ -42,21 +44,41 @@ def test_what_cannot_be_used_is_refused_in_the_same_words():
     with pytest.raises(InputError) as here:
         findSkin(nothing)
     with pytest.raises(InputError) as there:
-        inOwnProcess(PYTHON, FIND_SKIN, ignore, nothing, None)
+        OwnProcess(PYTHON)(FIND_SKIN, ignore, nothing, None)
     assert str(there.value) == str(here.value)
 
 
-def test_a_process_that_ends_before_it_is_done_is_reported():
-    with pytest.raises(InputError, match="The head could not be made"):
-        inOwnProcess(PYTHON, "os:abort", ignore)
-
-
-def test_where_the_process_lacks_a_package_the_work_is_done_here(tmp_path, monkeypatch):
-    (tmp_path / "only_here.py").write_text(
-        "import os\ndef work(progress):\n    return os.getpid()\n"
+def test_a_process_that_ends_before_it_is_done_is_reported(tmp_path, monkeypatch):
+    (tmp_path / "failing.py").write_text(
+        "import os\ndef work(progress):\n    print('Out of paper.', flush=True)\n    os._exit(1)\n"
     )
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(InputError, match=r"ended before it was done: Out of paper\."):
+        OwnProcess(PYTHON)("failing:work", ignore)
+
+
+def test_the_work_is_done_by_another_process(tmp_path, monkeypatch):
+    (tmp_path / "anywhere.py").write_text(WHOSE)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    assert OwnProcess(PYTHON)("anywhere:work", ignore) != os.getpid()
     monkeypatch.syspath_prepend(tmp_path)
-    assert inOwnProcess(PYTHON, "only_here:work", ignore) == os.getpid()
+    assert runHere("anywhere:work", ignore) == os.getpid()
+
+
+def test_where_the_process_lacks_a_package_the_work_is_done_here(tmp_path, monkeypatch, caplog):
+    (tmp_path / "only_here.py").write_text(WHOSE)
+    monkeypatch.syspath_prepend(tmp_path)
+    with caplog.at_level(logging.WARNING):
+        assert OwnProcess(PYTHON)("only_here:work", ignore) == os.getpid()
+    assert "lacks only_here: only_here:work runs in Slicer." in caplog.text
+
+
+def test_where_no_process_can_be_started_the_work_is_done_here(tmp_path, monkeypatch, caplog):
+    (tmp_path / "only_here.py").write_text(WHOSE)
+    monkeypatch.syspath_prepend(tmp_path)
+    with caplog.at_level(logging.WARNING):
+        assert OwnProcess(tmp_path / "nowhere")("only_here:work", ignore) == os.getpid()
+    assert "cannot be started: " in caplog.text
 
 
 def test_what_is_canceled_ends(tmp_path, monkeypatch):
@@ -76,7 +98,7 @@ def test_what_is_canceled_ends(tmp_path, monkeypatch):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        inOwnProcess(PYTHON, "endless:work", cancel, str(tmp_path / "touched"))
+        OwnProcess(PYTHON)("endless:work", cancel, str(tmp_path / "touched"))
     # The thread that looks after the end of the process ends with it.
     begun = [thread for thread in threading.enumerate() if thread not in before]
     for thread in begun:
@@ -97,8 +119,8 @@ def test_the_main_process_imports_neither_scipy_nor_the_filters_to_show_a_head()
     program = (
         "import sys\n"
         f"sys.path.insert(0, {str(LOGIC)!r})\n"
-        "import rastrainer.slicer.head.segment, rastrainer.slicer.head.own_process\n"
-        "import rastrainer.slicer.head.head_body, rastrainer.slicer.head.own_process\n"
+        "import rastrainer.slicer.head.segment, rastrainer.slicer.head.head_body\n"
+        "import rastrainer.slicer.head.scenario_build, rastrainer.slicer.program.own_process\n"
         "assert 'scipy' not in sys.modules"
     )
     subprocess.run([PYTHON, "-c", program], check=True)

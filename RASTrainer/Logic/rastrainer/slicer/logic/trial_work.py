@@ -1,0 +1,68 @@
+"""What is done with a trial in a separate process: registered, scored, judged, read for its replay.
+
+A trial's journal holds thousands of lines, and a registration calls numpy hundreds of times. In a
+thread of Slicer's, both would keep its window from answering. The study stays with Slicer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from rastrainer.journal.replay_track import ReplayTrack, find_track
+from rastrainer.progress import Progress
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.study.trial_review import scored_with_journal, trajectory_of
+from rastrainer.trial import ctps
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import ScoreReference
+
+REGISTER = f"{__name__}:register"
+SCORE = f"{__name__}:score"
+EXPLAIN = f"{__name__}:explain"
+READ_TRACK = f"{__name__}:readTrack"
+_READING = "Reading the journal"
+
+
+def register(
+    record: TrialRecord, scenario: Scenario, cohort: Sequence[ctps.Trial], progress: Progress
+) -> TrialAnalysis:
+    """Return the registration of a trial; its journal, which takes long to read, is not needed.
+
+    Raises:
+        InputError: it cannot be registered.
+    """
+    progress("Registering", 0.0)
+    return analyze_trial(record, scenario, cohort)
+
+
+def score(
+    analysis: TrialAnalysis,
+    truth: RevealedTruth,
+    scenario: Scenario,
+    references: Mapping[str, ScoreReference] | None,
+    records: Path | None,
+    progress: Progress,
+) -> TrialAnalysis:
+    """Return a registered trial with its score; arguments and errors of `scored_with_journal`."""
+    progress(_READING, 0.0)
+    return scored_with_journal(analysis, truth, scenario, references, records)
+
+
+def explain(
+    record: TrialRecord, scenario: Scenario, records: Path, progress: Progress
+) -> TrialAnalysis:
+    """Return the registration of a trial, with the touches explained by its journal.
+
+    Raises:
+        InputError: it cannot be registered.
+    """
+    progress(_READING, 0.0)
+    return analyze_trial(record, scenario, trajectory=trajectory_of(record, records))
+
+
+def readTrack(records: Path, trialId: str, progress: Progress) -> ReplayTrack:
+    """Return what is shown of a trial again; errors of `find_track`."""
+    progress(_READING, 0.0)
+    return find_track(records, trialId)

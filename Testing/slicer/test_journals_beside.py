@@ -1,0 +1,122 @@
+"""Journals are read by a process of Slicer's Python, never by Slicer's own."""
+
+import os
+import sys
+import uuid
+from pathlib import Path
+
+import pytest
+import slicer
+
+from Testing.running_process import runs
+from Testing.slicer.host.cancels import cancels
+from Testing.slicer.host.host import Host
+from Testing.slicer.host.opened_journals import OpenedJournals
+from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
+from Testing.slicer.simulator_double import wait_until
+
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="the launcher's double is a script, FIFOs block"
+)
+TRIAL = str(uuid.UUID(int=1))
+REPLAY = "Replay of T-001, task-1"
+TOOL = "T-001, task-1: tool model"
+
+
+@pytest.fixture
+def journals(panel):  # noqa: ARG001 (Slicer runs)
+    """Who has opened journals."""
+    opened = OpenedJournals(Path(slicer.app.slicerHome))
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def panel(host, make_record):
+    """The section Score, with a stored trial; nobody is chosen."""
+    return open_score(host, make_record(TRIAL, scenario="colin27"))
+
+
+def open_score(host, record):
+    host.open()
+    for section in ("trainees", "score"):
+        host.find(f"{section}CollapsibleButton").collapsed = False
+    store_trial_on_colin(host, record, 3)
+    host.press("createTraineeButton")
+    return host
+
+
+@pytest.fixture
+def records():
+    """Where the module looks for the journals of its simulator."""
+    return Path.home() / "RASTrainer" / "trials"
+
+
+def choose_trial(panel):
+    panel.choose("traineeComboBox", "T-001")
+
+
+def wait_for_feedback(panel):
+    panel.wait_until(lambda: panel.text("feedbackText").startswith("Score "), "it is judged")
+
+
+def endless_journal(folder):
+    """Make a journal of which nothing ever comes: who opens it waits for a writer."""
+    folder.mkdir(parents=True)
+    os.mkfifo(folder / f"20260302T090000Z_{TRIAL}.journal")
+
+
+def test_feedback_and_replay_read_the_journal_in_another_process(panel, records, journals):
+    write_recorded_trial(records, TRIAL, 16.0)
+    choose_trial(panel)
+    wait_for_feedback(panel)
+    panel.press("replayButton")
+    assert panel.scene.GetFirstNodeByName(REPLAY).GetNumberOfItems() > 150
+    pids = journals.pids()
+    assert len(set(pids)) == 2
+    assert os.getpid() not in pids
+    assert not any(map(runs, pids))
+    # What is in the scene already is not read again, unless a node of it is gone.
+    panel.press("worstTouchButton")
+    assert journals.pids() == pids
+    panel.scene.RemoveNode(panel.scene.GetFirstNodeByName(TOOL))
+    panel.press("replayButton")
+    assert len(set(journals.pids())) == 3
+    assert os.getpid() not in journals.pids()
+    assert panel.scene.GetFirstNodeByName(TOOL) is not None
+
+
+def test_cancel_ends_the_process_that_reads_the_journal(panel, records, journals):
+    choose_trial(panel)
+    wait_for_feedback(panel)
+    endless_journal(records)
+    with cancels(panel, "replayButton", journals.pids):
+        panel.press("replayButton")
+    (pid,) = journals.pids()
+    assert panel.scene.GetFirstNodeByName(REPLAY) is None
+    assert panel.text("replayButton") == "Show the trial again"
+    wait_until(lambda: not runs(pid), panel.process_events)
+
+
+def test_closing_slicer_ends_the_process_that_reads_the_journal(tmp_path, make_record):
+    host = Host(tmp_path / "slicer")
+    journals = OpenedJournals(tmp_path / "slicer" / "Slicer")
+    try:
+        endless_journal(Path.home() / "RASTrainer" / "trials")
+        choose_trial(open_score(host, make_record(TRIAL, scenario="colin27")))
+        host.wait_until(journals.pids, "the journal is opened")
+        (pid,) = journals.pids()
+    finally:
+        journals.close()
+        host.close()
+    wait_until(lambda: not runs(pid), lambda: None)
+
+
+def test_without_slicers_python_a_thread_reads_the_journal(panel, records, journals):
+    panel.widget.logic.session.places.python.unlink()
+    write_recorded_trial(records, TRIAL, 16.0)
+    choose_trial(panel)
+    wait_for_feedback(panel)
+    panel.press("replayButton")
+    assert panel.scene.GetFirstNodeByName(REPLAY) is not None
+    assert set(journals.pids()) == {os.getpid()}
