@@ -1,4 +1,4 @@
-"""A trial as files for 3D Slicer: points as markups, the transform, residuals as a table."""
+"""A trial as files for 3D Slicer: points and lines, the transform, residuals as a table."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.export.tidy_csv import csv_text
-from rastrainer.files.markups import write_markups
+from rastrainer.files.markups import write_line, write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.registration.fits import RIGID
@@ -21,7 +21,11 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     """Write a trial's files and return their paths.
 
     `touched-world.mrk.json` has the touches in the robot's frame, `touched-ras.mrk.json` the same
-    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals.
+    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals. Each
+    trajectory of a procedure, counted from 1, has the line `trajectory-1-planned.mrk.json` and,
+    where the truth is known, `trajectory-1-shown.mrk.json`, where the plan as it was shown truly
+    lay in the head, and `trajectory-1-placed.mrk.json` from the guide's tip to the instrument's,
+    all in RAS.
 
     Raises:
         InputError: the folder cannot be written.
@@ -31,7 +35,7 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     world = folder / "touched-world.mrk.json"
     write_markups(world, PointList(record.labels, record.positions_mm))
     if rigid is None:
-        return [world]
+        return [world, *_write_lines(trial, folder)]
     matrix = np.reshape(rigid.matrix, (4, 4))
     ras, transform, table = (
         folder / name for name in ("touched-ras.mrk.json", "WorldToRas.tfm", "residuals.csv")
@@ -43,7 +47,27 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
         [label, repr(value)] for label, value in zip(rigid.labels, rigid.residuals_mm, strict=True)
     ]
     write_text(table, csv_text(["fiducial", "residual_mm"], rows))
-    return [world, ras, transform, table]
+    return [world, ras, transform, table, *_write_lines(trial, folder)]
+
+
+def _write_lines(trial: StoredTrial, folder: Path) -> list[Path]:
+    """Write the lines of the trial's procedure, if it has one."""
+    procedure, written = trial.record.procedure, []
+    for number, one in enumerate(procedure.instruments if procedure else (), start=1):
+        planned = np.array([one.entry_ras, one.target_ras])
+        lines = {"planned": planned}
+        if trial.head_to_world is not None and procedure is not None:
+            to_ras = transforms.inverse(np.reshape(trial.head_to_world, (4, 4)))
+            to_world = transforms.inverse(procedure.accepted.world_to_head)
+            placed = [one.guide_tip_mm, one.at_depth(one.instrument_depth_mm)]
+            lines["shown"] = transforms.apply(to_ras @ to_world, planned)
+            lines["placed"] = transforms.apply(to_ras, np.array(placed))
+        for kind, ends in lines.items():
+            path = folder / f"trajectory-{number}-{kind}.mrk.json"
+            labels = ("guide", "tip") if kind == "placed" else ("entry", "target")
+            write_line(path, f"{one.trajectory} ({kind})", PointList(labels, ends))
+            written.append(path)
+    return written
 
 
 def transform_text(to_parent: np.ndarray) -> str:

@@ -45,6 +45,24 @@ def write_markups(path: str | os.PathLike[str], point_list: PointList) -> None:
     Raises:
         InputError: the file cannot be written.
     """
+    _write(path, {"type": "Fiducial"}, point_list)
+
+
+def write_line(path: str | os.PathLike[str], name: str, ends: PointList) -> None:
+    """Write a line between two points in RAS mm as a markups file for Slicer.
+
+    Args:
+        path: ends in `.mrk.json`.
+        name: of the line's node.
+        ends: two points.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    _write(path, {"type": "Line", "name": name}, ends)
+
+
+def _write(path: str | os.PathLike[str], kind: Mapping[str, str], point_list: PointList) -> None:
     labels = point_list.labels or tuple("" for _ in point_list.points)
     control_points = [
         {
@@ -62,7 +80,7 @@ def write_markups(path: str | os.PathLike[str], point_list: PointList) -> None:
         for row, (label, position) in enumerate(zip(labels, point_list.points, strict=True))
     ]
     markup = {
-        "type": "Fiducial",
+        **kind,
         "coordinateSystem": "RAS",
         "coordinateUnits": "mm",
         "locked": False,

@@ -133,20 +133,23 @@ def axis_distance_mm(mesh: HeadMesh, start: np.ndarray, end: np.ndarray) -> floa
     Args:
         mesh: surface of the body.
         start: (3,) float, mm, in the frame of the mesh.
-        end: (3,) float, mm, another point.
+        end: (3,) float, mm.
     """
     length = float(np.linalg.norm(end - start))
-    if mesh_crossings(mesh, start, (end - start) / length, length) or is_inside(mesh, start):
+    if is_inside(mesh, start):
         return 0.0
     least = min(nearest_on_mesh(mesh, point).distance for point in (start, end))
+    if length == 0.0:
+        return least
+    if mesh_crossings(mesh, start, (end - start) / length, length):
+        return 0.0
     centers, radii = mesh.triangle_spheres
     share = np.clip((centers - start) @ (end - start) / length**2, 0.0, 1.0)
     to_segment = np.linalg.norm(start + share[:, None] * (end - start) - centers, axis=1) - radii
     near = mesh.vertices[mesh.triangles[to_segment <= least]]
     for first, second in ((0, 1), (1, 2), (2, 0)):
-        if len(near):
-            sides = segment_distances_mm(start, end, near[:, first], near[:, second])
-            least = min(least, float(sides.min()))
+        sides = segment_distances_mm(start, end, near[:, first], near[:, second])
+        least = min(least, float(sides.min(initial=np.inf)))
     return least
 
 

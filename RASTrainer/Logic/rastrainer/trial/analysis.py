@@ -18,6 +18,7 @@ from rastrainer.registration.target_error import TargetError
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial import ctps
 from rastrainer.trial.advice import advise
+from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
@@ -88,6 +89,7 @@ class TrialAnalysis:
         score: of the rigid registration; None without the truth.
         published_score: CTPS of the rigid registration; None without a cohort.
         feedback: on this trial alone.
+        procedure: errors and score of the procedure; None without the truth, or of touches alone.
     """
 
     record: TrialRecord
@@ -98,6 +100,7 @@ class TrialAnalysis:
     score: TrialScore | None
     published_score: PublishedScore | None
     feedback: TrialFeedback
+    procedure: ProcedureOutcome | None = None
 
     @property
     def rigid(self) -> Registration:
@@ -128,7 +131,8 @@ class TrialAnalysis:
             trajectory: from the journal; it explains inaccurate touches.
 
         Raises:
-            InputError: the trial's contacts were not measured.
+            InputError: the trial's contacts were not measured, or its procedure is not of this
+                scenario.
         """
         record = self.record
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
@@ -138,7 +142,8 @@ class TrialAnalysis:
         )
         normals = normals_at(scenario, record.task, self.rigid.labels)
         feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory)
-        return replace(self, truth=truth, score=score, feedback=feedback)
+        procedure = procedure_outcome(record, scenario, truth.matrix, references)
+        return replace(self, truth=truth, score=score, feedback=feedback, procedure=procedure)
 
     def scored_as(self, score: TrialScore | None) -> TrialAnalysis:
         """Return the analysis with a stored score, in its version."""

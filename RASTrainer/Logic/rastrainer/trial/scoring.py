@@ -22,6 +22,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from rastrainer.desirability import TIME_FLOOR, falling, of_time
 from rastrainer.errors import InputError
 
 SCORE_VERSION = "2"
@@ -32,7 +33,6 @@ PASS_MARK = 70.0
 """Score to reach where a study's protocol has no mark of its own from contrasting groups."""
 LONG_PAUSE_S = 30.0
 """Our own convention: what a sip of water or a word with the instructor takes."""
-TIME_FLOOR = 0.04
 LIMIT_MM = 1.5
 """Largest acceptable true TRE. Image-guided neurosurgery asks for 2 mm in all, of which the images,
 the robot and its instrument take the rest: √(2² − 1.5²) = 1.3 mm."""
@@ -221,8 +221,8 @@ def score_trial(measures: ScoreMeasures, reference: ScoreReference) -> TrialScor
         InputError: a measure is no such number.
     """
     safety_measures = measures.check()
-    time = TIME_FLOOR + (1 - TIME_FLOOR) * _falling(measures.completion_time_s, reference.time_s)
-    accuracy = _falling(measures.tre_mm, reference.tre_mm)
+    time = of_time(measures.completion_time_s, reference.time_s)
+    accuracy = falling(measures.tre_mm, reference.tre_mm)
     safety = _safety(*safety_measures)
     is_accurate = measures.tre_mm <= reference.limit_mm
     is_safe = (
@@ -247,9 +247,9 @@ def score_trial(measures: ScoreMeasures, reference: ScoreReference) -> TrialScor
 
 def _safety(contact_time_s: float, contact_path_mm: float, depth_mm: float) -> float:
     return (
-        _falling(contact_time_s, HALF_CONTACT_S)
-        * _falling(contact_path_mm, HALF_CONTACT_PATH_MM)
-        * _falling(depth_mm, HALF_DEPTH_MM)
+        falling(contact_time_s, HALF_CONTACT_S)
+        * falling(contact_path_mm, HALF_CONTACT_PATH_MM)
+        * falling(depth_mm, HALF_DEPTH_MM)
     )
 
 
@@ -258,11 +258,6 @@ def _worst_acceptable(reference: ScoreReference) -> float:
 
     As a factor it brings every trial beyond a limit below every acceptable one.
     """
-    accuracy = _falling(reference.limit_mm, reference.tre_mm)
+    accuracy = falling(reference.limit_mm, reference.tre_mm)
     safety = _safety(CONTACT_LIMIT_S, CONTACT_PATH_LIMIT_MM, DEPTH_LIMIT_MM)
     return TIME_FLOOR * accuracy * safety
-
-
-def _falling(value: float, half: float) -> float:
-    """Return 1/(1 + (value/half)²): 1 at 0, ½ at `half`; strictly falling without saturating."""
-    return 1 / (1 + (value / half) ** 2)

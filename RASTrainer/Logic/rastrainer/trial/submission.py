@@ -20,6 +20,7 @@ def registration_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
 def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
     """Return the arguments of TrialScored for a trial with truth and score, ready for JSON."""
     score, progress = analysis.score, analysis.feedback.progress
+    procedure = {} if analysis.procedure is None else {"procedure": analysis.procedure.summary()}
     # What was analyzed with its truth has a score.
     assert score is not None
     published = analysis.published_score
@@ -40,5 +41,6 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
             "warnings": [warning.message for warning in analysis.rigid.warnings],
             "passMark": None if progress is None else progress.pass_mark,
             "feedback": [each.to_json() for each in analysis.feedback.short_sentences],
+            **procedure,
         },
     }

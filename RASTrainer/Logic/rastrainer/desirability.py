@@ -1,0 +1,16 @@
+"""Desirabilities (Harrington 1965, Derringer and Suich 1980): 1 at best, falling toward 0."""
+
+from __future__ import annotations
+
+TIME_FLOOR = 0.04
+"""Desirability of a time without end: being slow never costs as much as being wrong."""
+
+
+def falling(value: float, half: float) -> float:
+    """Return 1/(1 + (value/half)²): 1 at 0, ½ at `half`; strictly falling without saturating."""
+    return 1 / (1 + (value / half) ** 2)
+
+
+def of_time(time_s: float, reference_s: float) -> float:
+    """Return the desirability of a time: half of its range at the reference."""
+    return TIME_FLOOR + (1 - TIME_FLOOR) * falling(time_s, reference_s)
