@@ -12,6 +12,7 @@ from Testing.error_rates import (
     groups,
     learning,
     modes,
+    propagation,
     recovery,
     target_errors,
 )
@@ -32,6 +33,7 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "throughput": (cheats.THROUGHPUT_HEADER, cheats.offsets),
     "aborted trials": (cheats.ABORTED_HEADER, cheats.competence),
     "target errors": (target_errors.HEADER, target_errors.intervals),
+    "propagation": (propagation.HEADER, propagation.targets),
     "cheats": (cheats.HEADER, cheats.played),
     "equal hands": (equal_hands.HEADER, equal_hands.usual),
     "slow hands": (equal_hands.HEADER, equal_hands.slow),

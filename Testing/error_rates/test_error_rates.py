@@ -25,6 +25,7 @@ FEW = {
     "several groups": 40,
     "target errors": 50,
     "learning": 100,
+    "propagation": 50,
     "recovery": 20,
     "recovery intervals": 20,
 }

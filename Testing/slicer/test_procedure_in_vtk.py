@@ -292,3 +292,11 @@ def test_the_distance_kept_to_a_structure_is_that_of_vtk(meshes, seed):
     radius = errors.instrument.diameter_mm / 2
     assert errors.kept_mm["Vessel"] + radius == pytest.approx(max(0.0, least), abs=1e-3)
     assert errors.hits == (("Vessel",) if least <= radius else ())
+
+
+def test_before_the_truth_is_known_only_the_plan_is_exported(tmp_path):
+    _procedure, _fiducials, stored = carried_out(0)
+    written = write_slicer_files(replace(stored, head_to_world=None), tmp_path)
+    lines = [path.name for path in written if path.name.startswith("trajectory")]
+    assert lines == [f"trajectory-{row + 1}-planned.mrk.json" for row in range(len(lines))]
+    assert len(lines) == len(stored.record.procedure.instruments)

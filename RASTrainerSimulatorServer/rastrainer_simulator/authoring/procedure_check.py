@@ -8,12 +8,15 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.procedure.checks import check_procedure
 from rastrainer.procedure.meshes import read_procedure_meshes
 from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
+from rastrainer.scenario.package import require_usable_lines
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.collision.touch_planner import PlanReach
+from rastrainer_simulator.core.setup import SimulationSetup
 
 STAND_OFFS_M = (0.01, 0.03, 0.05, 0.08)
 """Of the guide's tip from the entry: where it may be locked, and the way there."""
@@ -58,6 +61,27 @@ def check_procedures(planning: PlanningSetup) -> list[str]:
         except InputError as error:
             wrong.append(f"{procedure.title}: {error}")
     return wrong
+
+
+def require_usable_procedures(setup: SimulationSetup) -> None:
+    """Check the procedures of a scenario that is loaded: their lines, and the reach along them.
+
+    It takes a second; the scenario has procedures. Only the nominal pose of the
+    head is tried, and distances are not checked: `rastrainer scenario check` does both.
+
+    Raises:
+        InputError: a procedure cannot be carried out.
+    """
+    scenario = setup.scenario
+    require_usable_lines(scenario)
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh), setup)
+    wrong = [
+        sentence
+        for procedure in scenario.procedures
+        for sentence in unreachable_lines(planning, procedure, range(0))
+    ]
+    if wrong:
+        raise InputError(" ".join(wrong))
 
 
 def _check(planning: PlanningSetup, procedure: Procedure) -> list[str]:

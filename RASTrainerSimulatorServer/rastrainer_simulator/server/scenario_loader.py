@@ -77,13 +77,18 @@ class ScenarioLoader:
 
     def _load(self, folder: str) -> Answer:
         try:
-            return self._use(self._found(folder))
+            return self._use(self._found(folder), is_checked=True)
         except InputError as error:
             return Answer(0, False, str(error))
 
-    def _use(self, folder: Path) -> Answer:
+    def _use(self, folder: Path, is_checked: bool = False) -> Answer:
         try:
             simulation = self._make_simulation(folder)
+            if is_checked and simulation.setup.scenario.procedures:
+                # Here, since the import takes half a second that few need.
+                from rastrainer_simulator.authoring.procedure_check import require_usable_procedures
+
+                require_usable_procedures(simulation.setup)
         except InputError as error:
             return Answer(0, False, str(error))
         handover = self._control_loop.replace_simulation(simulation)

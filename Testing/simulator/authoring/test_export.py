@@ -24,6 +24,12 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.export import Grid, without_face_in
 from rastrainer_simulator.cli.main import main
 from Testing.domain.head.test_face_removal import head as ball_with_a_face
+from Testing.domain.procedure.made_up_procedure import (
+    made_up_procedure,
+    shell,
+    trajectory,
+    vessel,
+)
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
 from Testing.simulator.authoring.heads import egg
 
@@ -214,3 +220,34 @@ def test_images_whose_air_is_not_zero_get_air_in_the_place_of_the_face():
     units = np.where(images.values > 0, 40, -1000).astype(np.int16)
     left = without_face_in(HeadVolume(units, images.ijk_to_ras, 400.0, 40.0), head)
     assert set(np.unique(left.values)) == {-1000, 40}
+
+
+def with_procedure(folder):
+    """Add a procedure to the scenario of a folder."""
+    procedure = made_up_procedure(trajectory(entry=(0, 0, 97), target=(0, 0, 20)))
+    procedure = replace(procedure, source="of Erika Mustermann", checkpoints=())
+    scenario = replace(load_scenario(folder), procedures=(procedure,))
+    planned = folder.parent / "planned"
+    planned.mkdir()
+    write_scenario(planned, scenario, egg(), shell(), None, {"vessel.ply": vessel()})
+    return planned
+
+
+def test_by_default_procedures_are_left_out_with_the_skull_that_they_need(folder, tmp_path, capsys):
+    package = tmp_path / "out.zip"
+    assert main(["scenario", "pack", str(with_procedure(folder)), str(package)]) == 0
+    told = "Removed: the face, the skull, the procedures, which need the skull, its title"
+    assert told in capsys.readouterr().out
+    given = load_scenario(unpack(package, tmp_path / "library"))
+    assert given.procedures == ()
+    assert not (given.folder / "no-go").exists()
+
+
+def test_with_the_face_procedures_are_kept_and_their_sources_are_not(folder, tmp_path):
+    package = tmp_path / "out.zip"
+    words = ["scenario", "pack", str(with_procedure(folder)), str(package), "--keep-face"]
+    assert main(words) == 0
+    (procedure,) = load_scenario(unpack(package, tmp_path / "library")).procedures
+    assert procedure.trajectories[0].target.tolist() == [0.0, 0.0, 20.0]
+    assert procedure.no_go[0].mesh.is_file()
+    assert "Mustermann" not in procedure.source

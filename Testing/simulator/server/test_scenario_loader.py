@@ -1,5 +1,6 @@
 """LoadScenario: which folders may be named, and what is said when one cannot be used."""
 
+import json
 from concurrent.futures import Future
 from types import SimpleNamespace
 
@@ -9,9 +10,15 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import Phase
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.loop.control_loop import TRIAL_IS_OPEN
 from rastrainer_simulator.server.scenario_loader import BUSY, ScenarioLoader
 from rastrainer_simulator.state import Answer
+from Testing.domain.procedure.made_up_procedure import (
+    made_up_procedure,
+    trajectory,
+    write_planned,
+)
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 
 
@@ -33,7 +40,7 @@ class Loop:
 def simulation_of(folder):
     if not folder.is_dir():
         raise InputError(f"The scenario's folder {folder} does not exist.")
-    scenario = SimpleNamespace(name=folder.name, title=folder.name.title())
+    scenario = SimpleNamespace(name=folder.name, title=folder.name.title(), procedures=())
     return SimpleNamespace(setup=SimpleNamespace(scenario=scenario), folder=folder)
 
 
@@ -129,6 +136,24 @@ def test_in_a_trial_nothing_is_read_of_a_scenario(make, phase):
 def test_folder_that_cannot_be_used_is_refused_in_one_sentence(make, tmp_path):
     answer = make(Loop(), may_be_anywhere=True).load(str(tmp_path / "none")).result(10)
     assert (answer.ok, "does not exist" in answer.message) == (False, True)
+
+
+def test_a_scenario_whose_procedure_cannot_be_carried_out_is_refused_and_nothing_changes(library):
+    up_into_the_air = made_up_procedure(trajectory(target=(0, 0, 130)))
+    planned = write_planned(library / "planned", up_into_the_air)
+    values = json.loads((planned / "scenario.json").read_text())
+    (planned / "scenario.json").write_text(json.dumps({**values, "name": "planned"}))
+    loop = Loop()
+    loader = ScenarioLoader(
+        loop, lambda folder: SimpleNamespace(setup=load_setup(folder)), False, library
+    )
+    try:
+        answer = loader.load(planned.name).result(60)
+        assert "Left has its target 40 mm outside of the head." in answer.message
+        assert not answer.ok
+        assert loop.simulations == []
+    finally:
+        loader.close()
 
 
 def test_refusal_of_the_control_loop_is_passed_on(make):

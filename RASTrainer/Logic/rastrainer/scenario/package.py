@@ -14,7 +14,8 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
-from rastrainer.procedure.meshes import read_all_no_go
+from rastrainer.procedure.checks import unusable_lines
+from rastrainer.procedure.meshes import read_all_no_go, read_procedure_meshes
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario, load_scenario
 from rastrainer.scenario.writer import new_folder, write_scenario
@@ -95,7 +96,7 @@ def unpack(package: Path, library: Path, progress: Progress = lambda _step, _sha
 
 
 def checked_scenario(folder: Path) -> Scenario:
-    """Load a scenario and check its meshes and volume.
+    """Load a scenario and check its meshes, its volume and the lines of its procedures.
 
     Raises:
         InputError: it is unusable.
@@ -113,7 +114,25 @@ def checked_scenario(folder: Path) -> Scenario:
     if scenario.volume is not None:
         volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head_mesh)
         check_place(volume, head, scenario.volume.path)
+    require_usable_lines(scenario)
     return scenario
+
+
+def require_usable_lines(scenario: Scenario) -> None:
+    """Check that instruments can be placed along all trajectories of a scenario's procedures.
+
+    Raises:
+        InputError: a mesh is unusable, or a trajectory leads out of the head or past the skull.
+    """
+    if scenario.skull_mesh is None or not scenario.procedures:
+        return
+    head = read_head_mesh(scenario.head_mesh)
+    wrong = []
+    for procedure in scenario.procedures:
+        meshes = read_procedure_meshes(procedure, scenario.skull_mesh)
+        wrong += unusable_lines(procedure, head, meshes.skull)
+    if wrong:
+        raise InputError(" ".join(wrong))
 
 
 def _write_archive(path: Path, folder: Path) -> None:

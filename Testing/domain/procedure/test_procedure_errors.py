@@ -1,0 +1,214 @@
+"""The errors of a procedure against the truth, and whose they are."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.registration.registration import register
+from Testing.domain.procedure.made_up_procedure import (
+    VESSEL_MM,
+    made_up_meshes,
+    made_up_procedure,
+    trajectory,
+)
+from Testing.domain.procedure.procedure_records import recorded, rotation, used
+
+MESHES = made_up_meshes()
+DOWN = trajectory()
+TRUTH = transforms.rigid(rotation(np.random.default_rng(5), 180.0), np.array([400.0, -20.0, 250.0]))
+
+
+def shifted(x=0.0, y=0.0, z=0.0):
+    """Where a wrong registration puts the head: shifted along R, A and S, mm."""
+    return TRUTH @ transforms.rigid(np.eye(3), np.array([x, y, z]))
+
+
+def analyzed(shown=TRUTH, lines=(DOWN,), **changes):
+    """The errors of steady hands by a registration, after changes of each instrument."""
+    procedure = made_up_procedure(*lines)
+    record = recorded(procedure, shown)
+    if changes:
+        record = replace(
+            record, instruments=tuple(replace(one, **changes) for one in record.instruments)
+        )
+    return analyze_procedure(record, procedure, MESHES, TRUTH)
+
+
+def only(analysis):
+    (errors,) = analysis.trajectories
+    return errors
+
+
+def test_steady_hands_and_an_exact_registration_make_no_error():
+    errors = only(analyzed())
+    for length in (errors.entry.length_mm, errors.target.length_mm, errors.radial.length_mm):
+        assert length == pytest.approx(0.0, abs=1e-9)
+    assert errors.angle_deg == pytest.approx(0.0, abs=1e-9)
+    assert errors.tip == pytest.approx(DOWN.target, abs=1e-9)
+
+
+def test_a_registration_that_is_off_to_the_side_misses_by_as_much_and_the_hand_by_nothing():
+    errors = only(analyzed(shifted(x=2.0)))
+    assert errors.target.by_registration == pytest.approx([2.0, 0.0, 0.0], abs=1e-9)
+    assert errors.target.by_hand == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+    assert (errors.entry.length_mm, errors.radial.length_mm) == pytest.approx((2.0, 2.0))
+    assert errors.depth == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
+def test_a_registration_that_is_off_along_the_line_changes_the_depth_and_not_the_entry():
+    errors = only(analyzed(shifted(z=-1.5)))
+    assert errors.depth == pytest.approx((1.5, 1.5, 0.0), abs=1e-9)
+    assert errors.entry.length_mm == pytest.approx(0.0, abs=1e-9)
+    assert errors.entry.hand_mm == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_instrument_that_is_not_far_enough_in_has_a_depth_error_below_0():
+    deep = only(analyzed()).instrument.instrument_depth_mm
+    errors = only(analyzed(instrument_depth_mm=deep - 3.0))
+    assert errors.depth == pytest.approx((-3.0, 0.0, -3.0), abs=1e-9)
+    assert errors.target.length_mm == pytest.approx(3.0)
+    assert errors.radial.length_mm == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_guide_that_is_turned_has_an_angular_deviation_of_the_hand():
+    exact = only(analyzed()).instrument
+    turn = np.radians(2.0)
+    turned = TRUTH[:3, :3] @ np.array([np.sin(turn), 0.0, -np.cos(turn)])
+    errors = only(analyzed(guide_direction=tuple(turned.tolist())))
+    assert errors.angle_deg == pytest.approx(2.0)
+    assert errors.hand_angle_deg == pytest.approx(2.0)
+    assert errors.registration_angle_deg == pytest.approx(0.0, abs=1e-9)
+    assert errors.entry.length_mm == pytest.approx(30.0 * np.sin(turn))
+    depth = exact.instrument_depth_mm
+    assert errors.radial.length_mm == pytest.approx(depth * np.sin(turn))
+    assert errors.depth[0] == pytest.approx(-depth * (1 - np.cos(turn)))
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_what_registration_and_hand_cause_adds_up_exactly(seed):
+    random = np.random.default_rng(seed)
+    off = transforms.rigid(rotation(random, 4.0), random.normal(0.0, 2.0, 3))
+    tip = np.array(only(analyzed(TRUTH @ off)).instrument.guide_tip_mm)
+    errors = only(
+        analyzed(
+            TRUTH @ off,
+            guide_tip_mm=tuple(tip + random.normal(0.0, 2.0, 3)),
+            instrument_depth_mm=100.0 + random.normal(),
+        )
+    )
+    there = transforms.apply(transforms.inverse(TRUTH), tip)
+    assert not np.allclose(errors.axis_start, there)
+    whole = errors.tip - DOWN.target
+    assert errors.target.whole == pytest.approx(whole, abs=1e-9)
+    shown = transforms.apply(off, DOWN.target)
+    assert errors.target.by_registration == pytest.approx(shown - DOWN.target, abs=1e-9)
+    depth, registration, hand = errors.depth
+    assert depth == pytest.approx(registration + hand)
+    assert errors.target.length_mm == pytest.approx(np.hypot(errors.radial.length_mm, depth))
+    assert errors.radial.whole == pytest.approx(
+        errors.radial.by_registration + errors.radial.by_hand
+    )
+    parts = errors.registration_angle_deg, errors.hand_angle_deg
+    assert abs(parts[0] - parts[1]) - 1e-9 <= errors.angle_deg <= sum(parts) + 1e-9
+
+
+def test_plunging_is_measured_from_the_inner_table_of_the_true_skull():
+    assert only(analyzed(drill_depth_mm=43.9)).plunge_mm == 0.0
+    assert only(analyzed(drill_depth_mm=46.5)).plunge_mm == pytest.approx(2.5)
+    shallower = only(analyzed(shifted(z=-2.0), drill_depth_mm=46.5))
+    assert shallower.plunge_mm == pytest.approx(4.5)
+
+
+def test_an_axis_beside_the_skull_has_no_plunge_and_is_named():
+    beside = tuple(transforms.apply(TRUTH, np.array([0.0, 95.0, 120.0])))
+    analysis = analyzed(guide_tip_mm=beside)
+    assert only(analysis).plunge_mm is None
+    assert analysis.missed_bone == ("Left",)
+
+
+@pytest.mark.parametrize(
+    ("x", "kept", "hits"),
+    [(0.0, 24.0, ()), (-22.0, 2.0, ()), (-24.5, -0.5, ("Vessel",)), (-30.0, -1.0, ("Vessel",))],
+)
+def test_the_distance_kept_to_a_structure_is_that_of_the_true_instrument(x, kept, hits):
+    """The plan passes the vessel (at 30 mm) in the midline; the registration moves it there."""
+    line = trajectory(target=(0, 0, -20))
+    errors = only(analyzed(shifted(x=-x), lines=(line,)))
+    assert errors.kept_mm["Vessel"] == pytest.approx(kept, abs=0.1)
+    assert errors.hits == hits
+    assert errors.intrusion_mm == pytest.approx(max(0.0, 3.0 - kept), abs=0.1)
+    assert VESSEL_MM == 5.0
+
+
+def test_a_drill_that_goes_deeper_than_the_instrument_counts_for_the_distance():
+    line = trajectory(entry=(30, 0, 84.85), target=(30, 0, 20))
+    assert only(analyzed(lines=(line,))).kept_mm["Vessel"] == pytest.approx(14.0, abs=0.1)
+    plunged = only(analyzed(lines=(line,), drill_depth_mm=30.0 + 82.0))
+    assert plunged.hits == ("Vessel",)
+
+
+def test_a_procedure_without_structures_keeps_its_distance():
+    procedure = made_up_procedure(DOWN, no_go=())
+    meshes = replace(MESHES, no_go={})
+    analysis = analyze_procedure(recorded(procedure, TRUTH), procedure, meshes, TRUTH)
+    assert (only(analysis).intrusion_mm, analysis.hits) == (0.0, ())
+
+
+def test_a_procedure_is_summed_up_by_root_mean_squares():
+    right = trajectory("Right", (-60.0, 0.0, 67.08), (-15.0, 10.0, 0.0))
+    analysis = analyzed(shifted(x=2.0), lines=(DOWN, right))
+    lengths = [each.target.length_mm for each in analysis.trajectories]
+    assert analysis.target_rms_mm == pytest.approx(np.sqrt(np.mean(np.square(lengths))))
+    assert analysis.target_by_registration_rms_mm == pytest.approx(2.0)
+    assert analysis.target_by_hand_rms_mm == pytest.approx(0.0, abs=1e-9)
+    told = json.loads(json.dumps(analysis.to_json()))
+    assert told["trajectories"][1]["targetPointError"]["mm"] == lengths[1]
+    assert told["alignments"] == 2
+
+
+def test_the_record_of_another_plan_is_refused():
+    record = recorded(made_up_procedure(DOWN), TRUTH)
+    moved = made_up_procedure(trajectory(target=(0, 0, 21)))
+    for procedure in (moved, made_up_procedure(), made_up_procedure(DOWN, name="other")):
+        with pytest.raises(InputError, match="of another plan than the procedure"):
+            analyze_procedure(record, procedure, MESHES, TRUTH)
+
+
+def registered(bias):
+    """A registration of touches with errors, all of them moved by a bias, and what it shows."""
+    random = np.random.default_rng(8)
+    fiducials = random.normal(0.0, 55.0, (15, 3))
+    checkpoints = random.normal(0.0, 55.0, (5, 3))
+    places = transforms.apply(TRUTH, np.concatenate([fiducials, checkpoints]))
+    touches = places + random.normal(0.0, 0.6, places.shape) + bias
+    registration = register(touches[:15], fiducials)
+    shown = transforms.apply(registration.matrix, touches[15:]) - checkpoints
+    return registration, np.linalg.norm(shown, axis=1)
+
+
+def test_a_common_bias_of_2_mm_is_in_the_error_and_in_nothing_that_the_trainee_sees():
+    procedure, bias = made_up_procedure(), np.array([0.0, 2.0, 0.0])
+    seen, true = [], []
+    for offset in (np.zeros(3), bias):
+        registration, checks = registered(offset)
+        to_world = transforms.inverse(registration.matrix)
+        record = recorded(procedure, to_world)
+        accepted = replace(used(registration.matrix), fre_mm=registration.fre_mm)
+        record = replace(record, attempts=(replace(record.attempts[-1], registration=accepted),))
+        analysis = analyze_procedure(record, procedure, MESHES, TRUTH)
+        # FRE, residuals, checkpoints, and how the guide lies to the plan as it is shown.
+        hands = [
+            (each.entry.hand_mm, each.target.hand_mm, each.hand_angle_deg)
+            for each in analysis.trajectories
+        ]
+        seen.append([registration.fre_mm, *registration.residuals_mm, *checks, *np.ravel(hands)])
+        true.append([each.target.whole for each in analysis.trajectories])
+    assert seen[1] == pytest.approx(seen[0], abs=1e-9)
+    moved = np.array(true[1]) - np.array(true[0])
+    assert np.linalg.norm(moved, axis=1) == pytest.approx([2.0, 2.0], abs=1e-9)
+    assert min(np.linalg.norm(each) for each in true[1]) > 1.5

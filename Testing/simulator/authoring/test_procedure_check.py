@@ -1,0 +1,117 @@
+"""The procedures of the default head can be carried out, and of others it is said what cannot."""
+
+import json
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import read_head_mesh, write_head_mesh
+from rastrainer.procedure.checks import distances_to_no_go
+from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import ProcedureKind
+from rastrainer.scenario.package import checked_scenario
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.procedure_check import (
+    check_procedures,
+    require_usable_procedures,
+)
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.core.setup import load_setup
+
+FOLDER = asset_path("scenarios", "colin27")
+SCENARIO = load_scenario(FOLDER)
+STN = np.array([12.58, -13.41, -5.87])
+
+
+@pytest.fixture(scope="module")
+def planning():
+    return PlanningSetup(SCENARIO, read_head_mesh(SCENARIO.head_mesh))
+
+
+@pytest.fixture
+def copy(tmp_path):
+    """A copy of the default scenario with its DBS alone, without images."""
+    folder = tmp_path / "copy"
+    shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("volume.nrrd"))
+    values = json.loads((folder / "scenario.json").read_text(encoding="utf-8"))
+    del values["volume"]
+    values["procedures"] = [each for each in values["procedures"] if each["name"] == "dbs"]
+    return write(folder, values)
+
+
+def write(folder, values):
+    (folder / "scenario.json").write_text(json.dumps(values), encoding="utf-8")
+    return folder
+
+
+def with_line(folder, entry, target):
+    values = json.loads((folder / "scenario.json").read_text(encoding="utf-8"))
+    values["procedures"][0]["trajectories"][1].update(entryRas=entry, targetRas=target)
+    return write(folder, values)
+
+
+def planned(folder):
+    scenario = load_scenario(folder)
+    return PlanningSetup(scenario, read_head_mesh(scenario.head_mesh))
+
+
+def test_the_default_head_has_one_procedure_of_each_kind_that_can_be_carried_out(planning):
+    assert [procedure.kind for procedure in SCENARIO.procedures] == list(ProcedureKind)
+    assert [len(procedure.trajectories) for procedure in SCENARIO.procedures] == [1, 2, 5]
+    assert check_procedures(planning) == []
+
+
+def test_the_targets_of_the_default_head_are_the_cited_ones():
+    left, right = SCENARIO.procedure("dbs").trajectories
+    assert right.target.tolist() == STN.tolist()
+    assert left.target.tolist() == (STN * [-1.0, 1.0, 1.0]).tolist()
+    for procedure in SCENARIO.procedures:
+        assert "schematic" in procedure.source
+    for name in ("dbs", "seeg"):
+        assert "doi:10." in SCENARIO.procedure(name).source
+
+
+def test_every_structure_of_the_default_head_is_called_schematic_and_kept_away_from():
+    for procedure in SCENARIO.procedures:
+        assert all(each.name.endswith("(schematic)") for each in procedure.no_go)
+        meshes = read_procedure_meshes(procedure, SCENARIO.skull_mesh)
+        for trajectory in procedure.trajectories:
+            distances = distances_to_no_go(trajectory, meshes)
+            assert min(distances.values()) >= trajectory.safety_mm
+
+
+def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy):
+    """From the right, between the robot's base and the head, there is no room for the arm."""
+    head = read_head_mesh(SCENARIO.head_mesh)
+    near = np.abs(head.vertices[:, 1:] - STN[1:]).max(axis=1) < 3.0
+    entry = head.vertices[near][head.vertices[near][:, 0].argmax()].round(2)
+    with_line(copy, entry.tolist(), STN.tolist())
+    assert check_procedures(planned(copy)) == [
+        "Deep brain stimulation of both subthalamic nuclei: the robot cannot hold the guide on the "
+        "line of Right subthalamic nucleus where the head is; choose another entry, or move the "
+        "head."
+    ]
+    with pytest.raises(InputError, match="cannot hold the guide on the line of Right subthalamic"):
+        require_usable_procedures(load_setup(copy))
+
+
+def test_a_target_outside_of_the_head_is_refused_in_a_package_and_when_loaded(copy):
+    with_line(copy, [41.35, 35.39, 70.05], [41.35, 35.39, 120.0])
+    sentence = r"Right subthalamic nucleus has its target \d+ mm outside of the head\."
+    with pytest.raises(InputError, match=sentence):
+        checked_scenario(copy)
+    with pytest.raises(InputError, match=sentence):
+        require_usable_procedures(load_setup(copy))
+
+
+def test_the_command_reports_what_is_wrong_with_a_procedure(copy, capsys):
+    path = copy / "no-go/right-ventricle.ply"
+    mesh = read_head_mesh(path)
+    write_head_mesh(path, replace(mesh, triangles=mesh.triangles[1:]))
+    assert main(["scenario", "check", str(copy)]) == 2
+    assert "right-ventricle.ply is not closed: it has a hole." in capsys.readouterr().err
