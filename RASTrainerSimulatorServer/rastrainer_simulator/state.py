@@ -149,6 +149,7 @@ class SimulationState:
     could go (`collision.proximity`), 0 without contact. `elapsed` is the running trial's time,
     pauses excluded. `operator` is who last moved the arm. `touch` is how the next touch is going.
     `feed` is how far drill or electrode is beyond the guide's tip.
+    `tip_clearance` is the signed distance of the tip to the skin.
     """
 
     tick: int
@@ -169,6 +170,7 @@ class SimulationState:
     depth: float = 0.0
     touch: TouchStage = TouchStage.FAR
     feed: float = 0.0
+    tip_clearance: float = 0.0
 
     @property
     def tool(self) -> Tool:

@@ -11,6 +11,8 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from Testing.without_tutorial import leave_tutorial_out
+
 COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli.main", "simulator"]
 READY = "RASTrainer simulator ready on 127.0.0.1:"
 
@@ -28,8 +30,9 @@ class SimulatorProcess:
     command = tuple(COMMAND)
 
     def __init__(self, records: Path, *arguments: str, **others: Any):
-        config = str(records.with_name(records.name + "-config"))
-        settings = ["--port", "0", "--records", str(records), "--config", config]
+        config = records.with_name(records.name + "-config")
+        leave_tutorial_out(config)
+        settings = ["--port", "0", "--records", str(records), "--config", str(config)]
         # A pipe that nobody reads would be full after some minutes.
         self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self._process = subprocess.Popen(

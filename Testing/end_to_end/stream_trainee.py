@@ -276,21 +276,25 @@ class StreamTrainee:
 
     def press_on(self, label: str) -> None:
         """Record the fiducial under the tip; after a miss, approach from above once more."""
-        point, center = self.place_of(label), self.head_center
-        outward = (point - center) / np.linalg.norm(point - center)
         kept = self.touched
         for _attempt in range(MOST_ATTEMPTS):
-            self.steer_to(point + 0.012 * outward, 0.008)
-            self.steer_to(point, ON_POINT_M, fine=True)
-            self.sink_onto_skin(point - SINK_M * outward)
-            self.hands.push(0.0, 0.0, 0.0, False)
-            self.until_still()
-            if np.linalg.norm(point - self.tip) < NEAR_M:
+            if self.lower_onto(label):
                 self._tap_touch(label)
             if self.touched > kept:
                 return
             self.approach(label, 0.02)
         raise AssertionError(f"touch {label} never came; the screen: {self.view.screen}")
+
+    def lower_onto(self, label: str) -> bool:
+        """Lower the tip onto the fiducial under it; return whether it came to rest near it."""
+        point, center = self.place_of(label), self.head_center
+        outward = (point - center) / np.linalg.norm(point - center)
+        self.steer_to(point + 0.012 * outward, 0.008)
+        self.steer_to(point, ON_POINT_M, fine=True)
+        self.sink_onto_skin(point - SINK_M * outward)
+        self.hands.push(0.0, 0.0, 0.0, False)
+        self.until_still()
+        return bool(np.linalg.norm(point - self.tip) < NEAR_M)
 
     def sink_onto_skin(self, below: np.ndarray) -> None:
         """Push the tip slowly toward a place below the skin (3,) World, m, until it is on it."""

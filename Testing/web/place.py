@@ -53,14 +53,14 @@ class Place:
         *arguments: str,
         has_gamepad: bool = False,
         limits: Mapping[str, float] | None = None,
-        language: str = "en",
+        **preferences: str,
     ):
         self._stack = ExitStack()
         self._folder = folder
         self.records = folder / "records"
         config = folder / "records-config"
         config.mkdir()
-        preferences = {"order": "any", "language": language}
+        preferences = {"order": "any", **preferences}
         (config / "preferences.json").write_text(json.dumps(preferences), encoding="utf-8")
         (config / "limits.json").write_text(json.dumps({"views": limits or {}}), encoding="utf-8")
         key = secrets.token_urlsafe(32)
@@ -163,11 +163,12 @@ class Trainee(StreamTrainee):
         """
         self.go_to_experiment()
         if not self.value("trainee"):
-            self._type_id(page)
+            self.type_id(page)
         self.begin_task(task)
         self.until(lambda: self.view.state["phase"] == "running", "the trial")
 
-    def _type_id(self, page: Page | None) -> None:
+    def type_id(self, page: Page | None) -> None:
+        """Type the ID on the page, or without one on the keyboard that the simulator shows."""
         if page is not None:
             self.focus("trainee")
             page.wait_for_selector("#menu input:focus")
@@ -217,11 +218,11 @@ class CarriedTrainee(Trainee):
 
     def press_on(self, label: str) -> None:
         """Record the fiducial under the tip."""
-        self._lower_onto(label)
+        self.lower_onto(label)
         kept = self.touched
         self.press("touch", lambda: self.touched > kept, f"touch {label}")
 
-    def _lower_onto(self, label: str) -> None:
+    def lower_onto(self, label: str) -> bool:
         """Have the tip lowered onto a fiducial, until it is in contact."""
         place = self.place_of(label)
         self.steer_to(place, 0.002)
@@ -229,13 +230,14 @@ class CarriedTrainee(Trainee):
         target = {"positionMm": below, "speedMmS": 400}
         assert self._client.send_command("MoveTipTo", target, timeout=20).ok
         self.until(lambda: self.view.state["proximity"] == "contact", f"contact at {label}")
+        return True
 
     def have_touched(self, most: int) -> None:
         """Have the points touched by commands, up to so many in all."""
         while (kept := self.touched) < most:
             label = self.view.state["next"]
             self.approach(label, 0.004)
-            self._lower_onto(label)
+            self.lower_onto(label)
             assert self._client.send_command("Capture", {}, timeout=20).ok
             self.until(lambda k=kept: self.touched > k, f"touch {label}")
 

@@ -56,7 +56,7 @@ def test_the_page_shows_each_touch_behind_the_head_at_its_best_view(place, page)
     for label in BEHIND:
         trainee.until(lambda at=label: is_at_best(trainee, at), f"the best view of {label}")
         trainee.approach(label, 0.004)
-        trainee._lower_onto(label)
+        trainee.lower_onto(label)
         trainee.until(lambda at=label: is_at_best(trainee, at), f"the best view of {label}")
         page.evaluate("frames_(3)")
         assert count_of_next(page) > 20, label

@@ -6,34 +6,8 @@ import numpy as np
 import pytest
 
 from Testing.web.chromium import open_page
-from Testing.web.hands import Thumbs
-from Testing.web.place import TRAINEE, WITHOUT_GRAPHICS, CarriedTrainee, Place
-
-PHONE = {"width": 390, "height": 844}
-
-
-class TappingTrainee(CarriedTrainee):
-    """Taps the items of menus."""
-
-    def __init__(self, place, page):
-        super().__init__(place.view, Thumbs(page), place.client())
-        self._page = page
-
-    def choose(self, item: str) -> None:
-        """Tap an item, once the page shows its menu."""
-        before = self.menu.name
-        self._until_shown()
-        self._page.tap(f"#menu li[data-name='{item}'] button")
-        self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
-
-    def write_id(self) -> None:
-        self._until_shown()
-        self._page.tap("#menu li[data-name=trainee] input")
-        self._page.keyboard.insert_text(TRAINEE)
-        self.until(lambda: self.value("trainee") == TRAINEE, "the ID")
-
-    def _until_shown(self) -> None:
-        self._page.wait_for_selector(f'body[data-menu="{self.menu.name}"]')
+from Testing.web.place import WITHOUT_GRAPHICS, Place
+from Testing.web.tapping_trainee import PHONE, TappingTrainee
 
 
 @pytest.fixture(scope="module")

@@ -124,6 +124,18 @@ class Guidance(str, Enum):
     NONE = "none"
 
 
+class TutorialRule(str, Enum):
+    """Whether the tutorial comes before the trial run.
+
+    `REQUIRED`: the trial run waits for it. `OPTIONAL`: trainees may leave it out. `SKIPPED`: there
+    is none.
+    """
+
+    REQUIRED = "required"
+    OPTIONAL = "optional"
+    SKIPPED = "skipped"
+
+
 class StepKind(str, Enum):
     """Kind of a step in a study."""
 
@@ -152,6 +164,7 @@ class CommandName:
     HELLO = "Hello"
     LIST_TASKS = "ListTasks"
     LOAD_SCENARIO = "LoadScenario"
+    START_TUTORIAL = "StartTutorial"
     START_TASK = "StartTask"
     JOG = "Jog"
     MOVE_TIP_TO = "MoveTipTo"
@@ -206,6 +219,10 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     },
     CommandName.LIST_TASKS: {},
     CommandName.LOAD_SCENARIO: {"folder": Argument(text(1024))},
+    CommandName.START_TUTORIAL: {
+        "trainee": Argument(pseudonym()),
+        "mode": Argument(one_of(*(mode.value for mode in Mode)), Mode.DESKTOP.value),
+    },
     CommandName.START_TASK: {
         "task": Argument(text()),
         "trainee": Argument(pseudonym()),
@@ -269,6 +286,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "over": Argument(number(0, 43_200, "min"), 0.0),
         "guidance": Argument(one_of(*(choice.value for choice in Guidance)), ""),
         "procedure": Argument(text(40, 0), ""),
+        "tutorial": Argument(one_of(*(rule.value for rule in TutorialRule)), ""),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},

@@ -158,15 +158,20 @@ def start_joints(robot: RobotModel, scenario: Scenario, height: float) -> tuple[
     Raises:
         InputError: the robot cannot get there.
     """
-    rotation, shift = scenario.head_to_world[:3, :3], scenario.head_to_world[:3, 3]
-    x, y, z = (np.asarray(rotation @ scenario.target_position + shift) / MM_PER_M).tolist()
-    solution = Fabrik(robot).solve((x, y, z + height), DOWN, q_start=robot.home)
+    solution = Fabrik(robot).solve(start_tip(scenario, height), DOWN, q_start=robot.home)
     if not solution.converged:
         raise InputError(
             f"The robot cannot reach {height:g} m above the head of {scenario.name}, where trials "
             f"start: {solution.reason}"
         )
     return solution.q
+
+
+def start_tip(scenario: Scenario, height: float) -> Vector:
+    """Return where the tip is at the start: `height` m above the head's target, World, m."""
+    rotation, shift = scenario.head_to_world[:3, :3], scenario.head_to_world[:3, 3]
+    x, y, z = (np.asarray(rotation @ scenario.target_position + shift) / MM_PER_M).tolist()
+    return x, y, z + height
 
 
 class LimitedStep(NamedTuple):

@@ -294,6 +294,7 @@ class Simulation:
                 self.setup.settings.training,
             ),
             feed=self._procedure_motion.feed.depth,
+            tip_clearance=posture.clearance.tip_m,
         )
 
     @property

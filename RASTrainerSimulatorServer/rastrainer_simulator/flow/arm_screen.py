@@ -9,7 +9,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.path_arc import direction_words
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
+from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import Vector, distance
@@ -45,6 +45,10 @@ class ArmScreen:
     def _state(self) -> SimulationState:
         """The state that the trainee sees."""
         return self._session.state
+
+    def errors(self) -> tuple[ErrorArrow, ...]:
+        """Return the errors of touches that may be seen: a trial's are told with its score."""
+        return ()
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
         """Return what is wrong with where the arm is."""

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, Guidance, Phase
+from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, Phase
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
+from rastrainer_simulator.flow.pages.tutorial import TutorialDonePage
+from rastrainer_simulator.flow.session.obstacles import needs_tutorial
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
+from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
+from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import feedback_event, touch_feedback
@@ -20,7 +24,7 @@ from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, T
 from rastrainer_simulator.ops.texts.texts import LocalizedText
 from rastrainer_simulator.record.view_report import GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
-from rastrainer_simulator.state import SimulationState, StepResult, TouchStage, TrialResult
+from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 
 OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage)
 
@@ -39,6 +43,7 @@ class Flow:
         self._session = session
         self._control_loop = control_loop
         self._trial_screen = TrialScreen(session)
+        self._tutorial_screen = TutorialScreen(session)
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None
         self._touch = TouchStage.FAR
@@ -58,23 +63,31 @@ class Flow:
         page = self._session.pages.top
         return page.playback if isinstance(page, ReplayPage) else None
 
+    def shown(self, state: SimulationState) -> SimulationState:
+        """Return a state as the trainee sees it; called in any thread."""
+        tutorial = self._session.tutorial
+        return state if tutorial is None else tutorial.practice.shown(state)
+
     def take(self, result: StepResult) -> None:
         """Take a tick in which something happened."""
+        touch = self.shown(result.state).touch
         for event in result.events:
             said = result.state.training.instruction
             is_back = isinstance(said, LocalizedText) and said.key == NOT_RECORDED
-            felt = feedback_event(event, result.state.touch, is_back)
+            felt = feedback_event(event, touch, is_back)
             if felt is not None:
                 self._session.happened(felt)
             self._trial_screen.take(event)
-        self._touch = result.state.touch
+            self._tutorial_screen.take(event)
+        self._touch = touch
 
     def advance(self, dt: float, state: SimulationState) -> None:
         """Advance by `dt` seconds with the newest state."""
         session = self._session
         session.advance(dt, state)
-        felt = touch_feedback(self._touch, state.touch)
-        self._touch = state.touch
+        touch = self.shown(state).touch
+        felt = touch_feedback(self._touch, touch)
+        self._touch = touch
         if felt is not None:
             session.happened(felt)
         training = state.training
@@ -86,29 +99,32 @@ class Flow:
             session.history.changed(training.trainee, training.trial_id)
         if session.pages.top is not None:
             session.pages.advance(dt)
+        elif session.tutorial is not None:
+            self._advance_tutorial(dt, session.tutorial)
         elif self._trial_screen.has_practice_just_ended():
             self._trial_screen.open_menu()
 
     def pressed(self, control: ControlName) -> None:
         """Take a press of a control."""
         if self._session.pages.top is None:
-            self._trial_screen.pressed(control)
+            self._screen_of_work.pressed(control)
         else:
             self._session.pages.pressed(control)
 
     def taken_over(self) -> None:
         """Another operator takes the control: they begin in the menu."""
         if self._session.pages.top is None:
-            self._trial_screen.open_menu()
+            self._screen_of_work.open_menu()
 
     def pause(self, why: str) -> None:
         """Pause what runs, since nobody can see it; `why` is the key of a sentence."""
         if self.playback is not None:
             self.playback.pause(True)
-        phase, page = self._session.training.phase, self._session.pages.top
-        if phase in (Phase.RUNNING, *PROCEDURE_PHASES) and page is None:
+        session = self._session
+        is_running = session.training.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+        if (is_running or session.tutorial is not None) and session.pages.top is None:
             self._unseen = why
-            self._trial_screen.open_menu()
+            self._screen_of_work.open_menu()
 
     def screen(self, more_warnings: tuple[ScreenMessage, ...] = ()) -> Screen:
         """Return what the trainee reads now."""
@@ -122,28 +138,81 @@ class Flow:
             return Screen(
                 menu=menu,
                 warnings=(*self._pause_warnings(), *warnings),
-                status=self._trial_screen.status() if session.has_open_trial else (),
+                status=self._screen_of_work.status() if self._is_work_open else (),
                 hints=self._menu_hints(),
                 language=session.preferences.language,
             )
+        work = self._screen_of_work
         return Screen(
-            instruction=self._trial_screen.instruction(),
-            warnings=(*self._trial_screen.warnings(), *warnings),
-            status=self._trial_screen.status(),
-            hints=self._trial_screen.hints(),
-            has_arrow=self._trial_screen.guidance is not Guidance.NONE,
+            instruction=work.instruction(),
+            warnings=(*work.warnings(), *warnings),
+            status=work.status(),
+            hints=work.hints(),
+            has_arrow=work.has_arrow,
             language=session.preferences.language,
+            errors=work.errors(),
         )
+
+    def start_tutorial(self, trainee: str, mode: str) -> Answer:
+        """Open the tutorial because Slicer wants the trial run to come next, if it is to be first.
+
+        The answer's `isNeeded` says whether the trial run has to wait for it.
+        """
+        session = self._session
+        say = session.texts.say
+        if session.has_open_trial:
+            open_ = session.training
+            task = session.task_title(open_.task)
+            return Answer(0, False, say("trial is open", trainee=open_.trainee, task=task))
+        tutorial = session.tutorial
+        if tutorial is not None and tutorial.trainee != trainee:
+            return Answer(0, False, say("tutorial is open", trainee=tutorial.trainee))
+        if tutorial is None:
+            session.trainee, session.mode = trainee, mode
+            if not needs_tutorial(session):
+                return Answer(0, True, data={"isNeeded": False})
+            session.begin_tutorial()
+        return Answer(0, True, data={"isNeeded": True})
 
     def close(self) -> None:
         """Let go of what the open pages have begun."""
         self._session.pages.show(None)
+
+    @property
+    def _screen_of_work(self) -> TrialScreen | TutorialScreen:
+        """What is read while the arm is driven."""
+        is_learning = self._session.tutorial is not None
+        return self._tutorial_screen if is_learning else self._trial_screen
+
+    @property
+    def _is_work_open(self) -> bool:
+        """Whether a trial or the tutorial waits under the menu."""
+        return self._session.has_open_trial or self._session.tutorial is not None
+
+    def _advance_tutorial(self, dt: float, tutorial: Tutorial) -> None:
+        """Advance the tutorial; at its end, or where its head is gone, it is left."""
+        session = self._session
+        self._unseen = ""
+        if tutorial.setup is not self._control_loop.setup:
+            session.end_tutorial()
+            session.notice(session.texts.say("tutorial.head is gone"), Tone.WARNING)
+            session.pages.show_start()
+            return
+        self._tutorial_screen.advance(dt)
+        if tutorial.is_done:
+            outcome = session.end_tutorial()
+            session.pages.show_start()
+            session.pages.open(ExperimentPage(session))
+            if outcome is not None:
+                session.pages.open(TutorialDonePage(session, outcome), has_grace=True)
 
     def _follow(self, before: tuple[str, Phase]) -> None:
         """Show what belongs to the trial's new phase."""
         session = self._session
         training = session.training
         session.history.changed(training.trainee, training.trial_id)
+        # Whoever begins or ends a trial meanwhile: the tutorial is another time's.
+        session.end_tutorial()
         self._note_trial(before[0])
         is_requested = self._trial_screen.take_menu_request()
         was_working = session.pages.top is None
@@ -175,6 +244,9 @@ class Flow:
             self._trial_screen.begin(*points_in_world(truth))
             guidance = self._trial_screen.guidance
             self._control_loop.note_display(GuidanceReport(guidance.value))
+            learned = session.tutorials.latest(training.trainee)
+            if training.task == TRIAL_RUN and learned is not None:
+                self._control_loop.note_display(learned)
             session.view.begin(session.setup, truth, session.state)
             session.trainee = training.trainee
             session.mode = training.mode

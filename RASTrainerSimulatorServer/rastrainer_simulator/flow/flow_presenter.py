@@ -28,7 +28,7 @@ from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
-from rastrainer_simulator.state import SimulationState, StepResult
+from rastrainer_simulator.state import Answer, SimulationState, StepResult
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
 REFRESH_S = 0.1
@@ -110,6 +110,13 @@ class FlowPresenter:
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control."""
         return self._subscribers.add(listener)
+
+    def start_tutorial(self, trainee: str, mode: str) -> Answer:
+        """Open the tutorial for a trainee whose trial run Slicer wants to start, if it is first."""
+        answer = self._flow.start_tutorial(trainee, mode)
+        self._is_changed = True
+        self._settle()
+        return answer
 
     def view_joined(self, view: int, hello: Hello) -> None:
         """Take note of a view; with a headset the next trial is one in a headset."""
@@ -310,6 +317,9 @@ class FlowPresenter:
 
     def _hand_source(self, kind: SourceKind, view: int) -> Source:
         """Return what an item was chosen or written with: a finger, where one has been seen."""
+        hello = self._views.get(view)
+        if hello is not None and hello.kind == "headset":
+            return self._source(SourceKind.XR, view)
         return self._source(SourceKind.TOUCH_SCREEN if view in self._touched else kind, view)
 
     def _types(self, source: Source, code: str, text: str) -> bool:
@@ -327,6 +337,7 @@ class FlowPresenter:
     def _settle(self) -> None:
         """Pass on what follows at once: what is shown, the situation, the sticks, the control."""
         self.shown.show(self._flow.playback)
+        self.shown.alter = None if self._session.tutorial is None else self._flow.shown
         self.controls.enter(self._flow.situation)
         sticks = self._view.turned(self.controls.sticks)
         if sticks != self._sent_sticks:

@@ -41,6 +41,11 @@ class TrialScreen(ArmScreen):
         self._practice_step: StudyStep | None = None
         self._practice_end_s: float | None = None
 
+    @property
+    def has_arrow(self) -> bool:
+        """Whether a view points to a next point that is out of sight."""
+        return self.guidance is not Guidance.NONE
+
     def take(self, event: Event) -> None:
         """Take note of what happened."""
         super().take(event)

@@ -1,4 +1,4 @@
-"""How the trainee's view is turned during a trial, and how it is guided, for its journal."""
+"""What a trial's journal notes of its view, its guidance, and the tutorial before it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer_simulator.record.display_use import DisplayReport
+from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 
 DECIMALS = 2
 
@@ -51,5 +52,5 @@ class GuidanceReport:
         return {"kind": "guidance", "guidance": self.guidance}
 
 
-NotedReport = DisplayReport | ViewReport | GuidanceReport
-"""What is noted of how a trial is seen; the simulation does not depend on it."""
+NotedReport = DisplayReport | ViewReport | GuidanceReport | TutorialOutcome
+"""What is noted of how a trial is seen and prepared; the simulation does not depend on it."""

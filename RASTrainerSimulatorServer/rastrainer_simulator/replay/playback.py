@@ -1,4 +1,4 @@
-"""What the views show: the arm as it is, or a recorded trial that is played."""
+"""What the views show: the arm as it is, the tutorial's points on the head, or a recorded trial."""
 
 from __future__ import annotations
 
@@ -109,9 +109,14 @@ class PlaybackSwitch:
     """A `StateSource` that passes on the control loop's states, or those of a playback.
 
     The control loop runs on unchanged.
+
+    Attributes:
+        alter: changes a state of the control loop before it is shown, in any thread; None shows it
+            as it is.
     """
 
     def __init__(self, control_loop: ControlLoop) -> None:
+        self.alter: Callable[[SimulationState], SimulationState] | None = None
         self._control_loop = control_loop
         self._playback: Playback | None = None
         self._subscribers: Subscribers[StepResult] = Subscribers()
@@ -121,7 +126,10 @@ class PlaybackSwitch:
     @property
     def latest(self) -> SimulationState:
         """The state that is shown."""
-        return (self._playback or self._control_loop).latest
+        if self._playback is not None:
+            return self._playback.latest
+        alter, now = self.alter, self._control_loop.latest
+        return now if alter is None else alter(now)
 
     @property
     def setup(self) -> SimulationSetup:
@@ -156,4 +164,6 @@ class PlaybackSwitch:
 
     def _take_tick(self, result: StepResult) -> None:
         if self._playback is None:
-            self._subscribers.publish(result)
+            alter = self.alter
+            shown = result if alter is None else replace(result, state=alter(result.state))
+            self._subscribers.publish(shown)

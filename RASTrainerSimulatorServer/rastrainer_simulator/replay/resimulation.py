@@ -28,6 +28,7 @@ _NOT_SIMULATED = frozenset(
         "display",
         "view",
         "guidance",
+        "tutorial",
         "stopped",
         "attempt",
         "registration",

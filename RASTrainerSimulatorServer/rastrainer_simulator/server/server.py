@@ -124,6 +124,7 @@ class SimulatorServer:
                 trial_limits=self._limits.trials,
             )
             unless_ready.pop_all()
+        self._presenter: RunningPresenter | None = None
         self._scenarios = ScenarioLoader(
             self._control_loop, self._make_simulation, _is_loopback(_peers_host(options))
         )
@@ -153,7 +154,8 @@ class SimulatorServer:
         self._control_loop.subscribe(TrialLog(loop))
         tasks = [loop.create_task(link.beat())]
         stop = asyncio.Event()
-        presenter = self._presenter(link, stop) if self._options.has_views else None
+        presenter = self._make_presenter(link, stop) if self._options.has_views else None
+        self._presenter = presenter
         serve_views, views, window = self._views_to_serve(presenter), None, None
         # Keep garbage collection between two ticks short: what is loaded now is never freed.
         gc.collect()
@@ -232,7 +234,7 @@ class SimulatorServer:
     def _config(self) -> Path:
         return self._options.config or config_folder()
 
-    def _presenter(self, link: SimulatorLink, stop: asyncio.Event) -> RunningPresenter:
+    def _make_presenter(self, link: SimulatorLink, stop: asyncio.Event) -> RunningPresenter:
         """Return the trainee's presenter."""
         from rastrainer_simulator.flow.running_presenter import RunningPresenter
         from rastrainer_simulator.flow.session.session import FlowServices
@@ -249,6 +251,12 @@ class SimulatorServer:
             scores_alone=self._options.scores_alone,
         )
         return RunningPresenter(self._control_loop, services, self._options.has_gamepad)
+
+    def _start_tutorial(self, trainee: str, mode: str) -> Answer:
+        """Open the tutorial if it comes before a trainee's trial run, and a trainee can operate."""
+        if self._presenter is None:
+            return Answer(0, True, data={"isNeeded": False})
+        return self._presenter.presenter.start_tutorial(trainee, mode)
 
     def _use_settings(self, settings: SimulationSettings) -> Future[Answer]:
         self._settings = settings
@@ -307,9 +315,9 @@ class SimulatorServer:
             return self._scenarios.load(arguments["folder"])
         if name == CommandName.STUDY_STEP:
             self._study.take(StudyStep.from_arguments(arguments))
-            taken: Future[Answer] = Future()
-            taken.set_result(Answer(0, True))
-            return taken
+            return _answered(Answer(0, True))
+        if name == CommandName.START_TUTORIAL:
+            return _answered(self._start_tutorial(**arguments))
         return self._control_loop.submit(name, arguments, sender)
 
     def _health(self) -> dict[str, Any]:
@@ -321,6 +329,12 @@ class SimulatorServer:
             "skippedTicks": statistics.skipped,
             "worstDelayMs": round(1000.0 * statistics.worst_delay_s, 3),
         }
+
+
+def _answered(answer: Answer) -> Future[Answer]:
+    done: Future[Answer] = Future()
+    done.set_result(answer)
+    return done
 
 
 def _peers_host(options: ServerOptions) -> str:

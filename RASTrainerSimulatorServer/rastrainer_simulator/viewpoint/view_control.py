@@ -73,6 +73,11 @@ class ViewControl:
         travel = self._travel
         return (self.orbit if travel is None else travel.goal) != FRONT
 
+    @property
+    def is_traveling(self) -> bool:
+        """Whether it is on its way to another place."""
+        return self._travel is not None
+
     def use(self, camera: str) -> None:
         """Start from a camera of the scenario, unless it is the one already."""
         if camera != self.camera:

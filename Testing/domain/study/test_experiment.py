@@ -201,6 +201,18 @@ def test_a_protocol_may_set_the_guidance_to_the_next_point(study):
         protocol(guidance="loud")
 
 
+def test_a_protocol_may_require_the_tutorial_before_each_trial_run_or_skip_it():
+    assert "tutorial" not in protocol().to_json()
+    own = protocol(tutorial="skipped")
+    assert study_protocol_from_json(own.to_json()) == own
+    steps = [step for step in steps_for(own, 0) if step.tutorial]
+    assert {(step.kind, step.tutorial) for step in steps} == {("trial-run", "skipped")}
+    told = StudyStep("P07", "trial-run", tutorial="skipped").arguments()
+    assert StudyStep.from_arguments(check_arguments("StudyStep", told)).tutorial == "skipped"
+    with pytest.raises(InputError, match="tutorial must be one of required, optional, skipped"):
+        protocol(tutorial="short")
+
+
 def test_nothing_is_skipped_silently(study):
     progress = StudyProgress(study)
     progress.set_protocol(protocol())

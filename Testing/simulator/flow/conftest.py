@@ -17,6 +17,7 @@ from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.state import Answer
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.flow.trainee import Keys, Pad, Trainee
+from Testing.without_tutorial import WITHOUT_TUTORIAL, leave_tutorial_out
 
 
 class Outside:
@@ -80,7 +81,8 @@ def loop(shared, tmp_path):
 
 @pytest.fixture
 def presenter(loop, outside):
-    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+    preferences = Preferences(**WITHOUT_TUTORIAL)
+    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
     yield presenter
     presenter.close()
 
@@ -97,6 +99,7 @@ def trainee(loop, presenter):
 @pytest.fixture
 def running(loop, outside):
     """Return a presenter with SDL's gamepads."""
+    leave_tutorial_out(outside.services.config)
     running = RunningPresenter(loop, outside.services, has_gamepad=True)
     yield running
     running.close()

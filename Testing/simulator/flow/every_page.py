@@ -17,6 +17,7 @@ from rastrainer_simulator.flow.pages import (
     result,
     start,
     trial,
+    tutorial,
 )
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
@@ -24,6 +25,7 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
 
 QUESTIONNAIRE = StudyStep("P07", "questionnaire", 2, 19, questionnaire="nasa-tlx")
@@ -35,6 +37,8 @@ SCORED = TrainingState(
     trial_id="none",
     result=TrialResult(FinalRegistration((1.0,) * 16, 1.25, 1.5), 1.4, 81.0, {"ctps": 62.5}),
 )
+
+LEARNED = TutorialOutcome("P07", "gamepad", "desktop", 112.0, 2.34, (1.2, 0.8, 0.6))
 
 
 class _Loading:
@@ -81,4 +85,6 @@ def _pages(session) -> Iterator[SessionPage]:
     yield result.WaitingPage(session)
     yield result.ResultPage(session)
     yield errors.ErrorsPage(session)
+    yield tutorial.TutorialPage(session)
+    yield tutorial.TutorialDonePage(session, LEARNED)
     yield ReplayPage(session, _Loading(), begins_at_worst=False)

@@ -100,6 +100,11 @@ class Trainee:
     def state(self):
         return self.loop.latest
 
+    @property
+    def touched(self) -> int:
+        """How many touches the views show: those of the trial, or of the tutorial."""
+        return len(self.presenter.shown.latest.training.touches)
+
     def step(self, count: int = 1) -> None:
         """Let the presenter go on for `count` steps, and the loop with it."""
         for _ in range(count):
@@ -158,7 +163,14 @@ class Trainee:
         self.until_menu(None)
 
     def touch(self, point: np.ndarray, center: np.ndarray) -> None:
-        """Carry the tip over the head to a point of the skin (3,) m, touch and lift off."""
+        """Carry the tip over the head to a point of the skin (3,) m, and record a touch there."""
+        self.lower_onto(point, center)
+        kept = self.touched
+        self.tap("touch")
+        self.until(lambda: self.touched > kept, f"touch {kept + 1}")
+
+    def lower_onto(self, point: np.ndarray, center: np.ndarray) -> None:
+        """Carry the tip over the head to a point of the skin (3,) m, and lower it until contact."""
         outward = (point - center) / np.linalg.norm(point - center)
         start = np.array(self.tip) - center
         lifted = LIFT_M + max(np.linalg.norm(point - center), np.linalg.norm(start))
@@ -172,9 +184,6 @@ class Trainee:
         self.steer_to(point - SINK_M * outward, 0.0, fine=True, ends_in_contact=True)
         self.hands.push(0.0, 0.0, 0.0, False)
         self.step(2)
-        kept = len(self.state.training.touches)
-        self.tap("touch")
-        self.until(lambda: len(self.state.training.touches) > kept, f"touch {kept + 1}")
 
     @property
     def tip(self):
@@ -227,6 +236,7 @@ class Keys:
         "best_view": "KeyB",
         "pause": "KeyP",
         "menu": "KeyM",
+        "view_right": "KeyE",
     }
     STICKS = (("KeyA", "KeyD"), ("KeyS", "KeyW"), ("KeyF", "KeyR"))
 
@@ -237,6 +247,9 @@ class Keys:
 
     def tap(self, control: str) -> None:
         self.key(self.CODES[control])
+
+    def hold(self, control: str, is_down: bool) -> None:
+        self._trainee.presenter.on_key(self._view, self.CODES[control], is_down, "")
 
     def key(self, code: str, text: str = "") -> None:
         presenter = self._trainee.presenter
@@ -278,6 +291,8 @@ class Pad:
         "camera": "y",
         "pause": "back",
         "menu": "start",
+        "best_view": "x",
+        "view_right": "dpright",
     }
 
     def __init__(self, trainee: Trainee, plugged):
@@ -288,6 +303,9 @@ class Pad:
         self._trainee.step()
         self.plugged.press(self.BUTTONS[control], False)
         self._trainee.step()
+
+    def hold(self, control: str, is_down: bool) -> None:
+        self.plugged.press(self.BUTTONS[control], is_down)
 
     def push(self, right: float, forward: float, up: float, fine: bool) -> None:
         right, forward, up = (max(-1.0, min(1.0, value)) for value in (right, forward, up))

@@ -10,7 +10,9 @@ from rastrainer.report.report import report_html
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
 from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
 
 
@@ -21,6 +23,9 @@ def bytes_below(folder):
 def test_no_byte_of_the_trainee_is_left(copied, tmp_path, capsys):
     with Study.open(copied / DATABASE) as study:
         ids = [trial.record.trial_id.encode() for trial in study.history("V0002")]
+    for name in ("V0001", "V0002"):
+        learned = TutorialOutcome(name, "keyboard", "desktop", 112.0, 2.3, (1.2, 0.8, 0.6))
+        FinishedTutorials(copied / RECORDS).keep(learned)
     assert all(word in bytes_below(copied) for word in (b"V0002", *ids))
     words = ["delete-trainee", copied / DATABASE, "V0002", "--records", copied / RECORDS]
     assert main([str(word) for word in words]) == 2
@@ -35,6 +40,8 @@ def test_no_byte_of_the_trainee_is_left(copied, tmp_path, capsys):
     for word in (b"V0002", *ids):
         assert word not in left
     assert b"V0001" in left
+    again = FinishedTutorials(copied / RECORDS)
+    assert (again.latest("V0001") is None, again.latest("V0002")) == (False, None)
     assert len(journals(copied / RECORDS)) == 2
 
 

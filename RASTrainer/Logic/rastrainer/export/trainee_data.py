@@ -94,8 +94,8 @@ class Erasure:
 def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure:
     """Delete a trainee for good.
 
-    Journals are deleted first: if one cannot be deleted, the trainee remains and the deletion can
-    be repeated. Earlier exports must be deleted by the lab.
+    Journals and files of tutorials are deleted first: if one cannot be deleted, the trainee remains
+    and the deletion can be repeated. Earlier exports must be deleted by the lab.
 
     Args:
         study: The trainee's study.
@@ -108,7 +108,7 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     ids = [trial.record.trial_id for trial in study.history(pseudonym)]
     ids += [aborted.record.trial_id for aborted in AbortedTrials(study).of(pseudonym)]
     erased, unreadable = ((), ()) if records is None else erase_journals(records, pseudonym, ids)
-    names = [path.name for path in erased]
+    names = [path.name for path in erased if path.suffix == SUFFIX]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]
     trials = study.delete_trainee(pseudonym)
-    return Erasure(trials, len(erased), tuple(missing), tuple(unreadable))
+    return Erasure(trials, len(names), tuple(missing), tuple(unreadable))

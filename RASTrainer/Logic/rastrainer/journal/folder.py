@@ -1,4 +1,4 @@
-"""The journals in a folder: find, read and erase them."""
+"""The journals in a folder, and the files of tutorials beside them: find, read and erase them."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
 
 SUFFIX = ".journal"
+TUTORIAL_SUFFIX = ".tutorial"
+"""Of the files of tutorials: each is one line that names the trainee, like a journal's first."""
 _ZEROS = bytes(1 << 20)
 
 
@@ -50,7 +52,7 @@ def read_trajectory(
 def erase_journals(
     folder: Path, trainee: str, trial_ids: Collection[str] = ()
 ) -> tuple[list[Path], list[Path]]:
-    """Overwrite and delete every journal of a trainee, including damaged ones.
+    """Overwrite and delete every journal and tutorial of a trainee, including damaged journals.
 
     Args:
         folder: Of the journals.
@@ -58,7 +60,7 @@ def erase_journals(
         trial_ids: UUIDs of the trainee's trials, to identify journals by file name.
 
     Returns:
-        The deleted paths, and those of journals that name no trainee.
+        The deleted paths, and those of files that name no trainee.
 
     Raises:
         InputError: there is no such folder, a journal cannot be deleted, or one is being written.
@@ -66,7 +68,7 @@ def erase_journals(
     if not folder.is_dir():
         raise InputError(f"There is no folder {folder} with journals.")
     erased, unreadable = [], []
-    for path in sorted(folder.glob(f"*{SUFFIX}")):
+    for path in sorted((*folder.glob(f"*{SUFFIX}"), *folder.glob(f"*{TUTORIAL_SUFFIX}"))):
         owner = _trainee_of(path)
         if owner == trainee or path.stem.rpartition("_")[2] in trial_ids:
             _erase(path)
@@ -83,7 +85,7 @@ def _erase(path: Path) -> None:
         path.unlink()
     except OSError as error:
         raise InputError(
-            f"The journal {path} cannot be deleted ({error.strerror}); if the trial is still "
+            f"The file {path} cannot be deleted ({error.strerror}); if the trial is still "
             "running, end it first."
         ) from None
 

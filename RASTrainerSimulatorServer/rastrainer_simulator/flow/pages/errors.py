@@ -55,7 +55,11 @@ class ErrorsPage(SessionPage):
 def error_arrow(fiducial: Vector, touch: Vector) -> ErrorArrow:
     """Return the arrow from a fiducial toward its touch, both in World, m."""
     error = subtract(touch, fiducial)
-    error_mm = MM_PER_M * length(error)
-    tone = Tone.ERROR if error_mm >= POOR_MM else Tone.WARNING
-    tone = Tone.GOOD if error_mm <= GOOD_MM else tone
+    tone = error_tone(MM_PER_M * length(error))
     return ErrorArrow(fiducial, add(fiducial, scale(error, LONGER)), tone)
+
+
+def error_tone(error_mm: float) -> Tone:
+    """Return how good a touch is."""
+    tone = Tone.ERROR if error_mm >= POOR_MM else Tone.WARNING
+    return Tone.GOOD if error_mm <= GOOD_MM else tone

@@ -8,12 +8,18 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import TRIAL_RUN, CommandName, Mode, StepKind
+from rastrainer.protocol import Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.obstacles import (
+    needs_tutorial,
+    obstacle,
+    tutorial_obstacle,
+    tutorial_rule,
+)
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem, ScoreTrend
@@ -46,7 +52,7 @@ class ExperimentPage(SessionPage):
             help=self.say("experiment.trainee help"),
         )
         mode = self.choice("mode", self.say(f"mode.{session.mode}"))
-        scenario = self.button("scenario", value=session.scenario.title)
+        choices = (trainee, mode, self.button("scenario", value=session.scenario.title))
         tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
         step = self._step()
         is_asked = step is not None and step.kind == StepKind.QUESTIONNAIRE
@@ -60,7 +66,7 @@ class ExperimentPage(SessionPage):
             self.name,
             self.say("experiment.title"),
             said,
-            items=(*answer, trainee, mode, scenario, *tasks, self.button("back")),
+            items=(*answer, *choices, *self._tutorial(), *tasks, self.button("back")),
             trend=trend,
         )
 
@@ -72,13 +78,15 @@ class ExperimentPage(SessionPage):
             self.session.pages.open(ScenarioPage(self.session))
         elif item == "answer":
             self._answer()
+        elif item == "tutorial":
+            self.session.begin_tutorial()
         elif item == "trainee":
             if self.session.is_typing_possible(_TYPES):
                 self.session.pages.move(1)
             else:
                 self.session.pages.open(KeyboardPage(self.session, self.write))
         else:
-            self._begin(item)
+            self.session.start_task(item)
 
     def step(self, item: str, direction: int) -> None:
         """Change the mode."""
@@ -102,10 +110,21 @@ class ExperimentPage(SessionPage):
         mark = PASS_MARK if self._step() is None else 0.0
         return ScoreTrend(self.say("experiment.scores", scores=told), scores, mark)
 
+    def _tutorial(self) -> tuple[MenuItem, ...]:
+        """Return the tutorial's button; none where there is no tutorial."""
+        session = self.session
+        if tutorial_rule(session) is TutorialRule.SKIPPED:
+            return ()
+        reason = tutorial_obstacle(session)
+        is_done = session.tutorials.has_done(session.trainee.strip(), session.learned_device)
+        value = self.say("experiment.done" if is_done else "experiment.tutorial time")
+        help_ = reason or self.say("experiment.tutorial help")
+        return (self.button("tutorial", value=value, is_enabled=not reason, help=help_),)
+
     def _task(self, name: str) -> MenuItem:
         """Return a task's button: a disabled one says why."""
         session = self.session
-        reason = self._obstacle(name)
+        reason = obstacle(session, name)
         is_done = session.progress.has_done(session.trainee.strip(), session.scenario.name, name)
         return MenuItem(
             name,
@@ -123,32 +142,12 @@ class ExperimentPage(SessionPage):
         step = self._step()
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
             return "answer"
+        if needs_tutorial(self.session) and not tutorial_obstacle(self.session):
+            return "tutorial"
         tasks = [self._task(task.name) for task in self.session.scenario.tasks]
         open_tasks = [task for task in tasks if task.is_enabled and not task.value]
         known = "mode" if self.session.trainee.strip() else ""
         return open_tasks[0].name if open_tasks else known
-
-    def _obstacle(self, name: str) -> str:
-        session = self.session
-        trainee = session.trainee.strip()
-        if not trainee:
-            return self.say("experiment.no trainee")
-        if session.is_being_set_up:
-            return self.say("experiment.being set up")
-        step = self._step()
-        if step is not None:
-            is_asked = step.is_played and (step.task, step.mode) == (name, session.mode)
-            sentence = session.step_sentence(step)
-            return "" if is_asked else self.say("experiment.study", step=sentence)
-        if session.preferences.order == "any":
-            return ""
-        scenario = session.scenario
-        order = [task.name for task in scenario.tasks]
-        missing = session.progress.missing_before(trainee, scenario.name, name, order)
-        if not missing:
-            return ""
-        key = "experiment.trial run first" if missing == TRIAL_RUN else "experiment.order"
-        return self.say(key, task=session.task_title(missing))
 
     def _step(self) -> StudyStep | None:
         return self.session.study.step_of(self.session.trainee.strip())
@@ -161,11 +160,6 @@ class ExperimentPage(SessionPage):
             self.session.pages.open(QuestionnairePage(self.session, step))
         except InputError as error:
             self.session.complain(str(error))
-
-    def _begin(self, task: str) -> None:
-        session = self.session
-        trainee = session.trainee.strip()
-        session.do(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": session.mode})
 
 
 class KeyboardPage(SessionPage):

@@ -5,7 +5,12 @@ from __future__ import annotations
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import ControlsPage, IntroductionPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.session.preferences import OF_A_TRIAL, OPTIONS, PREFERENCES_FILE
+from rastrainer_simulator.flow.session.preferences import (
+    OF_A_TRIAL,
+    OF_INSTRUCTORS,
+    OPTIONS,
+    PREFERENCES_FILE,
+)
 from rastrainer_simulator.net.views.screen import Menu, MenuItem
 
 
@@ -82,9 +87,7 @@ class SettingsPage(SessionPage):
     def _item(self, name: str) -> MenuItem:
         waits = self.session.has_open_trial and name in OF_A_TRIAL
         help_ = self.say("settings.waits") if waits else self._help(name)
-        # Who trains here does not decide what they may leave out.
-        is_protected = name == "order"
-        is_enabled = not waits and not is_protected
+        is_enabled = not waits and name not in OF_INSTRUCTORS
         return self.choice(name, self._value(name), is_enabled=is_enabled, help=help_)
 
     def _help(self, name: str) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
-from rastrainer.protocol import TRIAL_RUN, Guidance, TouchRule
+from rastrainer.protocol import TRIAL_RUN, Guidance, TouchRule, TutorialRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
@@ -40,6 +40,7 @@ class Preferences:
         touch: whether a touch has to be on the skin.
         view: when the view goes to each next point by itself: "practice" is outside of a study.
         guidance: how the trainee is guided to the next point, unless a study says otherwise.
+        tutorial: whether it comes before the trial run, unless a study says otherwise.
     """
 
     language: str = "en"
@@ -53,6 +54,7 @@ class Preferences:
     touch: str = TouchRule.ON_SKIN.value
     view: str = "practice"
     guidance: str = Guidance.FADING.value
+    tutorial: str = TutorialRule.REQUIRED.value
 
     def stepped(self, name: str, direction: int) -> Preferences:
         """Return the preferences with one of them moved to its next or previous option."""
@@ -90,9 +92,12 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
     "touch": tuple(rule.value for rule in TouchRule),
     "view": ("practice", "always", "never"),
     "guidance": tuple(choice.value for choice in Guidance),
+    "tutorial": tuple(rule.value for rule in TutorialRule),
 }
 
 OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch")
+OF_INSTRUCTORS = ("order", "tutorial")
+"""Preferences that are changed in the file: who trains does not decide what they may leave out."""
 OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance")
 """Preferences that a running trial must not change: they are in its record."""
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
-from rastrainer.protocol import OPEN_PHASES, CommandName, Guidance, Mode
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Guidance, Mode, check_arguments
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.study_step import StudyStep
@@ -30,6 +30,8 @@ from rastrainer_simulator.flow.session.progress import DoneTasks
 from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
 from rastrainer_simulator.flow.session.trial_view import TrialView
+from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
+from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.controls import Controls
@@ -39,6 +41,7 @@ from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
 from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState
 from rastrainer_simulator.vectors import Vector, vector
@@ -97,6 +100,8 @@ class TrainingSession:
         quit: ends the simulator.
         study: knows what a study asks of each trainee next.
         view: where the pictures of the trial are looked from.
+        tutorial: the one that is open; else None.
+        tutorials: who has finished one, and with which device.
     """
 
     def __init__(
@@ -127,6 +132,8 @@ class TrainingSession:
         self.happened = happened
         self.pages = OpenPages(happened)
         self.view = TrialView()
+        self.tutorial: Tutorial | None = None
+        self.tutorials = FinishedTutorials(services.records)
         self.list_scenarios = services.list_scenarios
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
@@ -188,6 +195,17 @@ class TrainingSession:
         return InputDevice.GAMEPAD if has_pad else InputDevice.KEYBOARD
 
     @property
+    def learned_device(self) -> SourceKind:
+        """What the arm is driven with, as far as it has controls of its own to be learned."""
+        holder = self._controls.holder
+        if holder is not None and holder.kind in (SourceKind.XR, SourceKind.TOUCH_SCREEN):
+            return holder.kind
+        has_pad = self.device is InputDevice.GAMEPAD
+        # In a headset one holds its controllers, unless a gamepad is in use.
+        other = SourceKind.XR if self.mode == Mode.HMD.value else SourceKind.KEYBOARD
+        return SourceKind.GAMEPAD if has_pad else other
+
+    @property
     def device_picture(self) -> str:
         """Which drawing shows what the operator uses."""
         return "controllers" if self.is_typing_possible((SourceKind.XR,)) else self.device.value
@@ -200,11 +218,14 @@ class TrainingSession:
     @property
     def does_view_follow(self) -> bool:
         """Whether the view goes to the best view of each next point by itself."""
-        if self.training.mode == Mode.HMD.value:
+        if (self.training if self.tutorial is None else self.tutorial).mode == Mode.HMD.value:
             # In a headset one looks around with the head.
             return False
+        if self.tutorial is not None and not self.tutorial.has_learned_view:
+            return False
         choice = self.preferences.view
-        is_led = self.study.step_of(self.training.trainee) is not None
+        trainee = self.training.trainee if self.tutorial is None else self.tutorial.trainee
+        is_led = self.study.step_of(trainee) is not None
         return choice == "always" or (choice == "practice" and not is_led)
 
     def is_typing_possible(self, kinds: tuple[SourceKind, ...]) -> bool:
@@ -239,6 +260,36 @@ class TrainingSession:
             self._commands.do(command, sender, arguments or {})
         except InputError as error:
             self.complain(str(error))
+
+    def begin_tutorial(self) -> None:
+        """Open the tutorial, in place of any page."""
+        task = {"task": TRIAL_RUN, "trainee": self.trainee.strip(), "mode": self.mode}
+        try:
+            arguments = check_arguments(CommandName.START_TASK, task)
+        except InputError as error:
+            self.complain(str(error))
+            return
+        self.tutorial = Tutorial(self.setup, self.state, arguments, self.texts)
+        practice = self.tutorial.practice
+        self.view.begin(self.setup, practice.truth, practice.shown(self.state))
+        self.pages.show(None)
+
+    def end_tutorial(self) -> TutorialOutcome | None:
+        """Leave the tutorial; if all of it is done, keep its outcome and return it."""
+        tutorial, self.tutorial = self.tutorial, None
+        if tutorial is None:
+            return None
+        self.view.close()
+        if tutorial.step is not None:
+            return None
+        outcome = tutorial.outcome(self.learned_device)
+        self._save(lambda: self.tutorials.keep(outcome))
+        return outcome
+
+    def start_task(self, task: str) -> None:
+        """Have a trial of a task begun by the trainee, in the chosen mode."""
+        trainee = self.trainee.strip()
+        self.do(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": self.mode})
 
     def prefer(self, preferences: Preferences) -> None:
         """Take on other preferences and save them."""

@@ -31,11 +31,13 @@ class TrialView:
         control: the view.
         stick_turn_deg: by how much right and forward of the sticks are turned against those of the
             scenario's camera, counterclockwise from above.
+        yaw_deg: where the eyes look, degrees from World's x; None without a headset's controllers.
     """
 
     def __init__(self) -> None:
         self.control = ViewControl()
         self.stick_turn_deg = 0.0
+        self.yaw_deg: float | None = None
         self._best = BestViews()
         self._trial_id = ""
         self._went_for: str | None = None
@@ -53,6 +55,11 @@ class TrialView:
         """Forget the trial."""
         self._best.forget()
         self._went_for, self._is_wanted = None, False
+
+    def has_gone_to(self, label: str | None) -> bool:
+        """Return whether the view has arrived at the best view of a point."""
+        is_there = not self._is_wanted and not self.control.is_traveling
+        return label is not None and label == self._went_for and is_there
 
     def want_best(self) -> None:
         """Go to the best view of the next point as soon as it is known."""
@@ -91,6 +98,7 @@ class TrialView:
 
     def look_along(self, camera: Camera, yaw_deg: float | None) -> None:
         """Have the sticks follow the picture, or eyes that look to `yaw_deg` from World's x."""
+        self.yaw_deg = yaw_deg
         if yaw_deg is None:
             self.stick_turn_deg = self.control.orbit.azimuth_deg
         else:

@@ -25,6 +25,7 @@ class FeedbackEvent(str, Enum):
     FOCUS = "focus"
     ACCEPT = "accept"
     TEST = "test"
+    STEP = "step"
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
     FeedbackEvent.FOCUS: FeedbackEffect("focus"),
     FeedbackEvent.ACCEPT: FeedbackEffect("accept"),
     FeedbackEvent.TEST: FeedbackEffect("", 0.6, 0.2),
+    FeedbackEvent.STEP: FeedbackEffect("accept", 0.3, 0.12),
 }
 
 

@@ -157,7 +157,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "introduction.title.3": "What you get",
         "introduction.text.3": "After the last point you register: 3D Slicer matches your points "
         "with the MRI and tells you the error and your score. Both count: exactness and time. You "
-        "begin with five minutes of free practice, then come Tasks 1 to 5.",
+        "begin with a tutorial of two minutes and five minutes of free practice, then come Tasks "
+        "1 to 5.",
         "introduction.sheet": "Page {sheet} of {sheets}",
         "introduction.next": "Next",
         "introduction.skip": "Skip to the controls",
@@ -195,6 +196,11 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "experiment.order": "{task} comes first.",
         "experiment.trial run first": "{task} comes first: touch all its points, or practice until "
         "its time is over.",
+        "experiment.tutorial": "Tutorial",
+        "experiment.tutorial time": "2 minutes",
+        "experiment.tutorial help": "Learn to move the robot, one control at a time.",
+        "experiment.tutorial first": "The tutorial comes first, with the device that you use now: "
+        "it takes two minutes.",
         "experiment.study": "Not now. {step} Only your instructor can leave a step out, in "
         "3D Slicer and with a reason.",
         # What a study that Slicer leads asks for next.
@@ -308,6 +314,61 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "errors.back": "Back",
         "result.worst": "Show the worst touch",
         "result.menu": "Experiment menu",
+        # The tutorial: {control} is what the trainee presses or pushes, such as "Left stick up".
+        "tutorial.title": "Tutorial",
+        "tutorial.place": "Step {step} of {steps}",
+        "tutorial.done mm": "{done} of {goal} mm",
+        "tutorial.done degrees": "{done} of {goal}°",
+        "tutorial.done points": "{done} of {goal} points",
+        "tutorial.homing": "The robot moves to where you begin.",
+        "tutorial.right": "Move the tool 30 mm to the right: {control}.",
+        "tutorial.left": "Now 30 mm to the left: {control}.",
+        "tutorial.forward": "Now 30 mm forward, away from you: {control}.",
+        "tutorial.forward.robot": "Now 30 mm forward, as the robot stands: {control}.",
+        "tutorial.back": "Now 30 mm back, toward you: {control}.",
+        "tutorial.back.robot": "Now 30 mm back, as the robot stands: {control}.",
+        "tutorial.up": "Now 30 mm up: {control}.",
+        "tutorial.down": "Now 30 mm down: {control}.",
+        "tutorial.slow": "Hold {control} and move the tool 10 mm: near the skin it should be slow.",
+        "tutorial.slow.touch screen": "Press {control} and move the tool 10 mm: near the skin it "
+        "should be slow. Press again to be fast.",
+        "tutorial.turn view": "Turn the view by 20°: {control}.",
+        "tutorial.turn view.keyboard": "Turn the view by 20°: {control}, or drag with the right "
+        "mouse button.",
+        "tutorial.turn view.touch screen": "Turn the view by 20°: drag a finger over the picture.",
+        "tutorial.look around": "Turn your head to the side, and push the left stick: its "
+        "directions turn with you.",
+        "tutorial.best view": "See point {point} from where it is seen best: {control}.",
+        "tutorial.lower": "Lower the tip onto point {point}: the ring closes, and turns green on "
+        "the skin.",
+        "tutorial.touch": "Record the touch: {control}. Only touches within 10 mm of the point "
+        "count.",
+        "tutorial.undo": "Everyone slips. Take the touch back: {control}.",
+        "tutorial.pause": "Open the menu: {control}. Everything waits meanwhile; then resume.",
+        "tutorial.guided": "Now touch {count} points, each as exactly as you can. Point {point} is "
+        "first.",
+        "tutorial.praise": "Well done.",
+        "tutorial.recorded": "Recorded, {error:.1f} mm from the point.",
+        "tutorial.touched": "Point {label}: {error:.1f} mm off. Now touch point {point}.",
+        "tutorial.head is gone": "The tutorial has ended: another head is in use.",
+        "tutorial is open": "{trainee} is doing the tutorial: let it be finished, or leave it in "
+        "the simulator's menu.",
+        "tutorial.paused": "The tutorial waits at step {step} of {steps}.",
+        "tutorial.resume": "Continue",
+        "tutorial.controls": "Controls",
+        "tutorial.restart": "Begin again",
+        "tutorial.leave": "Leave the tutorial",
+        "tutorial.skip": "Skip the tutorial",
+        "tutorial.mm": "{error:.1f} mm",
+        "tutorial-done.title": "You can drive the robot",
+        "tutorial-done.text": "{trainee}, next is the trial run: fifteen points, to practice as "
+        "long as its time lasts.",
+        "tutorial-done.time": "Time",
+        "tutorial-done.first": "Error of your first touch",
+        "tutorial-done.touches": "Errors of the last three",
+        "tutorial-done.trial-run": "Start the trial run",
+        "tutorial-done.again": "Do the tutorial again",
+        "tutorial-done.menu": "Experiment menu",
         # Settings.
         "settings.title": "Settings",
         "settings.back": "Back",
@@ -353,6 +414,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.guidance.words": "Words and arrow",
         "settings.guidance.arrow": "Arrow",
         "settings.guidance.none": "None",
+        "settings.tutorial": "Tutorial",
+        "settings.tutorial help": "Whether the trial run waits for it. A study may set its own. "
+        "Instructors change this in the file {file}.",
+        "settings.tutorial.required": "Before the trial run",
+        "settings.tutorial.optional": "May be skipped",
+        "settings.tutorial.skipped": "None",
         "settings.direction": "Direction of the tool",
         "settings.direction help": "Who decides where the tool points: the arm, you or the skin.",
         "settings.direction.free": "Free (position only)",
@@ -539,6 +606,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "hint.undo": "Undo",
         "hint.fine": "Slow",
         "hint.best_view": "Best view",
+        "hint.turn_view": "Turn the view",
         "hint.camera": "Camera",
         "hint.front": "Front view",
         "hint.menu": "Menu",

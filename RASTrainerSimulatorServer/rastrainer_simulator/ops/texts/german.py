@@ -247,8 +247,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "introduction.title.3": "Was daraus wird",
         "introduction.text.3": "Nach dem letzten Punkt registrierst du: 3D Slicer bringt deine "
         "Punkte mit der MRT zur Deckung und nennt dir den Fehler und deine Punktzahl. Beides "
-        "zählt: Genauigkeit und Zeit. Du beginnst mit fünf Minuten freiem Üben, dann kommen die "
-        "Aufgaben 1 bis 5.",
+        "zählt: Genauigkeit und Zeit. Du beginnst mit einem Tutorial von zwei Minuten und fünf "
+        "Minuten freiem Üben, dann kommen die Aufgaben 1 bis 5.",
         "introduction.sheet": "Seite {sheet} von {sheets}",
         "introduction.next": "Weiter",
         "introduction.skip": "Gleich zur Steuerung",
@@ -287,6 +287,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "experiment.trial run first": "{task} kommt zuerst: Berühre alle Punkte, oder übe, bis die "
         "Zeit um ist.",
         "experiment.order": "{task} kommt zuerst.",
+        "experiment.tutorial": "Tutorial",
+        "experiment.tutorial time": "2 Minuten",
+        "experiment.tutorial help": "Lerne den Roboter zu bewegen, ein Bedienelement nach dem "
+        "anderen.",
+        "experiment.tutorial first": "Zuerst kommt das Tutorial mit dem Gerät, das du jetzt "
+        "benutzt: Es dauert zwei Minuten.",
         "experiment.study": "Jetzt nicht. {step} Nur die Kursleitung kann einen Schritt auslassen, "
         "in 3D Slicer und mit einem Grund.",
         "study.questionnaire": "Schritt {number} von {count}: Beantworte den Fragebogen "
@@ -405,6 +411,62 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "result.worst": "Schlechteste Berührung zeigen",
         "result.menu": "Experiment-Menü",
         # Settings.
+        "tutorial.title": "Tutorial",
+        "tutorial.place": "Schritt {step} von {steps}",
+        "tutorial.done mm": "{done} von {goal} mm",
+        "tutorial.done degrees": "{done} von {goal}°",
+        "tutorial.done points": "{done} von {goal} Punkten",
+        "tutorial.homing": "Der Roboter fährt dorthin, wo du beginnst.",
+        "tutorial.right": "Bewege das Werkzeug 30 mm nach rechts: {control}.",
+        "tutorial.left": "Jetzt 30 mm nach links: {control}.",
+        "tutorial.forward": "Jetzt 30 mm nach vorn, von dir weg: {control}.",
+        "tutorial.forward.robot": "Jetzt 30 mm nach vorn, wie der Roboter steht: {control}.",
+        "tutorial.back": "Jetzt 30 mm nach hinten, zu dir hin: {control}.",
+        "tutorial.back.robot": "Jetzt 30 mm nach hinten, wie der Roboter steht: {control}.",
+        "tutorial.up": "Jetzt 30 mm nach oben: {control}.",
+        "tutorial.down": "Jetzt 30 mm nach unten: {control}.",
+        "tutorial.slow": "Halte {control} und bewege das Werkzeug 10 mm: Nah an der Haut soll es "
+        "langsam sein.",
+        "tutorial.slow.touch screen": "Drücke {control} und bewege das Werkzeug 10 mm: Nah an der "
+        "Haut soll es langsam sein. Noch einmal gedrückt ist es wieder schnell.",
+        "tutorial.turn view": "Dreh die Ansicht um 20°: {control}.",
+        "tutorial.turn view.keyboard": "Dreh die Ansicht um 20°: {control}, oder zieh mit der "
+        "rechten Maustaste.",
+        "tutorial.turn view.touch screen": "Dreh die Ansicht um 20°: Zieh mit einem Finger über "
+        "das Bild.",
+        "tutorial.look around": "Dreh den Kopf zur Seite und drück den linken Stick: Seine "
+        "Richtungen drehen sich mit dir.",
+        "tutorial.best view": "Sieh Punkt {point} von dort, wo man ihn am besten sieht: {control}.",
+        "tutorial.lower": "Senke die Spitze auf Punkt {point}: Der Ring schließt sich und wird auf "
+        "der Haut grün.",
+        "tutorial.touch": "Nimm die Berührung auf: {control}. Nur Berührungen bis 10 mm vom Punkt "
+        "zählen.",
+        "tutorial.undo": "Jeder rutscht einmal ab. Nimm die Berührung zurück: {control}.",
+        "tutorial.pause": "Öffne das Menü: {control}. Solange steht alles still; mach dann weiter.",
+        "tutorial.guided": "Berühre jetzt {count} Punkte, jeden so genau du kannst. Punkt {point} "
+        "ist der erste.",
+        "tutorial.praise": "Gut gemacht.",
+        "tutorial.recorded": "Aufgenommen, {error:.1f} mm vom Punkt.",
+        "tutorial.touched": "Punkt {label}: {error:.1f} mm daneben. Berühre jetzt Punkt {point}.",
+        "tutorial.head is gone": "Das Tutorial ist zu Ende: Ein anderer Kopf ist in Gebrauch.",
+        "tutorial is open": "{trainee} macht gerade das Tutorial: Warte, bis es fertig ist, oder "
+        "verlasse es im Menü des Simulators.",
+        "tutorial.paused": "Das Tutorial wartet bei Schritt {step} von {steps}.",
+        "tutorial.resume": "Weitermachen",
+        "tutorial.controls": "Steuerung",
+        "tutorial.restart": "Von vorn beginnen",
+        "tutorial.leave": "Tutorial verlassen",
+        "tutorial.skip": "Tutorial überspringen",
+        "tutorial.mm": "{error:.1f} mm",
+        "tutorial-done.title": "Du kannst den Roboter steuern",
+        "tutorial-done.text": "{trainee}, als Nächstes kommt der Probelauf: fünfzehn Punkte zum "
+        "Üben, solange seine Zeit reicht.",
+        "tutorial-done.time": "Zeit",
+        "tutorial-done.first": "Fehler deiner ersten Berührung",
+        "tutorial-done.touches": "Fehler der letzten drei",
+        "tutorial-done.trial-run": "Probelauf beginnen",
+        "tutorial-done.again": "Tutorial wiederholen",
+        "tutorial-done.menu": "Experiment-Menü",
         "settings.title": "Einstellungen",
         "settings.back": "Zurück",
         "settings.waits": "Das lässt sich erst nach dem Ende des Versuchs ändern.",
@@ -451,6 +513,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.guidance.words": "Worte und Pfeil",
         "settings.guidance.arrow": "Pfeil",
         "settings.guidance.none": "Keine",
+        "settings.tutorial": "Tutorial",
+        "settings.tutorial help": "Ob der Probelauf auf das Tutorial wartet. Eine Studie kann das "
+        "selbst festlegen. Die Kursleitung ändert das in der Datei {file}.",
+        "settings.tutorial.required": "Vor dem Probelauf",
+        "settings.tutorial.optional": "Darf entfallen",
+        "settings.tutorial.skipped": "Keines",
         "settings.direction": "Richtung des Werkzeugs",
         "settings.direction help": "Wer bestimmt, wohin das Werkzeug zeigt: der Arm, du oder die "
         "Haut.",
@@ -641,6 +709,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "hint.undo": "Zurücknehmen",
         "hint.fine": "Langsam",
         "hint.best_view": "Beste Ansicht",
+        "hint.turn_view": "Ansicht drehen",
         "hint.camera": "Kamera",
         "hint.front": "Von vorn",
         "hint.menu": "Menü",

@@ -33,6 +33,7 @@ class Step:
         questionnaire: To be answered; "" if none.
         minutes: Duration of a trial run, or minimum of a break; 0 if unlimited.
         guidance: A `Guidance` to the next point; "" for the simulator's setting.
+        tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Step:
     questionnaire: str = ""
     minutes: float = 0.0
     guidance: str = ""
+    tutorial: str = ""
 
     @property
     def sentence(self) -> str:
@@ -106,6 +108,7 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
             TRIAL_RUN,
             minutes=protocol.trial_run_min,
             guidance=protocol.guidance,
+            tutorial=protocol.tutorial,
         )
     is_first = True
     for round_ in range(protocol.repetitions):

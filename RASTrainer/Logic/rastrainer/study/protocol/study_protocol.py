@@ -11,7 +11,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.json_checks import is_identifier
-from rastrainer.protocol import TRIAL_RUN, Guidance, Mode
+from rastrainer.protocol import TRIAL_RUN, Guidance, Mode, TutorialRule
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
 
@@ -29,7 +29,7 @@ READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, SCORE_VERSION)
 """A study started with the first continues with the present one; each score holds its own."""
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
-    *("repetitions", "trialRun", "breaks", "questionnaires", "scoring", "guidance"),
+    *("repetitions", "trialRun", "breaks", "questionnaires", "scoring", "guidance", "tutorial"),
 )
 
 
@@ -61,6 +61,7 @@ class StudyProtocol:
         score_version: Version of the score that the study was planned with.
         pass_mark: Score that passes; None where the protocol sets none and the default holds.
         guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
+        tutorial: A `TutorialRule`; "" leaves it to the simulator's setting.
     """
 
     name: str
@@ -78,11 +79,13 @@ class StudyProtocol:
     score_version: str = SCORE_VERSION
     pass_mark: float | None = None
     guidance: str = ""
+    tutorial: str = ""
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
         mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
         guidance = {"guidance": self.guidance} if self.guidance else {}
+        tutorial = {"tutorial": self.tutorial} if self.tutorial else {}
         return {
             "formatVersion": FORMAT_VERSION,
             "name": self.name,
@@ -91,6 +94,7 @@ class StudyProtocol:
             "modeOrder": self.mode_order,
             "tasks": list(self.tasks),
             **guidance,
+            **tutorial,
             "taskOrder": self.task_order,
             "repetitions": self.repetitions,
             "trialRun": {"minutes": self.trial_run_min},
@@ -176,6 +180,9 @@ def _protocol(fields: Fields) -> StudyProtocol:
         pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
         guidance=fields.one_of("guidance", tuple(choice.value for choice in Guidance))
         if "guidance" in fields.names()
+        else "",
+        tutorial=fields.one_of("tutorial", tuple(rule.value for rule in TutorialRule))
+        if "tutorial" in fields.names()
         else "",
     )
     if len(modes) * len(tasks) * protocol.repetitions > MOST_STEPS:

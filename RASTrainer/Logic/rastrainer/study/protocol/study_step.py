@@ -31,6 +31,7 @@ class StudyStep:
         over: Minutes elapsed when sent; not compared, since a step is the same whenever it is sent.
         guidance: A `Guidance` to the next point; "" for the simulator's setting.
         procedure: To be carried out after the registration; "" for the touches alone.
+        tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
     """
 
     trainee: str
@@ -44,6 +45,7 @@ class StudyStep:
     over: float = field(default=0.0, compare=False)
     guidance: str = ""
     procedure: str = ""
+    tutorial: str = ""
 
     @classmethod
     def of(cls, trainee: str, progress: Progress, now: datetime) -> StudyStep:
@@ -62,6 +64,7 @@ class StudyStep:
             minutes=step.minutes,
             over=min(progress.minutes_over(now), step.minutes),
             guidance=step.guidance,
+            tutorial=step.tutorial,
         )
 
     @classmethod

@@ -1,0 +1,97 @@
+"""The menu over the tutorial, which waits meanwhile, and what comes after it."""
+
+from __future__ import annotations
+
+from rastrainer.protocol import TRIAL_RUN, TutorialRule
+from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.introduction import ControlsPage
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.obstacles import obstacle, tutorial_rule
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.net.views.screen import Fact, Menu
+from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+
+
+class TutorialPage(SessionPage):
+    """Continues the tutorial, begins it anew or leaves it."""
+
+    name = "tutorial"
+
+    def menu(self) -> Menu:
+        """Return what one can do with the tutorial."""
+        tutorial = self.session.tutorial
+        step, steps = (1, 1) if tutorial is None else tutorial.place
+        may_skip = tutorial_rule(self.session) is not TutorialRule.REQUIRED
+        leave = self.say("tutorial.skip" if may_skip else "tutorial.leave")
+        return Menu(
+            self.name,
+            self.say("tutorial.title"),
+            (self.say("tutorial.paused", step=step, steps=steps),),
+            items=(
+                self.button("resume"),
+                self.button("controls"),
+                self.button("restart"),
+                self.button("leave", leave),
+            ),
+        )
+
+    def accept(self, item: str) -> None:
+        """Do what was chosen."""
+        session = self.session
+        if item == "resume":
+            self.back()
+        elif item == "controls":
+            session.pages.open(ControlsPage(session))
+        elif item == "restart":
+            session.begin_tutorial()
+        else:
+            session.end_tutorial()
+            session.pages.show_start()
+            session.pages.open(ExperimentPage(session))
+
+    def pressed(self, control: ControlName) -> bool:
+        """The control that pauses also resumes."""
+        if control is ControlName.PAUSE:
+            self.back()
+        return control is ControlName.PAUSE
+
+
+class TutorialDonePage(SessionPage):
+    """Says how exact the touches were, and leads to the trial run."""
+
+    name = "tutorial-done"
+
+    def __init__(self, session: TrainingSession, outcome: TutorialOutcome) -> None:
+        super().__init__(session)
+        self._outcome = outcome
+
+    def menu(self) -> Menu:
+        """Return the figures and what comes next."""
+        outcome = self._outcome
+        touches = ", ".join(self.say("tutorial.mm", error=error) for error in outcome.errors_mm)
+        reason = obstacle(self.session, TRIAL_RUN)
+        trial_run = self.button("trial-run", is_enabled=not reason, help=reason)
+        return Menu(
+            self.name,
+            self.say("tutorial-done.title"),
+            (self.say("tutorial-done.text", trainee=outcome.trainee),),
+            (
+                Fact(self.say("tutorial-done.time"), self.session.duration(outcome.seconds)),
+                Fact(
+                    self.say("tutorial-done.first"),
+                    self.say("tutorial.mm", error=outcome.first_error_mm),
+                ),
+                Fact(self.say("tutorial-done.touches"), touches),
+            ),
+            items=(trial_run, self.button("again"), self.button("menu")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Begin the trial run, do the tutorial again, or go to the menu."""
+        if item == "trial-run":
+            self.session.start_task(TRIAL_RUN)
+        elif item == "again":
+            self.session.begin_tutorial()
+        else:
+            self.back()

@@ -1,0 +1,245 @@
+"""What the trainee reads during the tutorial, and what the controls do in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rastrainer_simulator.flow.arm_screen import ArmScreen
+from rastrainer_simulator.flow.homing import Homing
+from rastrainer_simulator.flow.pages.errors import error_arrow, error_tone
+from rastrainer_simulator.flow.pages.tutorial import TutorialPage
+from rastrainer_simulator.flow.path_arc import in_m
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.tutorial.steps import TutorialObservation, TutorialStep
+from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.net.views.feedback_event import FeedbackEvent, feedback_event
+from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, ScreenMessage, Tone
+from rastrainer_simulator.record.tutorial_outcome import GUIDED_TOUCHES
+from rastrainer_simulator.state import SimulationState, TouchStage
+from rastrainer_simulator.training.training import TrainingReply
+from rastrainer_simulator.vectors import Vector
+
+STEP_MM, STEP_DEG = 5, 5
+"""How much of a step is done is shown in such steps: a running figure cannot be read."""
+_CONTROLS: Mapping[TutorialStep, tuple[ControlName, ...]] = {
+    TutorialStep.RIGHT: (ControlName.MOVE_RIGHT,),
+    TutorialStep.LEFT: (ControlName.MOVE_LEFT,),
+    TutorialStep.FORWARD: (ControlName.MOVE_FORWARD,),
+    TutorialStep.BACK: (ControlName.MOVE_BACK,),
+    TutorialStep.UP: (ControlName.MOVE_UP,),
+    TutorialStep.DOWN: (ControlName.MOVE_DOWN,),
+    TutorialStep.SLOW: (ControlName.FINE,),
+    TutorialStep.TURN_VIEW: (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT),
+    TutorialStep.LOOK_AROUND: (ControlName.MOVE_FORWARD,),
+    TutorialStep.BEST_VIEW: (ControlName.BEST_VIEW,),
+    TutorialStep.LOWER: (ControlName.FINE, ControlName.BEST_VIEW),
+    TutorialStep.TOUCH: (ControlName.TOUCH,),
+    TutorialStep.UNDO: (ControlName.UNDO,),
+    TutorialStep.PAUSE: (ControlName.MENU,),
+    TutorialStep.GUIDED: (
+        ControlName.TOUCH,
+        ControlName.UNDO,
+        ControlName.FINE,
+        ControlName.BEST_VIEW,
+    ),
+}
+"""The controls of each step; its sentence names the first, or the first two as a pair."""
+_FREE = (TutorialStep.SLOW, TutorialStep.LOWER, TutorialStep.GUIDED)
+"""Steps in which the tip may go anywhere: all that moves it is among the hints."""
+_MM, _DEG = "tutorial.done mm", "tutorial.done degrees"
+_AMOUNTS: Mapping[TutorialStep, str] = {
+    **dict.fromkeys(list(TutorialStep)[:7], _MM),
+    TutorialStep.TURN_VIEW: _DEG,
+    TutorialStep.LOOK_AROUND: _DEG,
+    TutorialStep.GUIDED: "tutorial.done points",
+}
+"""Key of what tells how much of a step is done."""
+_HEARD_ANYWAY = (TutorialStep.TOUCH, TutorialStep.UNDO, TutorialStep.GUIDED)
+
+
+class TutorialScreen(ArmScreen):
+    """The present step of the session's tutorial, what it needs, and its controls."""
+
+    def __init__(self, session: TrainingSession) -> None:
+        super().__init__(session)
+        self._seen: Tutorial | None = None
+        self._homing: Homing | None = None
+        self._points: dict[str, Vector] = {}
+        self._was_refused = False
+        self._has_paused = False
+
+    @property
+    def _tutorial(self) -> Tutorial:
+        tutorial = self._session.tutorial
+        assert tutorial is not None, "The screen is shown while there is a tutorial."
+        return tutorial
+
+    @property
+    def _state(self) -> SimulationState:
+        return self._tutorial.practice.shown(self._session.state)
+
+    @property
+    def _is_homing(self) -> bool:
+        return self._homing is not None and not self._homing.is_done
+
+    @property
+    def has_arrow(self) -> bool:
+        """Whether a view points to the next point."""
+        return self._tutorial.practice.has_points
+
+    def advance(self, dt: float) -> None:
+        """Advance by `dt` seconds: bring the arm to its place, then look what is done."""
+        session, tutorial = self._session, self._tutorial
+        if tutorial is not self._seen:
+            self._begin(tutorial)
+        if self._homing is not None and self._is_homing:
+            self._homing.advance(dt)
+            return
+        tutorial.use(session.learned_device)
+        done = tutorial.advance(dt, self._observation())
+        if done is not None:
+            self._was_refused = self._has_paused = False
+            if done not in _HEARD_ANYWAY:
+                session.happened(FeedbackEvent.STEP)
+
+    def pressed(self, control: ControlName) -> None:
+        """Do what a control is for; what has not been learned yet does nothing."""
+        session, tutorial = self._session, self._tutorial
+        if control is ControlName.CAMERA:
+            self._change_camera()
+        elif control is ControlName.BEST_VIEW and tutorial.practice.has_points:
+            session.view.want_best()
+        elif control is ControlName.TOUCH and tutorial.may_touch:
+            self._take(tutorial.touch(session.state))
+        elif control is ControlName.UNDO and tutorial.may_undo:
+            self._take(tutorial.practice.undo(session.state))
+        elif control in (ControlName.MENU, ControlName.PAUSE):
+            self.open_menu()
+
+    def open_menu(self) -> None:
+        """Open the tutorial's menu."""
+        self._has_paused = self._tutorial.step is TutorialStep.PAUSE
+        self._session.pages.show(TutorialPage(self._session))
+
+    def instruction(self) -> ScreenMessage:
+        """Return what to do now."""
+        session, tutorial = self._session, self._tutorial
+        say = session.texts.say
+        if self._is_homing:
+            return ScreenMessage(say("tutorial.homing"))
+        if self._was_refused:
+            sentence = session.texts.again(tutorial.practice.state.instruction)
+            return ScreenMessage(sentence, Tone.WARNING)
+        if tutorial.praised is not None:
+            return self._praise(tutorial.praised)
+        if tutorial.may_touch and self._state.touch is TouchStage.ON_SKIN:
+            key = session.label(ControlName.TOUCH)
+            return ScreenMessage(say("work.on skin", touch=key), Tone.GOOD)
+        practice, errors = tutorial.practice.state, tutorial.practice.errors_mm()
+        if tutorial.step is TutorialStep.GUIDED and errors:
+            touched, point = practice.touches[-1].label, practice.next_point
+            text = say("tutorial.touched", label=touched, error=errors[-1], point=point)
+            return ScreenMessage(text, _banner(errors[-1]))
+        return ScreenMessage(self._sentence(tutorial.step))
+
+    def status(self) -> tuple[str, ...]:
+        """Return the short facts at the edge."""
+        tutorial, say = self._tutorial, self._session.texts.say
+        step, steps = tutorial.place
+        facts: list[str] = [say("tutorial.title"), say("tutorial.place", step=step, steps=steps)]
+        key = _AMOUNTS.get(tutorial.step) if tutorial.step is not None else None
+        if key is not None and tutorial.praised is None:
+            done, goal = tutorial.amount
+            coarse = {_MM: STEP_MM, _DEG: STEP_DEG}.get(key, 1)
+            facts.append(say(key, done=coarse * int(done / coarse), goal=int(goal)))
+        label = tutorial.practice.state.next_point
+        if tutorial.may_touch and label is not None:
+            facts.append(self._toward(label, self._points[label]))
+        return tuple(facts)
+
+    def hints(self) -> tuple[Hint, ...]:
+        """Return the controls of the step, and the one for the menu."""
+        session, step = self._session, self._tutorial.step
+        say = session.texts.say
+        if step is None:
+            return ()
+        controls = _CONTROLS[step]
+        if step is TutorialStep.TURN_VIEW:
+            hints = [Hint(session.pair_label(*controls), say("hint.turn_view"))]
+        else:
+            named = [name for name in controls if self._is_there(name)]
+            hints = [Hint(session.label(name), say(f"control.{name.value}")) for name in named]
+        moving = self._movement_hints() if step in _FREE else ()
+        if step is not TutorialStep.PAUSE:
+            hints.append(Hint(session.label(ControlName.MENU), say("hint.menu")))
+        return (*moving, *hints)
+
+    def errors(self) -> tuple[ErrorArrow, ...]:
+        """Return the errors of the guided touches, as a result shows them."""
+        practice = self._tutorial.practice
+        if self._tutorial.step not in (TutorialStep.GUIDED, None):
+            return ()
+        return tuple(error_arrow(self._points[t.label], t.position) for t in practice.state.touches)
+
+    def _begin(self, tutorial: Tutorial) -> None:
+        self._seen, self._homing = tutorial, Homing(self._session)
+        self._points = {label: in_m(point) for label, point in tutorial.fiducials.items()}
+        self._was_refused = self._has_paused = False
+
+    def _observation(self) -> TutorialObservation:
+        session, state = self._session, self._state
+        practice = self._tutorial.practice.state
+        return TutorialObservation(
+            tip=session.tip,
+            axes=self._axes(),
+            is_slow=session.held.fine,
+            orbit=session.view.control.orbit,
+            yaw_deg=session.view.yaw_deg,
+            has_best_view=session.view.has_gone_to(practice.next_point),
+            touch=state.touch,
+            touched=len(practice.touches),
+            undone=practice.undone,
+            has_paused=self._has_paused,
+        )
+
+    def _take(self, reply: TrainingReply) -> None:
+        """Let what came of a touch be heard, and read if it was refused."""
+        session = self._session
+        self._was_refused = not reply.ok
+        for event in reply.events:
+            felt = feedback_event(event, self._state.touch)
+            if felt is not None:
+                session.happened(felt)
+
+    def _praise(self, step: TutorialStep) -> ScreenMessage:
+        say = self._session.texts.say
+        errors = self._tutorial.practice.errors_mm()
+        if step in (TutorialStep.TOUCH, TutorialStep.GUIDED) and errors:
+            return ScreenMessage(say("tutorial.recorded", error=errors[-1]), _banner(errors[-1]))
+        return ScreenMessage(say("tutorial.praise"), Tone.GOOD)
+
+    def _sentence(self, step: TutorialStep | None) -> str:
+        """Return what to do in a step, as it is done with the device in use."""
+        if step is None:
+            return ""
+        session = self._session
+        controls = _CONTROLS[step]
+        is_pair = step is TutorialStep.TURN_VIEW
+        name = session.pair_label(*controls) if is_pair else session.label(controls[0])
+        key = f"tutorial.{step.value}"
+        for variant in (session.learned_device.value, session.preferences.axes):
+            if f"{key}.{variant}" in session.texts:
+                key = f"{key}.{variant}"
+        point = self._tutorial.practice.state.next_point
+        return session.texts.say(key, control=name, point=point, count=GUIDED_TOUCHES)
+
+    def _is_there(self, control: ControlName) -> bool:
+        """Return whether the device in use has a control."""
+        has_view = TutorialStep.BEST_VIEW in self._tutorial.steps
+        return control is not ControlName.BEST_VIEW or has_view
+
+
+def _banner(error_mm: float) -> Tone:
+    """Return the tone of a sentence about a touch: one that could be better is no alarm."""
+    return Tone.GOOD if error_tone(error_mm) is Tone.GOOD else Tone.WARNING

@@ -1,0 +1,367 @@
+"""The tutorial in the flow: by keyboard and gamepad, what it gates, what it keeps, what ends it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.arm import start_tip
+from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
+from rastrainer_simulator.flow.tutorial.steps import TutorialStep
+from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+from Testing.tutorial_player import TutorialPlayer
+
+FIRST = "The tutorial comes first, with the device that you use now: it takes two minutes."
+STUDY_RUN = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0)
+LEARNED = TutorialOutcome("P07", "keyboard", "desktop", 112.0, 2.3, (1.2, 0.8, 0.6))
+
+
+class FlowLearner:
+    """A trainee of the flow, at the tutorial."""
+
+    def __init__(self, trainee):
+        self.trainee = trainee
+        self.hands, self.until = trainee.hands, trainee.until
+
+    @property
+    def screen(self):
+        return self.trainee.presenter.screen
+
+    def turn_view(self):
+        self.hands.hold("view_right", True)
+        self.trainee.step(60)
+        self.hands.hold("view_right", False)
+        self.trainee.step()
+
+    def lower(self):
+        self.trainee.lower_onto(*self._next())
+
+    def touch_next(self):
+        self.trainee.touch(*self._next())
+
+    def resume(self):
+        self.trainee.choose("resume")
+        self.trainee.until_menu(None)
+
+    def _next(self):
+        practice = self.trainee.presenter._session.tutorial.practice
+        truth = practice.truth
+        point = truth.in_world(truth.fiducials[practice.state.next_point]) / MM_PER_M
+        return point, truth.in_world(truth.target) / MM_PER_M
+
+
+def session_of(trainee):
+    return trainee.presenter._session
+
+
+def go_to_experiment(trainee, rule="required"):
+    """Go from the start menu to that of the tasks, as P07."""
+    session = session_of(trainee)
+    session.prefer(replace(session.preferences, tutorial=rule))
+    session.trainee = "P07"
+    trainee.choose("train")
+    for menu, item in (("introduction", "skip"), ("controls", "next")):
+        trainee.until_menu(menu)
+        trainee.choose(item)
+    trainee.until_menu("experiment")
+
+
+@pytest.fixture
+def menu(trainee):
+    """The trainee at the experiment menu, where the tutorial is required."""
+    go_to_experiment(trainee)
+    return trainee
+
+
+@pytest.fixture
+def learner(menu):
+    """The trainee at the first step of the tutorial."""
+    menu.choose("tutorial")
+    menu.until_menu(None)
+    menu.until(lambda: status(menu)[1:2] == ("Step 1 of 14",), "the first step")
+    return menu
+
+
+def status(trainee):
+    return trainee.presenter.screen.status
+
+
+def instruction(trainee):
+    return trainee.presenter.screen.instruction.text
+
+
+def go_to_step(trainee, step):
+    """Have the steps before one counted as done."""
+    tutorial = session_of(trainee).tutorial
+    tutorial._done = list(tutorial.steps[: tutorial.steps.index(step)])
+    tutorial._measure = None
+    trainee.step(30)
+
+
+@pytest.mark.parametrize(
+    ("who", "device", "says"),
+    [
+        ("trainee", SourceKind.KEYBOARD, ("30 mm to the right: D.", "the view by 20°: Q / E, or")),
+        ("pilot", SourceKind.GAMEPAD, ("the right: Left stick right.", "20°: D-pad left / right.")),
+    ],
+)
+def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, request, outside):
+    trainee = request.getfixturevalue(who)
+    go_to_experiment(trainee)
+    assert (trainee.menu.focus, trainee.item("trial-run").help) == ("tutorial", FIRST)
+    assert not trainee.item("trial-run").is_enabled
+    trainee.choose("tutorial")
+    trainee.until_menu(None)
+    phases = set()
+    stop = trainee.loop.subscribe(lambda result: phases.add(result.state.training.phase.value))
+    player = TutorialPlayer(FlowLearner(trainee), device)
+    player.play()
+    stop()
+    assert phases == {"idle"}, "the simulation knows of no trial"
+    assert list(outside.services.records.glob("*.journal")) == []
+    read = dict(player.read)
+    assert says[0] in read[TutorialStep.RIGHT]
+    assert says[1] in read[TutorialStep.TURN_VIEW]
+    assert trainee.menu.name == "tutorial-done"
+    told = FinishedTutorials(outside.services.records).latest("P07")
+    assert (told.device, told.mode, told.trainee) == (device.value, "desktop", "P07")
+    assert 5.0 < told.seconds < 60.0
+    assert set(told.step_seconds) == {step.value for step, _ in player.read}
+    assert max(told.first_error_mm, *told.errors_mm) < 3.0
+    facts = {fact.label: fact.value for fact in trainee.menu.facts}
+    assert facts["Errors of the last three"] == ", ".join(f"{e:.1f} mm" for e in told.errors_mm)
+    trainee.choose("trial-run")
+    trainee.until_menu(None)
+    assert trainee.state.training.task == "trial-run"
+    trainee.submit("Abort")
+    trainee.until_menu("experiment")
+    assert trainee.item("tutorial").value == "done"
+    trainee.close()
+    trainee.loop.stop()
+    (path,) = outside.services.records.glob("*.journal")
+    (noted,) = read_journal(path).of_kind("tutorial")
+    assert (noted["device"], noted["errorsMm"]) == (device.value, list(told.errors_mm))
+
+
+def test_a_step_counts_only_the_movement_it_asks_for(learner):
+    learner.hands.push(-1.0, 0.0, 1.0, False)
+    learner.step(40)
+    learner.hands.push(0.0, 0.0, 0.0, False)
+    learner.step(10)
+    assert status(learner)[1:] == ("Step 1 of 14", "0 of 30 mm")
+    learner.hands.push(1.0, 0.0, 0.0, True)
+    learner.until(lambda: status(learner)[2:] == ("15 of 30 mm",), "half of it")
+    learner.until(lambda: instruction(learner) == "Well done.", "the praise")
+    assert learner.watcher.kinds[-1] == "step"
+    learner.hands.push(0.0, 0.0, 0.0, False)
+    learner.until(lambda: "left: A" in instruction(learner), "the next step")
+
+
+def test_what_has_not_been_learned_yet_does_nothing(learner):
+    learner.tap("touch", "undo", "best_view")
+    learner.step(10)
+    assert status(learner)[1] == "Step 1 of 14"
+    assert learner.presenter.shown.latest.training.next_point is None
+    assert not session_of(learner).view.control.is_moved
+    assert "error" not in learner.watcher.kinds
+
+
+def test_a_touch_that_does_not_count_says_why(learner):
+    go_to_step(learner, TutorialStep.LOWER)
+    learner.tap("touch")
+    learner.until(lambda: "Too far from point 1" in instruction(learner), "the sentence")
+    assert learner.watcher.kinds[-1] == "error"
+    assert status(learner)[1] == "Step 10 of 14"
+    assert "Point 1: " in status(learner)[-1]
+
+
+def test_the_view_goes_nowhere_by_itself_before_the_guided_touches(learner):
+    control = session_of(learner).view.control
+    go_to_step(learner, TutorialStep.LOWER)
+    learner.step(200)
+    assert not control.is_moved
+    go_to_step(learner, TutorialStep.GUIDED)
+    learner.until(lambda: control.is_moved, "the best view")
+
+
+def test_a_guided_touch_shows_its_error_on_the_head(learner):
+    player = FlowLearner(learner)
+    go_to_step(learner, TutorialStep.GUIDED)
+    player.touch_next()
+    learner.until(lambda: "mm off. Now touch point 3." in instruction(learner), "its error")
+    (arrow,) = learner.presenter.screen.errors
+    error_mm = MM_PER_M * np.linalg.norm(np.subtract(arrow.end, arrow.begin)) / 5.0
+    assert f"Point 2: {error_mm:.1f} mm off" in instruction(learner)
+    learner.tap("undo")
+    learner.until(lambda: learner.presenter.screen.errors == (), "the undo")
+    assert learner.watcher.kinds[-1] == "undo"
+
+
+def test_its_menu_lets_it_wait_begin_again_or_be_left(learner):
+    go_to_step(learner, TutorialStep.UP)
+    learner.tap("menu")
+    learner.until_menu("tutorial")
+    assert learner.menu.paragraphs == ("The tutorial waits at step 5 of 14.",)
+    assert learner.item("leave").label == "Leave the tutorial"
+    learner.tap("pause")
+    learner.until_menu(None)
+    assert status(learner)[1] == "Step 5 of 14"
+    learner.tap("pause")
+    learner.until_menu("tutorial")
+    learner.choose("restart")
+    learner.until_menu(None)
+    learner.until(lambda: status(learner)[1:2] == ("Step 1 of 14",), "the first step")
+    learner.tap("menu")
+    learner.until_menu("tutorial")
+    learner.choose("leave")
+    learner.until_menu("experiment")
+    assert not learner.item("trial-run").is_enabled
+    assert session_of(learner).tutorial is None
+
+
+@pytest.mark.parametrize(("rule", "is_listed"), [("optional", True), ("skipped", False)])
+def test_where_the_setting_says_so_the_trial_run_waits_for_nothing(trainee, rule, is_listed):
+    go_to_experiment(trainee, rule)
+    names = [item.name for item in trainee.menu.items]
+    assert ("tutorial" in names) is is_listed
+    assert trainee.item("trial-run").is_enabled
+    if is_listed:
+        trainee.choose("tutorial")
+        trainee.until_menu(None)
+        trainee.tap("menu")
+        trainee.until_menu("tutorial")
+        assert trainee.item("leave").label == "Skip the tutorial"
+
+
+def test_a_study_decides_by_its_protocol(menu, outside):
+    def offered(step):
+        outside.services.study.take(step)
+        menu.step(20)
+        return {item.name: item.is_enabled for item in menu.menu.items if "t" in item.name}
+
+    required = offered(replace(STUDY_RUN, tutorial="required"))
+    assert (required["tutorial"], required["trial-run"]) == (True, False)
+    skipped = offered(replace(STUDY_RUN, tutorial="skipped"))
+    assert "tutorial" not in skipped
+    assert skipped["trial-run"]
+    by_setting = offered(STUDY_RUN)
+    assert (by_setting["tutorial"], by_setting["trial-run"]) == (True, False)
+    other = offered(StudyStep("P07", "trial", 3, 9, "task-2", "desktop"))
+    assert (other["tutorial"], other["task-2"]) == (False, True)
+
+
+def test_in_another_mode_another_device_is_to_be_learned(menu):
+    session_of(menu).tutorials._note(LEARNED)
+    menu.step(20)
+    assert menu.item("trial-run").is_enabled
+    session_of(menu).mode = "hmd"
+    menu.step(20)
+    assert menu.item("trial-run").help == FIRST
+
+
+def test_slicer_has_the_tutorial_opened_before_the_trial_run(trainee):
+    session = session_of(trainee)
+    presenter = trainee.presenter
+    assert presenter.start_tutorial("P07", "desktop").data == {"isNeeded": False}
+    session.prefer(replace(session.preferences, tutorial="required"))
+    assert presenter.start_tutorial("P07", "desktop").data == {"isNeeded": True}
+    trainee.until_menu(None)
+    assert status(trainee)[0] == "Tutorial"
+    assert presenter.start_tutorial("P07", "desktop").data == {"isNeeded": True}
+    other = presenter.start_tutorial("P08", "desktop")
+    assert (other.ok, other.message[:3]) == (False, "P07")
+    session.end_tutorial()
+    session.tutorials._note(LEARNED)
+    assert presenter.start_tutorial("P07", "desktop").data == {"isNeeded": False}
+    trainee.start("task-1")
+    trainee.until(lambda: instruction(trainee) == "P07, touch point 1.", "the trial")
+    refused = presenter.start_tutorial("P08", "desktop")
+    assert "P07 is still at Task 1" in refused.message
+
+
+def test_a_trial_that_slicer_starts_ends_it(learner):
+    go_to_step(learner, TutorialStep.LOWER)
+    learner.start("task-1", "P08")
+    learner.until(lambda: instruction(learner) == "P08, touch point 1.", "the trial")
+    assert session_of(learner).tutorial is None
+    assert learner.presenter.shown.latest.training.trial_id == learner.state.training.trial_id
+
+
+def test_another_head_ends_it(learner, setup):
+    session_of(learner).tutorial.setup = replace(setup)
+    learner.until_menu("start")
+    assert [each.text for each in learner.presenter.screen.warnings] == [
+        "The tutorial has ended: another head is in use."
+    ]
+
+
+def test_the_arm_is_first_brought_to_where_trials_start(learner, setup):
+    start = np.array(start_tip(setup.scenario, setup.settings.start_height))
+    learner.submit("MoveTipTo", positionMm=(MM_PER_M * start + [0, 150, 100]).tolist())
+    learner.until(lambda: np.linalg.norm(learner.tip - start) > 0.15, "the arm elsewhere")
+    session_of(learner).begin_tutorial()
+    learner.step(20)
+    assert instruction(learner) == "The robot moves to where you begin."
+    learner.until(lambda: "to the right" in instruction(learner), "the first step")
+    assert np.linalg.norm(learner.tip - start) < 0.02
+
+
+def test_nobody_works_at_it_unseen(learner):
+    learner.presenter.on_visibility(1, False)
+    learner.until_menu("tutorial")
+    assert learner.presenter.screen.warnings[0].text == "Paused: the trial was out of sight."
+    learner.choose("resume")
+    learner.until_menu(None)
+    learner.step(20)
+    assert learner.presenter.screen.warnings == ()
+
+
+def test_a_finished_tutorial_is_known_again_and_by_device(tmp_path):
+    tutorials = FinishedTutorials(tmp_path / "records")
+    tutorials.keep(LEARNED)
+    tutorials.keep(replace(LEARNED, trainee="P08", device="gamepad"))
+    again = FinishedTutorials(tmp_path / "records")
+    assert again.latest("P07") == LEARNED
+    known = [
+        (name, device.value)
+        for name in ("P07", "P08", "P09")
+        for device in SourceKind
+        if again.has_done(name, device)
+    ]
+    assert known == [("P07", "keyboard"), ("P08", "gamepad"), ("P08", "keyboard")]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"formatVersion": 9},
+        {"device": "nose"},
+        {"errorsMm": [1.0]},
+        {"seconds": -1},
+        {"trainee": ""},
+        {"stepSeconds": {"right": "long"}},
+    ],
+    ids=lambda change: next(iter(change)),
+)
+def test_a_file_that_holds_no_tutorial_counts_for_nothing(tmp_path, change):
+    values = {"utc": "now", **LEARNED.to_json(), **change}
+    (tmp_path / "1.tutorial").write_text(json.dumps(values))
+    (tmp_path / "2.tutorial").write_text("[")
+    (tmp_path / "3.tutorial").mkdir()
+    assert FinishedTutorials(tmp_path).latest(values["trainee"]) is None
+
+
+def test_a_tutorial_that_cannot_be_written_counts_until_the_simulator_ends(learner, outside):
+    outside.services.records.write_text("in the way")
+    session = session_of(learner)
+    session.tutorial._done = list(session.tutorial.steps)
+    learner.until_menu("tutorial-done")
+    assert "cannot be made" in learner.presenter.screen.warnings[0].text
+    assert learner.item("trial-run").is_enabled

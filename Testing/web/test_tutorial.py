@@ -1,0 +1,193 @@
+"""The tutorial on a touch screen and in a headset, from the ID to the trial run."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+
+import pytest
+from playwright.sync_api import Page
+
+from rastrainer_simulator.flow.tutorial.steps import TutorialStep
+from rastrainer_simulator.input.inputs import SourceKind
+from Testing.end_to_end.stream_trainee import StreamTrainee
+from Testing.end_to_end.window_process import wait_until
+from Testing.tutorial_player import TutorialPlayer
+from Testing.web.chromium import SMALL, enter_headset, open_page
+from Testing.web.hands import Controllers
+from Testing.web.place import WITHOUT_GRAPHICS, Place, Trainee
+from Testing.web.tapping_trainee import PHONE, TappingTrainee
+
+REQUIRED = {"order": "fixed", "tutorial": "required"}
+
+
+class WebLearner:
+    """Somebody at a view of the simulator, at the tutorial."""
+
+    def __init__(self, trainee, page):
+        self.trainee, self.page = trainee, page
+        self.hands, self.until = trainee.hands, trainee.until
+
+    @property
+    def screen(self):
+        return self.trainee.view.screen
+
+    def lower(self):
+        label = self.trainee.view.state["next"]
+        while self.trainee.view.state["touch"] != "on skin":
+            self.trainee.approach(label, 0.02)
+            self.trainee.lower_onto(label)
+
+    def touch_next(self):
+        trainee, label = self.trainee, self.trainee.view.state["next"]
+
+        def is_done():
+            return trainee.view.state["next"] != label
+
+        while not is_done():
+            trainee.approach(label, 0.02)
+            if trainee.lower_onto(label):
+                trainee.hands.tap("touch")
+                with suppress(AssertionError):
+                    wait_until(is_done, f"touch {label}", trainee.again_s)
+
+    def resume(self):
+        self.trainee.choose("resume")
+        self.trainee.until_menu(None)
+
+
+class PhoneLearner(WebLearner):
+    """Turns the view by a finger."""
+
+    def turn_view(self):
+        send = self.page.context.new_cdp_session(self.page).send
+        for kind, x in (("touchStart", 60), ("touchMove", 200), ("touchMove", 330)):
+            points = [{"id": 7, "x": x, "y": 300}]
+            send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+
+class HeadsetLearner(WebLearner):
+    """Looks to the side, and pushes the stick."""
+
+    def turn_view(self):
+        half = math.radians(30.0) / 2.0
+        self._look(half)
+        self.hands.push(0.0, 0.4, 0.0)
+        self.until(lambda: "Well done" in self.screen.instruction.text, "the turn of the head")
+        self.hands.push(0.0, 0.0, 0.0)
+        self._look(0.0)
+
+    def _look(self, half):
+        self.page.evaluate(
+            "async ([y, w]) => { device.quaternion.set(0, y, 0, w); await frames_(3); }",
+            [math.sin(half), math.cos(half)],
+        )
+
+
+class ThumbTrainee(TappingTrainee):
+    """Steers by the thumbs, too."""
+
+    steer_to = StreamTrainee.steer_to
+    press_on = StreamTrainee.press_on
+    lower_onto = StreamTrainee.lower_onto
+
+
+@dataclass(frozen=True)
+class Way:
+    """Who plays, on what."""
+
+    name: str
+    device: SourceKind
+    make_trainee: Callable[[Place, Page], Trainee]
+    learner: type[WebLearner]
+    headset: str = ""
+    speed: str = "1"
+
+
+DRAW_NOTHING = """(() => {
+  const { renderer, scene } = page.stage;
+  const { render } = renderer;
+  const empty = new scene.constructor();
+  renderer.render = (_scene, camera) => render.call(renderer, empty, camera);
+})()"""
+"""A picture takes a processor long, and nothing here depends on it."""
+SLOW = "0.5"
+"""Simulated seconds in a second, for hands on a busy machine."""
+BY_HANDS = pytest.mark.soak
+WAYS = (
+    Way("a touch screen", SourceKind.TOUCH_SCREEN, TappingTrainee, PhoneLearner),
+    Way(
+        "a headset",
+        SourceKind.XR,
+        lambda place, page: place.carried_trainee(Controllers(page)),
+        HeadsetLearner,
+        "metaQuest2",
+    ),
+    Way("thumbs alone", SourceKind.TOUCH_SCREEN, ThumbTrainee, PhoneLearner, speed=SLOW),
+    Way(
+        "controllers alone",
+        SourceKind.XR,
+        lambda place, page: place.trainee(Controllers(page)),
+        HeadsetLearner,
+        "metaQuest2",
+        SLOW,
+    ),
+)
+SAYS = {
+    SourceKind.TOUCH_SCREEN: (TutorialStep.TURN_VIEW, "drag a finger"),
+    SourceKind.XR: (TutorialStep.LOOK_AROUND, "Turn your head"),
+}
+
+
+def by_name(way):
+    marks = BY_HANDS if way.name.endswith("alone") else ()
+    return pytest.param(way, id=way.name, marks=marks)
+
+
+@pytest.mark.parametrize("way", [by_name(way) for way in WAYS])
+def test_the_tutorial_is_played_from_the_id_to_the_trial_run_by(way, tmp_path, browser):
+    """Every step is done by the device; the first two have the tip carried to the points."""
+    with Place(tmp_path, "--speed", way.speed, limits=WITHOUT_GRAPHICS, **REQUIRED) as place:
+        has_touch = way.device is SourceKind.TOUCH_SCREEN
+        size = PHONE if has_touch else SMALL
+        page = open_page(
+            browser,
+            place.simulator.url,
+            place.simulator.code,
+            way.headset,
+            size=size,
+            has_touch=has_touch,
+        )
+        if way.headset:
+            enter_headset(page)
+        page.evaluate(DRAW_NOTHING)
+        trainee = way.make_trainee(place, page)
+        trainee.go_to_experiment()
+        if has_touch:
+            trainee.write_id()
+        else:
+            trainee.type_id(page)
+        assert not item(trainee, "trial-run").is_enabled
+        trainee.choose("tutorial")
+        trainee.until(lambda: place.view.scene["task"] == "trial-run", "the scene")
+        mode = "hmd" if way.headset else "desktop"
+        player = TutorialPlayer(way.learner(trainee, page), way.device, mode)
+        player.play()
+        step, words = SAYS[way.device]
+        assert words in dict(player.read)[step]
+        (path,) = place.records.glob("*.tutorial")
+        told = json.loads(path.read_text())
+        assert (told["device"], told["mode"]) == (way.device.value, mode)
+        assert max(told["firstErrorMm"], *told["errorsMm"]) < 10.0
+        trainee.until_menu("tutorial-done")
+        assert item(trainee, "trial-run").is_enabled
+        assert list(place.records.glob("*.journal")) == []
+        assert page.problems == []
+
+
+def item(trainee, name):
+    return next(each for each in trainee.menu.items if each.name == name)
