@@ -61,6 +61,16 @@ def test_a_session_leads_from_an_empty_slicer_to_the_next_trial():
     ]
 
 
+def test_while_the_trainee_does_the_tutorial_the_line_says_so_and_how_to_leave_it_out():
+    step = step_of(CHOSEN, isLearning=True)
+    assert step.title == "Start the trial run"
+    assert step.sentence.startswith("T001 does the tutorial first")
+    assert step.sentence.endswith("uncheck Tutorial in the section Training.")
+    led = step_of(CHOSEN, isLearning=True, studyStep=StepKind.TRIAL_RUN, studySentence="Step 1.")
+    assert (led.title, led.sentence[:25]) == ("Start the step", "T001 does the tutorial fi")
+    assert "uncheck" not in led.sentence
+
+
 def test_the_section_of_a_step_is_that_in_which_it_can_be_done():
     assert step_of(OFF, needsSetup=True).section is Section.SETUP
     assert step_of(OFF).section is Section.SIMULATOR

@@ -122,6 +122,22 @@ def test_while_something_is_awaited_the_button_says_for_what(instructor):
         instructor.host.press("nextStepButton")
 
 
+def test_the_trial_run_waits_for_the_tutorial_unless_the_instructor_unchecks_it(instructor):
+    host, simulator = instructor.host, instructor.simulator
+    simulator.responder = lambda name, _arguments: {"isNeeded": name == "StartTutorial"}
+    host.press("createTraineeButton")
+    instructor.wait_for("Start the trial run")
+    host.press("nextStepButton")
+    instructor.wait_until(lambda: "tutorial first" in host.text("nextStepText"), "it says so")
+    names = [name for name, _arguments in simulator.commands]
+    assert ("StartTutorial" in names, "StartTask" in names) == (True, False)
+    host.check("tutorialCheckBox", False)
+    host.press("nextStepButton")
+    instructor.wait_until(
+        lambda: "StartTask" in [name for name, _ in simulator.commands], "the trial run is started"
+    )
+
+
 def test_another_computers_simulator_is_connected_to_by_the_same_button(host):
     host.open()
     host.type("hostLineEdit", "localhost.localdomain")

@@ -100,6 +100,13 @@ def test_the_study_starts_only_what_comes_next(enrolled):
     logic.answer([0] * 16)
     with pytest.raises(InputError, match=r"Not yet: .*trial run with the headset"):
         logic.startTrial("task-1", "desktop")
+    room.needsTutorial = True
+    logic.startStep()
+    logic.startTrial("trial-run", "hmd", isTutorialFirst=False)
+    room.run_until(lambda: len(room.sent("StartTutorial")) == 2)
+    room.run_until(lambda: room.logic.learner == "T001")
+    assert room.sent("StartTask") == [], "within a study, its protocol decides"
+    room.needsTutorial = False
     logic.startStep()
     room.run_until(lambda: room.sent("StartTask"))
     assert room.sent("StartTask") == [{"task": "trial-run", "trainee": "T001", "mode": "hmd"}]

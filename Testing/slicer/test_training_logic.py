@@ -31,6 +31,37 @@ def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):
         room.logic.start("T001", "", "hmd")
 
 
+def test_the_trial_run_waits_for_the_tutorial_where_the_simulator_says_so(room):
+    room.needsTutorial = True
+    room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)
+    room.run_until(lambda: room.answers)
+    assert room.sent("StartTutorial") == [{"trainee": "T001", "mode": "desktop"}]
+    assert room.sent("StartTask") == []
+    assert room.answers[-1].startswith("T001 does the tutorial first")
+    assert room.logic.learner == "T001"
+    room.needsTutorial = False
+    room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)
+    room.run_until(lambda: room.sent("StartTask"))
+    assert room.sent("StartTask") == [{"task": "trial-run", "trainee": "T001", "mode": "desktop"}]
+    room.tell(task="trial-run")
+    room.run_until(lambda: not room.logic.learner)
+
+
+def test_only_the_trial_run_waits_and_only_where_that_is_wanted(room):
+    room.needsTutorial = True
+    room.logic.start("T001", "task-1", "desktop", isTutorialFirst=True)
+    room.logic.start("T001", "trial-run", "desktop")
+    room.run_until(lambda: len(room.sent("StartTask")) == 2)
+    assert room.sent("StartTutorial") == []
+
+
+def test_a_tutorial_that_is_refused_says_why(room):
+    room.refusal = "P07 is doing the tutorial."
+    room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)
+    room.run_until(lambda: room.answers)
+    assert (room.answers, room.sent("StartTask")) == (["P07 is doing the tutorial."], [])
+
+
 def test_the_fiducials_of_a_running_task_are_shown_before_the_first_touch(room, scenario):
     room.tell()
     room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)

@@ -19,6 +19,7 @@ class Room:
 
     def __init__(self, scene, scenario):
         self.scene, self.now, self.refusal = scene, 100.0, None
+        self.needsTutorial = False
         self.simulator = SimulatorDouble(self.answer)
         self.link = Link(scene, headlessKit)
         self.logic = TrainingLogic(scene, self.link, lambda _name: scenario, lambda: self.now)
@@ -33,6 +34,8 @@ class Room:
     def answer(self, name, _arguments):
         if name == "ListTasks":
             return {"scenario": "ball", "title": "Ball", "tasks": []}
+        if name == "StartTutorial" and self.refusal is None:
+            return {"isNeeded": self.needsTutorial}
         return {} if self.refusal is None or name == "Hello" else self.refusal
 
     def tell(self, **state):

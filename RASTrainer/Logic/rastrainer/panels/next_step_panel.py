@@ -144,6 +144,7 @@ class NextStepPanel:
             trainee=self._trainee,
             hasTrainees=self._hasTrainees,
             hasPracticed=self._hasPracticed,
+            isLearning=bool(self._trainee) and session.training.learner == self._trainee,
             taskTitle=session.taskTitle,
             phase=trial.phase,
             touched=trial.touched,

@@ -26,7 +26,12 @@ from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN, Mode, Phase, Proxim
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.training_logic import TrialStatus
-from rastrainer.slicer.settings import MODE, SLICES_FOLLOW_TOOL, SLICES_SHOW_NEXT_POINT
+from rastrainer.slicer.settings import (
+    IS_TUTORIAL_FIRST,
+    MODE,
+    SLICES_FOLLOW_TOOL,
+    SLICES_SHOW_NEXT_POINT,
+)
 from rastrainer.slicer.translation import _
 
 PHASES = {
@@ -58,6 +63,7 @@ class TrainingPanel:
         self._logic = session.training
         modes = [(_("Desktop screen"), Mode.DESKTOP.value), (_("Headset"), Mode.HMD.value)]
         keepChosen(ui.modeComboBox, modes, session.settings, MODE)
+        keepChecked(ui.tutorialCheckBox, session.settings, IS_TUTORIAL_FIRST)
         keepChecked(ui.slicesNextPointCheckBox, session.settings, SLICES_SHOW_NEXT_POINT)
         keepChecked(ui.slicesToolCheckBox, session.settings, SLICES_FOLLOW_TOOL)
         for box in (ui.slicesNextPointCheckBox, ui.slicesToolCheckBox):
@@ -151,7 +157,7 @@ class TrainingPanel:
     def _start(self, task: str) -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
             mode = chosenData(self._ui.modeComboBox)
-            self._session.study.startTrial(task, mode)
+            self._session.study.startTrial(task, mode, self._ui.tutorialCheckBox.checked)
 
     def _isPaused(self) -> bool:
         return self._logic.progress.phase == Phase.PAUSED.value

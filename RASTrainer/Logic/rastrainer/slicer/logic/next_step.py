@@ -10,6 +10,7 @@ from enum import Enum
 
 from rastrainer.protocol import OPEN_PHASES, Phase
 from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
+from rastrainer.slicer.logic.training_logic import tutorialSentence
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.steps import StepKind
@@ -79,6 +80,7 @@ class WorkflowState:
         trainee: pseudonym of who is chosen, empty where nobody is.
         hasTrainees: the study has trainees to choose from.
         hasPracticed: the chosen trainee has played before, be it the trial run alone.
+        isLearning: the chosen trainee does the tutorial before the trial run.
         taskTitle: of the chosen task.
         phase: of the simulator's trial.
         touched: how many points of it are touched.
@@ -101,6 +103,7 @@ class WorkflowState:
     trainee: str = ""
     hasTrainees: bool = False
     hasPracticed: bool = False
+    isLearning: bool = False
     taskTitle: str = ""
     phase: str = Phase.IDLE.value
     touched: int = 0
@@ -231,10 +234,14 @@ def _trial(now: WorkflowState) -> NextStep:
         if now.needsRepeatReason:
             action, title = NextAction.EXPLAIN_REPEAT, _("Reason for the repeat…")
         here = Section.SCORE if now.isResultShown else Section.STUDY
-        return NextStep(action, title, now.studySentence, here)
+        text = tutorialSentence(now.trainee) if now.isLearning else now.studySentence
+        return NextStep(action, title, text, here)
     here = Section.SCORE if now.isResultShown else Section.TRAINING
     if not now.hasPracticed:
         text = _("The trial run does not count. The trainee follows the instructions on screen.")
+        if now.isLearning:
+            without = _("To start without it, uncheck Tutorial in the section Training.")
+            text = f"{tutorialSentence(now.trainee)} {without}"
         return NextStep(NextAction.START_TRIAL_RUN, _("Start the trial run"), text, here)
     title = _("Start {task}").format(task=now.taskTitle)
     text = _("Another task or head is chosen in the section Scenario.")

@@ -129,15 +129,18 @@ class StudyLogic:
             return minutes
         return minutes + self._watch.unsavedS(self._trainees.chosen, step.mode) / 60.0
 
-    def startTrial(self, task: str, mode: str) -> None:
+    def startTrial(self, task: str, mode: str, isTutorialFirst: bool = True) -> None:
         """Start a trial for the chosen trainee, unless the study asks for something else first.
+
+        Within a study, the protocol decides whether a trial run waits for the tutorial.
 
         Raises:
             InputError: it does, or no trainee or task is chosen.
         """
         if self.protocol() is not None and self._trainees.chosen:
             self._progress().check_start(mode, task)
-        self._training.start(self._trainees.chosen, task, mode)
+            isTutorialFirst = True
+        self._training.start(self._trainees.chosen, task, mode, isTutorialFirst)
 
     def offProtocolSentence(self) -> str:
         """Return a sentence while an enrolled trainee plays what the study has not requested."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, CommandName, Phase
+from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, TRIAL_RUN, CommandName, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
@@ -68,6 +68,7 @@ class TrainingLogic:
     Attributes:
         changed: emits nothing, whenever `progress` has changed.
         answered: emits the sentence of a command that was refused, empty where it was accepted.
+        learner: pseudonym of who does the tutorial before the trial run; empty where nobody does.
     """
 
     def __init__(
@@ -79,6 +80,7 @@ class TrainingLogic:
     ) -> None:
         self.changed = Signal()
         self.answered = Signal()
+        self.learner = ""
         self._scene = scene
         self._link = link
         self._findScenario = findScenario
@@ -116,8 +118,12 @@ class TrainingLogic:
             instruction=str(state.get("instruction", "")),
         )
 
-    def start(self, trainee: str, task: str, mode: str) -> None:
+    def start(self, trainee: str, task: str, mode: str, isTutorialFirst: bool = False) -> None:
         """Start a trial.
+
+        With `isTutorialFirst`, the simulator opens the tutorial instead of a trial run for trainees
+        who have not done it yet with the device in use, unless the study or the simulator's setting
+        does without it. The trial run can be started after it.
 
         Raises:
             InputError: no trainee or no task is chosen.
@@ -126,7 +132,13 @@ class TrainingLogic:
             raise InputError(_("Choose a trainee in the section Trainees first."))
         if not task:
             raise InputError(_("Choose a task first."))
-        self._send(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": mode})
+        if task == TRIAL_RUN and isTutorialFirst:
+            who = {"trainee": trainee, "mode": mode}
+            self._link.send(
+                CommandName.START_TUTORIAL, who, lambda reply: self._startUnlessTutorial(reply, who)
+            )
+        else:
+            self._send(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": mode})
 
     def pause(self) -> None:
         """Pause the trial."""
@@ -150,6 +162,17 @@ class TrainingLogic:
         """Load another scenario into the simulator, between two trials."""
         self._send(CommandName.LOAD_SCENARIO, {"folder": folder}, timeoutS=30.0)
 
+    def _startUnlessTutorial(self, reply: Reply, who: Mapping[str, str]) -> None:
+        """Start the trial run, unless the simulator has opened the tutorial before it."""
+        if not reply.ok:
+            self.answered.emit(reply.error)
+        elif reply.data.get("isNeeded") is True:
+            self.learner = who["trainee"]
+            self.answered.emit(tutorialSentence(self.learner))
+            self.changed.emit()
+        else:
+            self._send(CommandName.START_TASK, {"task": TRIAL_RUN, **who})
+
     def _send(
         self, name: str, arguments: Mapping[str, Any] | None = None, timeoutS: float = 5.0
     ) -> None:
@@ -159,6 +182,8 @@ class TrainingLogic:
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         self._state, self._stateTime = state, self._clock()
+        if state.get("phase") in OPEN_PHASES:
+            self.learner = ""
         self._prepareScene()
         self.changed.emit()
 
@@ -197,6 +222,14 @@ class TrainingLogic:
 
     def _emitChange(self, _node: Any) -> None:
         self.changed.emit()
+
+
+def tutorialSentence(trainee: str) -> str:
+    """Return a sentence on a trainee who does the tutorial before the trial run."""
+    return _(
+        "{trainee} does the tutorial first, where the simulator is shown: about two minutes. Then "
+        "start the trial run here, or let the trainee start it."
+    ).format(trainee=trainee)
 
 
 def _number(value: Any) -> float | None:
