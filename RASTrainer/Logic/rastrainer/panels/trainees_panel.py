@@ -10,6 +10,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
+from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
     chosenData,
@@ -38,6 +39,12 @@ class TraineesPanel:
         self._session = session
         self._logic = session.trainees
         self._isProblemShown = False
+        self._isErasing = False
+        self._deletion = CancelableWork(
+            lambda sentence: self._showMessage("{text}", text=sentence),
+            self._noteErasing,
+            self._showDeleting,
+        )
         ui.studyPathLineEdit.currentPath = str(session.studyPath)
         ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
         ui.traineeComboBox.connect("activated(int)", self.chooseTrainee)
@@ -45,18 +52,19 @@ class TraineesPanel:
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
         connectAsPressed(ui.archiveButton, self._archiving)
         ui.exportTraineeButton.connect("clicked()", self.exportTrainee)
-        ui.deleteTraineeButton.connect("clicked()", self.deleteTrainee)
+        self._deletion.connectButton(ui.deleteTraineeButton, self.deleteTrainee)
         ui.createTraineeButton.connect("clicked()", self.createTrainee)
         ui.learningCurveButton.connect("clicked()", self.showLearningCurve)
         ui.calibrationButton.connect("clicked()", self.showCalibration)
         ui.traineesCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         ui.exportHistoryButton.connect("clicked()", self.exportHistory)
-        self._isArchived = False
+        self._isArchived = self._hasTrainee = False
         self._logic.changed.connect(self._show)
         self._show()
 
     def close(self) -> None:
-        """Stop listening to the session."""
+        """Cancel a deletion that has not begun, and stop listening to the session."""
+        self._deletion.cancel()
         self._logic.changed.disconnect(self._show)
 
     def chooseStudy(self, path: str) -> None:
@@ -134,11 +142,37 @@ class TraineesPanel:
                 "may be needed. Earlier exports and backups are yours to delete."
             ).format(name=name, trials=trials)
             if slicer.util.confirmYesNoDisplay(toolTip(question), _("Delete the trainee")):
-                erased = self._logic.delete()
+                erased = self._deletion.run(self._logic.delete)
+                if erased is None:
+                    return
                 text = _("{name} is deleted with {trials} trials and {journals} journals.").format(
                     name=name, trials=erased.trials, journals=erased.journals
                 )
                 self._showMessage("{text}", text=" ".join((text, *erased.warnings)))
+
+    def _noteErasing(self, step: str, _share: float) -> None:
+        """Show that the deletion has begun, which nothing can undo."""
+        if step and not self._isErasing:
+            self._isErasing = True
+            self._showMessage("{text}", text=step)
+            self._showDeleting()
+
+    def _showDeleting(self) -> None:
+        """Show whether a trainee is being deleted, and whether that can be canceled."""
+        ui, isAtWork = self._ui, self._deletion.isUnderWay
+        self._isErasing = self._isErasing and isAtWork
+        # What is deleted is what was chosen.
+        for widget in (ui.studyPathLineEdit, ui.traineeComboBox):
+            widget.enabled = not isAtWork
+        ui.deleteTraineeButton.text = _("Cancel") if isAtWork else _("Delete…")
+        if isAtWork:
+            begun = _("The deletion has begun, and cannot be canceled any more.")
+            tip = _("Delete nothing; the study is still being opened.")
+            setUsable(ui.deleteTraineeButton, not self._isErasing, tip, begun)
+        else:
+            tip = _("Delete the trainee with all trials, for good.")
+            reason = _("Choose a trainee first.")
+            setUsable(ui.deleteTraineeButton, self._hasTrainee, tip, reason)
 
     def showLearningCurve(self) -> None:
         """Show score and time over the trials as a plot, or give the user's layout back."""
@@ -191,7 +225,8 @@ class TraineesPanel:
         ui.pseudonymLineEdit.placeholderText = self._logic.study.next_pseudonym()
         fillComboBox(ui.traineeComboBox, entries, trainee.pseudonym if trainee else "")
         setChecked(ui.consentCheckBox, trainee is not None and trainee.consent)
-        hasTrainee = trainee is not None
+        self._hasTrainee = hasTrainee = trainee is not None
+        self._showDeleting()
         reason = _("Choose a trainee first.")
         ui.consentCheckBox.enabled = hasTrainee
         self._isArchived = trainee is not None and trainee.archived
@@ -199,7 +234,6 @@ class TraineesPanel:
         for button, tip in (
             (ui.archiveButton, _("Hide the trainee from the list, or show again.")),
             (ui.exportTraineeButton, _("Write all that is known about the trainee to a file.")),
-            (ui.deleteTraineeButton, _("Delete the trainee with all trials, for good.")),
         ):
             setUsable(button, hasTrainee, tip, reason)
         hasTrials = _("The trainee has no trials yet.") if hasTrainee else reason

@@ -199,7 +199,7 @@ class BackgroundWork:
     def checkWanted(self, _step: str = "", _share: float = 0.0) -> None:
         """End running work, which calls this in its thread, once nobody waits for it any more."""
         if self._isLeft.is_set():
-            raise _BrokenOffError
+            raise BrokenOffError
 
     def close(self) -> None:
         """Wait briefly for running work, deliver it, and do nothing more."""
@@ -247,7 +247,7 @@ def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
     def report(step: str, share: float) -> None:
         reported.append((step, share))
         if isCanceled.is_set():
-            raise _BrokenOffError
+            raise BrokenOffError
 
     job = Job(lambda: work(report))
     try:
@@ -261,5 +261,27 @@ def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
     return job.result()
 
 
-class _BrokenOffError(Exception):
+class CancelableUntilBegun:
+    """Has the user's wish to cancel heeded until the work begins to change something."""
+
+    def __init__(self, progress: Progress) -> None:
+        """`progress` raises to cancel, as that of `inBackground`."""
+        self._progress = progress
+        self._decision = threading.Lock()
+
+    def begin(self) -> None:
+        """Note, in the worker, that from now on nothing is canceled; raise where it has been."""
+        if not self._decision.acquire(blocking=False):
+            raise BrokenOffError
+
+    def progress(self, step: str, share: float) -> None:
+        """Report to `progress`; what it raises is passed on only before `begin`."""
+        try:
+            self._progress(step, share)
+        except Exception:
+            if self._decision.acquire(blocking=False):
+                raise
+
+
+class BrokenOffError(Exception):
     """Nobody waits for the work any more."""

@@ -10,8 +10,9 @@ from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import write_histories, write_history
 from rastrainer.export.trainee_data import Erasure, erase_trainee, export_trainee
 from rastrainer.progress import Progress
-from rastrainer.slicer.background_work import inBackground
+from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
 from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
@@ -139,11 +140,31 @@ class TraineeLogic:
         self.study.set_archived(self.chosen, archived)
         self.changed.emit()
 
-    def delete(self) -> Erasure:
-        """Delete the chosen trainee with all trials and journals, for good; return what was."""
-        records = self._records if self._records.is_dir() else None
-        erased = erase_trainee(self.study, self.chosen, records)
-        self.chosen = ""
+    def delete(self, progress: Progress = lambda _step, _share: None) -> Erasure:
+        """Delete the chosen trainee with all trials and journals, for good; return what was.
+
+        Args:
+            progress: called many times a second meanwhile, with a step once something is deleted;
+                it may let the application draw, and may raise to cancel as long as nothing is.
+
+        Raises:
+            InputError: the trainee or a journal cannot be deleted.
+        """
+        name = self.chosen
+        cancelable = CancelableUntilBegun(progress)
+
+        def erase(report: Progress) -> Erasure:
+            records = self._records if self._records.is_dir() else None
+            with self._openPatiently() as study:
+                # It waits here while another program has the study locked.
+                study.trainee(name)
+                cancelable.begin()
+                report(_("Deleting {name}").format(name=name), 0.0)
+                return erase_trainee(study, name, records)
+
+        erased = inBackground(erase, cancelable.progress)
+        if self.chosen == name:
+            self.chosen = ""
         self.changed.emit()
         return erased
 

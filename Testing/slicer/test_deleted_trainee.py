@@ -1,0 +1,126 @@
+"""A trainee is deleted in a thread, and the deletion may be canceled until it has begun."""
+
+import threading
+import uuid
+from pathlib import Path
+
+import pytest
+from PySide6 import QtCore
+
+from rastrainer.export import trainee_data
+from rastrainer.slicer.background_work import BrokenOffError, CancelableUntilBegun
+from rastrainer.study.database.study import Study
+from Testing.slicer.host.cancels import cancels
+from Testing.slicer.recorded_trial import write_recorded_trial
+
+NAME = "T-001"
+
+
+@pytest.fixture
+def panel(host):
+    """The section Trainees, with a chosen trainee."""
+    host.open()
+    host.type("pseudonymLineEdit", NAME)
+    host.press("createTraineeButton")
+    return host
+
+
+@pytest.fixture
+def journal():
+    """The journal of a trial that the trainee did not finish."""
+    folder = Path.home() / "RASTrainer" / "trials"
+    write_recorded_trial(folder, str(uuid.UUID(int=1)), 1.0, NAME)
+    (path,) = folder.glob("*.journal")
+    return path
+
+
+def stored(panel):
+    with Study.open(panel.find("studyPathLineEdit").currentPath) as study:
+        return [trainee.pseudonym for trainee in study.trainees()]
+
+
+def test_the_main_thread_erases_nothing(panel, journal, monkeypatch):
+    threads = []
+    erase_journals, delete_trainee = trainee_data.erase_journals, Study.delete_trainee
+
+    def erase(*values):
+        threads.append(threading.get_ident())
+        return erase_journals(*values)
+
+    def delete(*values):
+        threads.append(threading.get_ident())
+        return delete_trainee(*values)
+
+    monkeypatch.setattr(trainee_data, "erase_journals", erase)
+    monkeypatch.setattr(Study, "delete_trainee", delete)
+    panel.answer("cannot be undone", "Yes")
+    panel.press("deleteTraineeButton")
+    assert "is deleted with 0 trials and 1 journals" in panel.text("traineeText")
+    assert not journal.exists()
+    assert len(threads) == 2
+    assert threading.get_ident() not in threads
+
+
+def test_a_deletion_that_has_not_begun_is_canceled(panel, journal):
+    trainees, may_open, left = panel.widget.logic.session.trainees, threading.Event(), []
+    open_patiently = trainees._openPatiently
+
+    def open_late():
+        left.append(threading.current_thread())
+        assert may_open.wait(60.0)
+        return open_patiently()
+
+    trainees._openPatiently = open_late
+    panel.answer("cannot be undone", "Yes")
+    with cancels(panel, "deleteTraineeButton", lambda: left):
+        panel.press("deleteTraineeButton")
+    may_open.set()
+    left[0].join(60.0)
+    assert "nothing has changed" in panel.text("traineeText")
+    assert (journal.exists(), stored(panel)) == (True, [NAME])
+    assert panel.text("deleteTraineeButton") == "Delete…"
+
+
+def test_a_deletion_that_has_begun_goes_on_and_says_so(panel, journal, monkeypatch):
+    may_go_on = threading.Event()
+    erase_journals, told = trainee_data.erase_journals, []
+
+    def erase(*values):
+        assert may_go_on.wait(60.0)
+        return erase_journals(*values)
+
+    def look():
+        button = panel.find("deleteTraineeButton")
+        if panel.text("traineeText") == f"Deleting {NAME}":
+            told.append((button.enabled, button.toolTip))
+            panel.widget.logic.session.trainees.changed.emit()
+            told.append((button.enabled, button.toolTip))
+            may_go_on.set()
+
+    monkeypatch.setattr(trainee_data, "erase_journals", erase)
+    panel.answer("cannot be undone", "Yes")
+    timer = QtCore.QTimer()
+    timer.timeout.connect(look)
+    timer.start(5)
+    panel.press("deleteTraineeButton")
+    timer.stop()
+    assert {enabled for enabled, _tip in told} == {False}
+    assert "cannot be canceled any more" in told[-1][1]
+    assert (journal.exists(), stored(panel)) == (False, [])
+
+
+def test_who_cancels_too_late_is_not_heeded_and_who_begins_too_late_changes_nothing():
+    class CanceledError(Exception):
+        pass
+
+    def cancel(_step, _share):
+        raise CanceledError
+
+    late = CancelableUntilBegun(cancel)
+    late.begin()
+    late.progress("", 0.0)
+    early = CancelableUntilBegun(cancel)
+    with pytest.raises(CanceledError):
+        early.progress("", 0.0)
+    with pytest.raises(BrokenOffError):
+        early.begin()
