@@ -24,7 +24,7 @@ from rastrainer.slicer.scene.score_board import (
 from rastrainer.slicer.scene.study_plots import showCalibration, showHistory, showLearningCurve
 from rastrainer.study.database.study import Study
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
-from Testing.domain.trial.trial_records import first_score, gentle_score
+from Testing.domain.trial.trial_records import first_score, gentle_score, second_score
 from Testing.slicer.recorded_trial import scored_analysis
 
 COHORT = [Trial("desktop", str(n), "1", 80.0 + 10.0 * n, 1.0 + 0.1 * n) for n in range(4)]
@@ -187,10 +187,10 @@ def test_a_learning_curve_over_two_versions_of_the_score_says_so(scene, logic, a
     logic.study.add_results(first.record.trial_id, score=first_score(60.0, 0.1))
     trials = logic.study.history(first.record.trainee)
     chart = showLearningCurve(scene, "T-001", trials)
-    assert chart.GetTitle().endswith("(scores of versions 1 and 2 do not compare)")
+    assert chart.GetTitle().endswith("(scores of versions 1 and 3 do not compare)")
     table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
     column = table.GetColumnIndex("score version")
-    assert [table.GetCellText(row, column) for row in range(2)] == ["1", "2"]
+    assert [table.GetCellText(row, column) for row in range(2)] == ["1", "3"]
 
 
 def test_a_trial_without_results_has_empty_cells(scene, logic, make_record):
@@ -208,6 +208,9 @@ def test_the_score_is_shown_with_its_parts_and_ctps_with_its_warning(add_trial):
     assert rows["CTPS by equation 3"].value == rows["CTPS as published"].value / 2
     assert rows["True TRE at the target"].text == "0.20 mm"
     assert rows["True TRE in the brain"].value == trial.score.measures.tre_mm
+    assert rows["True TRE in the brain"].note == "RMS over targets and brain; at most 1.5 mm"
+    assert rows["Bias that all touches share"].value == trial.score.measures.common_bias_mm
+    assert rows["Bias that all touches share"].note == "at most 1.5 mm"
     assert rows["… its part for safety"].value == 100 * trial.score.safety_desirability
     assert rows["Unintended contact"].note == "at most 8 s"
     assert ctpsRows(trial, []) == []
@@ -229,12 +232,18 @@ def test_a_trial_is_compared_with_own_ones_other_trainees_and_a_reference_group(
 
 def test_the_score_of_a_trial_beyond_a_limit_is_called_not_acceptable(logic, add_trial):
     trial = add_trial(1)
-    assert {row.title: row.note for row in scoreRows(trial)}["Score"] == "Version 2"
+    assert {row.title: row.note for row in scoreRows(trial)}["Score"] == "Version 3"
     logic.study.add_results(trial.record.trial_id, score=gentle_score(60.0, 9.0))
     beyond = logic.study.trial(trial.record.trial_id)
     notes = {row.title: row.note for row in scoreRows(beyond)}
-    assert notes["Score"] == "not acceptable; version 2"
-    assert notes["… its part for accuracy"] == "beyond the limit of 1.5 mm"
+    assert notes["Score"] == "not acceptable; version 3"
+    assert notes["… its part for accuracy"] == "beyond a limit"
+    logic.study.add_results(trial.record.trial_id, score=second_score(60.0, 0.3))
+    earlier = logic.study.trial(trial.record.trial_id)
+    notes = {row.title: row.note for row in scoreRows(earlier)}
+    assert notes["Score"] == "Version 2"
+    assert notes["… its part for accuracy"] == "within the limit of 1.5 mm"
+    assert "Bias that all touches share" not in notes
 
 
 def test_a_score_is_compared_only_with_those_of_the_same_version(logic, add_trial):
@@ -259,5 +268,5 @@ def test_score_comparison_and_motion_become_tables_of_the_scene(scene, logic, ad
     showScore(scene, [*scoreRows(trial), *ctpsRows(trial, COHORT)])
     showStandings(scene, standings(logic.study, trial, COHORT))
     showMotion(scene, motionRows(trial))
-    for role, rows in ((Role.SCORE, 14), (Role.COMPARISON, 2), (Role.MOTION, 1)):
+    for role, rows in ((Role.SCORE, 15), (Role.COMPARISON, 2), (Role.MOTION, 1)):
         assert findNode(scene, "vtkMRMLTableNode", role).GetNumberOfRows() == rows

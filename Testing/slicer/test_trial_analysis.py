@@ -13,9 +13,10 @@ from rastrainer.errors import InputError
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.ctps import read_trials
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.score_reference import region_of
+from rastrainer.trial.score_reference import fiducial_normals, region_of
 from rastrainer.trial.scoring import ScoreReference
 from rastrainer_headless.output import results_json
+from Testing.domain.trial.trial_records import first_score
 
 PUBLISHED = Path(__file__).parents[2] / "assets" / "studies" / "published.csv"
 
@@ -79,6 +80,33 @@ def test_there_is_no_score_before_the_truth_is_revealed(scenario, record):
     assert not any(sentence.startswith("Score") for sentence in analysis.feedback.sentences)
 
 
+def test_a_common_bias_is_scored_and_told_with_its_direction(scenario, make_record):
+    value = make_record(str(uuid.UUID(int=1)))
+    truth, record = truth_of(scenario), TrialRecord.from_json(value)
+    honest = analyze_trial(record, scenario, truth=truth)
+    task = scenario.task(record.task)
+    aims = task.fiducials - 1.4 * along_skin(fiducial_normals(scenario, record.task), [1.0, 0, 0])
+    for point in value["points"]:
+        aim = aims[task.labels.index(point["label"])]
+        point["positionMm"] = transforms.apply(truth.matrix, aim).tolist()
+    beside = analyze_trial(TrialRecord.from_json(value), scenario, truth=truth)
+    assert beside.score.measures.common_bias_mm == pytest.approx(1.4)
+    assert beside.score.acceptable
+    assert beside.score.score < 0.7 * honest.score.score
+    (told,) = [one for one in beside.feedback.advice if one.topic == "common bias"]
+    assert "the touches are 1.4 mm too far to the patient's left" in told.sentence
+    stored = analyze_trial(TrialRecord.from_json(value), scenario)
+    again = stored.scored_as(beside.score, scenario, truth)
+    assert again.feedback.advice == beside.feedback.advice
+    unknown = stored.scored_as(beside.score, scenario, None).feedback.advice
+    assert "common bias" not in [one.topic for one in unknown]
+
+
+def along_skin(normals, vector):
+    """The part of a vector along the skin, (n, 3) float."""
+    return vector - normals * (normals @ vector)[:, None]
+
+
 def test_an_offset_that_all_touches_share_is_seen_by_the_score_alone(scenario, make_record):
     value = make_record(str(uuid.UUID(int=1)))
     for point in value["points"]:
@@ -94,13 +122,8 @@ def test_an_offset_that_all_touches_share_is_seen_by_the_score_alone(scenario, m
 
 
 def test_a_score_keeps_the_version_that_it_was_made_in(scenario, record):
-    first = replace(
-        analyze_trial(record, scenario, truth=truth_of(scenario)).score,
-        version="1",
-        safety_desirability=None,
-        is_safe=None,
-    )
-    analysis = analyze_trial(record, scenario).scored_as(first)
+    first, truth = first_score(60.0, 0.4), truth_of(scenario)
+    analysis = analyze_trial(record, scenario).scored_as(first, scenario, truth)
     assert analysis.score == analysis.feedback.score == first
     assert "expected at the target" in analysis.feedback.score_sentences[2]
 

@@ -6,9 +6,9 @@ TIME_FLOOR = 0.04
 """Desirability of a time without end: being slow never costs as much as being wrong."""
 
 
-def falling(value: float, half: float) -> float:
-    """Return 1/(1 + (value/half)²): 1 at 0, ½ at `half`; strictly falling without saturating."""
-    return 1 / (1 + (value / half) ** 2)
+def falling(value: float, half: float, power: int = 2) -> float:
+    """Return 1/(1 + (value/half)^power): 1 at 0, ½ at `half`; strictly falling, never 0."""
+    return 1 / (1 + (value / half) ** power)
 
 
 def of_time(time_s: float, reference_s: float) -> float:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Truth:
-    """Where the head really is in a trial: the simulator's secret until the trial is scored.
+    """Where the head really is in a trial: the simulator's secret until a registration is final.
 
     Attributes:
         head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
@@ -62,7 +62,7 @@ class Truth:
     def revealed(
         self, world_to_head: np.ndarray, touches: Iterable[tuple[str, tuple[float, float, float]]]
     ) -> dict[str, Any]:
-        """Return the data of the answer to TrialScored, ready for JSON."""
+        """Return the data of the answer to SubmitRegistration, ready for JSON."""
         return {
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
             "trueTreMm": self.target_error_mm(world_to_head),

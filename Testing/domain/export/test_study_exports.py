@@ -16,7 +16,7 @@ from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from Testing.domain.study.played_study import study_with_trials
-from Testing.domain.trial.trial_records import first_score, make_record
+from Testing.domain.trial.trial_records import first_score, make_record, second_score
 
 OLD = "0 of a pilot"
 
@@ -71,7 +71,9 @@ def test_a_score_is_exported_with_its_parts(data):
     assert len(rows) == len(with_score) > 0
     for trial, row in zip(with_score, rows, strict=True):
         assert float(row["score_tre_mm"]) == trial.values["score_tre_mm"]
-        assert {row["score_is_accurate"], row["score_is_safe"]} <= {"0.0", "1.0"}
+        assert float(row["score_common_bias_mm"]) == trial.values["score_common_bias_mm"]
+        limits = {row[f"score_is_{name}"] for name in ("accurate", "unbiased", "safe")}
+        assert limits <= {"0.0", "1.0"}
         for part in ("time", "accuracy", "safety"):
             assert 0 <= float(row[f"score_{part}_desirability"]) <= 1
         assert float(row["score_reference_time_s"]) > 0
@@ -88,6 +90,16 @@ def test_a_score_of_the_first_version_is_exported_without_later_measures(tmp_pat
     assert trial.score_version == "1"
     assert {"score", "score_is_accurate", "score_limit_mm"} <= set(trial.values)
     assert not {"score_tre_mm", "score_is_safe", "score_safety_desirability"} & set(trial.values)
+
+
+def test_a_score_of_the_second_version_is_exported_without_a_common_bias(tmp_path):
+    with Study.open(tmp_path / "old.db") as study:
+        study.add_trial(make_record(trainee="A"), score=second_score(100.0, 0.4))
+        study.set_consent("A", True)
+    (trial,) = read_study_data(tmp_path / "old.db").trials
+    assert (trial.score_version, trial.acceptable) == ("2", True)
+    assert {"score_tre_mm", "score_is_safe"} <= set(trial.values)
+    assert not {"score_common_bias_mm", "score_is_unbiased"} & set(trial.values)
 
 
 def test_a_trials_statement_has_success_and_completion_time(data):
@@ -114,6 +126,17 @@ def test_a_trials_statement_has_success_and_completion_time(data):
     context = told[0]["context"]["extensions"]
     assert context[f"{HOME_PAGE}/xapi/started"] == "2026-01-01T10:00:00Z"
     assert context[f"{HOME_PAGE}/xapi/pass-mark"] == 80.0
+
+
+def test_a_statement_has_no_success_without_a_mark_for_the_version_of_its_score(data):
+    earlier = replace(data.protocol, pass_mark=80.0, score_version="2")
+    old = tuple(replace(trial, score_version="2") for trial in data.trials[:1])
+    trials = (*old, *data.trials)
+    told = statements(replace(data, trials=trials, protocol=earlier, answers=(), aborted=()))
+    assert ["success" in one["result"] for one in told] == [True] + [False] * len(data.trials)
+    assert all("score" in one["result"] for one in told[1:])
+    for one in told[1:]:
+        assert f"{HOME_PAGE}/xapi/pass-mark" not in one["context"]["extensions"]
 
 
 def test_trainees_without_consent_are_left_out_of_exports_and_counted(tmp_path, capsys):

@@ -21,7 +21,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
-from rastrainer.trial.scoring import LONG_PAUSE_S
+from rastrainer.trial.scoring import LONG_PAUSE_S, SCORE_VERSION
 from rastrainer.trial.trainee_progress import competence_of
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, draw_study
@@ -361,9 +361,7 @@ def test_passed_trials_and_competent_trainees_are_counted():
     rows = []
     for trainee, score, acceptable in (("A", 70.0, True), ("B", 69.9, True), ("C", 90.0, False)):
         for number in range(1, 31):
-            values = {"completion_time_s": 90.0, "rmse_mm": 1.0, "score": score}
-            row = TrialRow(trainee, "hmd", "task-1", number, values, acceptable=acceptable)
-            rows.append(row)
+            rows.append(scored(trainee, number, score, SCORE_VERSION, acceptable))
     protocol = replace(read_study_protocol(STUDIES / "published-protocol.json"), pass_mark=70.0)
     words = words_of(report_html(StudyData("One mode", tuple(rows), protocol=protocol)))
     assert "passes with 70 of 100 points (set by the protocol)" in words
@@ -405,8 +403,8 @@ def test_a_report_explains_the_score_of_its_version():
     def words(version):
         return words_of(report_html(StudyData("One", (scored("A", 1, 80.0, version),))))
 
-    first, second = words("1"), words("2")
-    assert "several versions" not in first + second
+    first, second, third = words("1"), words("2"), words("3")
+    assert "several versions" not in first + second + third
     assert "accuracy is the expected target error at the scenario's target" in first
     assert "and an expected target error within the limit of its task" in first
     assert "Accuracy is the true target error of the rigid registration" in second
@@ -416,19 +414,28 @@ def test_a_report_explains_the_score_of_its_version():
         "task, unintended contact of at most 8 s and 160 mm, and a pressing depth of at most "
         "1.5 mm; one that was aborted after a touch is not passed." in second
     )
-    for each in (first, second):
+    bias = "a bias common to all touches of at most 1.5 mm, unintended contact of at most 8 s"
+    assert bias in third
+    assert "trueness (ISO 5725-1) of the touches, 1/(1 + (b/1 mm)^4)" in third
+    assert "common bias" not in second
+    for each in (second, third):
+        assert "localization errors along the skin, of 1.5 mm, to the same region" in each
+    for each in (first, second, third):
         assert "Harrington 1965, The desirability function" in each
 
 
-def test_a_pass_mark_for_another_score_version_is_labeled():
+@pytest.mark.parametrize(
+    ("version", "told"), [("3", "scores of version 3"), ("", "scores of an unknown version")]
+)
+def test_a_pass_mark_for_another_score_version_passes_nobody_and_the_report_says_so(version, told):
     published = read_study_protocol(STUDIES / "published-protocol.json")
-    protocol = replace(published, pass_mark=65.0, score_version="1")
-    rows = (scored("A", 1, 80.0, "2"),)
+    protocol = replace(published, pass_mark=65.0, score_version="2")
+    rows = tuple(scored("A", number, 80.0, version) for number in range(1, 31))
     words = words_of(report_html(StudyData("One", rows, protocol=protocol)))
-    assert (
-        "(set by the protocol for score version 1, so that it need not fit these scores of "
-        "version 2)" in words
-    )
+    assert "pass mark of 65 points was set for score version 2, and these trials have " in words
+    assert f"{told}. The two do not compare" in words
+    assert "30 (100 %)" not in words
+    assert "LC-CUSUM of every trainee" not in words
 
 
 @pytest.mark.parametrize("has_protocol", [True, False], ids=["silent protocol", "no protocol"])

@@ -26,7 +26,7 @@ from rastrainer.study.protocol.study_protocol import (
     study_protocol_from_json,
 )
 from rastrainer.study.protocol.study_step import StudyStep
-from rastrainer.trial.scoring import PASS_MARK
+from rastrainer.trial.scoring import PASS_MARK, SCORE_VERSION
 from Testing.domain.trial.trial_records import make_record
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "published-protocol.json"
@@ -176,10 +176,14 @@ def test_a_protocol_may_set_the_pass_mark():
     shipped = json.loads(SHIPPED.read_text())
     assert "passMark" not in shipped["scoring"]
     silent = protocol()
-    assert (silent.pass_mark, pass_mark_of(silent)) == (None, PASS_MARK)
+    assert silent.pass_mark is None
+    assert [pass_mark_of(silent, version) for version in ("1", "2", "3")] == [PASS_MARK] * 3
+    assert pass_mark_of(None, SCORE_VERSION) == PASS_MARK
     assert study_protocol_from_json(json.loads(protocol_text(silent))) == silent
     own = protocol(scoring=shipped["scoring"] | {"passMark": 62})
-    assert own.pass_mark == pass_mark_of(own) == 62.0
+    assert own.pass_mark == pass_mark_of(own, SCORE_VERSION) == 62.0
+    # A mark is made of scores of one version.
+    assert pass_mark_of(own, "2") is None
     assert study_protocol_from_json(json.loads(protocol_text(own))) == own
     with pytest.raises(InputError, match="passMark must be a number from 1 to 100"):
         protocol(scoring=shipped["scoring"] | {"passMark": 0})
@@ -350,7 +354,7 @@ def test_the_place_of_a_deleted_trainee_is_reused(study):
             {"questionnaires": [{"name": "sus", "when": "after-all", "modes": ["hmd"]}]},
             "belongs to no mode",
         ),
-        ({"scoring": {"version": "0", "references": {}}}, "scoring.version must be 2"),
+        ({"scoring": {"version": "0", "references": {}}}, "scoring.version must be 3"),
         (
             {"scoring": {"version": "2", "references": {"task-9": {}}}},
             "references.task-9 must be one of the study's tasks",

@@ -14,7 +14,8 @@ from rastrainer.trial.advice import advise
 from rastrainer.trial.touch_findings import Reason, touch_findings
 from rastrainer.trial.trainee_progress import PastTrial, progress_of
 from rastrainer.trial.trial_feedback import MAX_SHORT, trial_feedback
-from Testing.domain.trial.trial_records import gentle_score
+from rastrainer.trial.trueness import CommonBias
+from Testing.domain.trial.trial_records import first_score, gentle_score, second_score
 from Testing.touched_head import head_points
 
 LABELS = tuple(str(i + 1) for i in range(15))
@@ -117,6 +118,58 @@ def test_depth_advice_is_given_if_most_of_the_error_is_in_depth():
     assert "depth" in topics
 
 
+BIASES = {
+    "to the patient's left": (-1.8, 0.3, 0.0),
+    "to the patient's right": (1.8, 0.0, 0.5),
+    "toward the face": (0.0, 1.7, -0.8),
+    "toward the back of the head": (0.1, -1.8, 0.0),
+    "toward the crown": (0.0, 0.0, 1.8),
+    "toward the neck": (0.5, 0.5, -1.6),
+    "to the patient's left and toward the crown": (-1.4, 0.2, 1.1),
+}
+
+
+@pytest.mark.parametrize("words", BIASES)
+def test_the_direction_of_a_common_bias_is_told(words):
+    bias = CommonBias(BIASES[words], p=0.001)
+    score = gentle_score(110.0, 0.5, common_bias_mm=bias.length_mm)
+    advice = advise(score, EVEN, {"idle_time_s": 80.0}, bias)
+    assert advice[0].topic == "common bias"
+    length = f"{bias.length_mm:.1f} mm"
+    assert f"On average, the touches are {length} too far {words}, which" in advice[0].sentence
+
+
+def test_a_common_bias_beyond_its_limit_comes_after_safety_and_before_all_else():
+    bias = CommonBias((0.0, 1.6, 0.0), p=0.3)
+    score = gentle_score(400.0, 3.0, common_bias_mm=bias.length_mm)
+    motion = {"idle_time_s": 300.0, "unintended_contacts": 1}
+    topics = [one.topic for one in advise(score, EVEN, motion, bias)]
+    assert topics[:2] == ["contacts", "common bias"]
+
+
+def test_a_bias_that_scatter_explains_is_not_told():
+    score = gentle_score(110.0, 0.5, common_bias_mm=0.8)
+    by_chance = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.2))
+    assert "common bias" not in [one.topic for one in by_chance]
+    told, *others = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.01))
+    assert (told.topic, tuple(others)) == ("common bias", by_chance)
+    assert told.gain == pytest.approx(gentle_score(110.0, 0.5).score - score.score)
+
+
+def test_the_score_sentences_tell_the_common_bias_and_its_limit():
+    def accuracy(score):
+        return trial_feedback(score, registered(np.zeros((15, 3)))).score_sentences[2]
+
+    beside = accuracy(gentle_score(100.0, 2.5, common_bias_mm=1.75))
+    assert "2.50 mm true error in the brain and 1.75 mm common to all touches, worth" in beside
+    assert beside.endswith(
+        "; more than 1.5 mm of error and more than 1.5 mm common to all touches is not acceptable."
+    )
+    assert "0.00 mm common to all" in accuracy(gentle_score(100.0, 0.4))
+    assert "common" not in accuracy(second_score(100.0, 0.4))
+    assert "common" not in accuracy(first_score(100.0, 0.4))
+
+
 @given(
     st.floats(20, 1000),
     st.floats(0.05, 5),
@@ -162,6 +215,15 @@ def test_a_trial_is_not_compared_with_scores_of_another_version():
     assert twice.sentences[0].startswith("1 points more than in your last trial")
 
 
+def test_without_a_mark_for_its_version_a_trial_neither_passes_nor_fails():
+    history = [past(1, 50.0), past(2, 99.0)]
+    progress = progress_of(history, history[1].trial_id, None)
+    assert (progress.pass_mark, progress.competence, len(progress.sentences)) == (None, None, 2)
+    assert progress.sentences[1].startswith("Neither passed nor failed: the pass mark")
+    bad = replace(history[1], acceptable=False)
+    assert progress_of([bad], bad.trial_id, None).sentences[1].startswith("Not passed: the true")
+
+
 def test_competence_is_shown_by_passed_trials_in_the_same_mode():
     history = [past(i, 80.0) for i in range(20)]
     progress = progress_of(history, history[-1].trial_id, pass_mark=60.0)
@@ -202,7 +264,7 @@ def test_the_feedback_sentences_are_in_order():
     assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
     sentences = feedback.sentences
     assert sentences[0].endswith(" of 100: not acceptable.")
-    assert "more than 1.5 mm is not acceptable" in sentences[2]
+    assert sentences[2].endswith("of 100; more than 1.5 mm of error is not acceptable.")
     assert sentences[3].startswith("Safety: pressed 0.0 mm deep")
     assert sentences[4].startswith("Point 4 was")
     assert sentences[5].startswith("1. ")

@@ -13,6 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.trial import scoring
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import (
+    COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
@@ -34,6 +35,7 @@ trials = st.builds(
     contact_time_s=st.floats(0.0, 1000.0),
     contact_path_mm=st.floats(0.0, 10_000.0),
     pressing_depth_mm=st.floats(0.0, 10.0),
+    common_bias_mm=st.floats(0.0, 100.0),
 )
 acceptable = st.builds(
     ScoreMeasures,
@@ -42,12 +44,14 @@ acceptable = st.builds(
     contact_time_s=st.floats(0.0, CONTACT_LIMIT_S),
     contact_path_mm=st.floats(0.0, CONTACT_PATH_LIMIT_MM),
     pressing_depth_mm=st.floats(0.0, DEPTH_LIMIT_MM),
+    common_bias_mm=st.floats(0.0, COMMON_BIAS_LIMIT_MM),
 )
 LIMITS = {
     "tre_mm": scoring.LIMIT_MM,
     "contact_time_s": CONTACT_LIMIT_S,
     "contact_path_mm": CONTACT_PATH_LIMIT_MM,
     "pressing_depth_mm": DEPTH_LIMIT_MM,
+    "common_bias_mm": COMMON_BIAS_LIMIT_MM,
 }
 MEASURES = ("completion_time_s", *LIMITS)
 
@@ -113,14 +117,19 @@ def test_a_gentle_trial_has_the_geometric_mean_of_time_and_accuracy():
     )
 
 
-def test_scores_of_version_2_do_not_change():
-    assert scoring.SCORE_VERSION == "2"
+def test_scores_of_version_3_do_not_change():
+    assert scoring.SCORE_VERSION == "3"
     reference = ScoreReference(100.0, 0.4)
     assert gentle_score(100.0, 0.4, reference).score == pytest.approx(100 * math.sqrt(0.52 * 0.5))
     assert gentle_score(50.0, 0.2, reference).score == pytest.approx(100 * math.sqrt(0.808 * 0.8))
-    touched = score_trial(ScoreMeasures(100.0, 0.4, 4.0, 80.0, 1.5), reference)
+    touched = score_trial(ScoreMeasures(100.0, 0.4, 4.0, 80.0, 1.5, 0.0), reference)
     assert touched.score == pytest.approx(100 * math.sqrt(0.52 * 0.5 / 8))
-    worst = 0.04 / (1 + 3.75**2) / 5 / 5 / 2
+    beside = gentle_score(100.0, 0.4, reference, common_bias_mm=1.0)
+    assert beside.accuracy_desirability == pytest.approx(0.25)
+    assert gentle_score(100.0, 0.4, reference, common_bias_mm=0.5).score == pytest.approx(
+        100 * math.sqrt(0.52 * 0.5 * 16 / 17)
+    )
+    worst = 0.04 / (1 + 3.75**2) / (1 + 1.5**4) / 5 / 5 / 2
     assert gentle_score(100.0, 3.0, reference).score == pytest.approx(
         100 * math.sqrt(worst * 0.52 / (1 + 7.5**2))
     )
@@ -145,6 +154,36 @@ def test_a_score_of_the_first_version_is_read_unchanged():
     assert TrialScore.from_json(json.loads(json.dumps(first.to_json()))) == first
 
 
+def test_a_score_of_the_second_version_is_read_unchanged():
+    stored = {
+        "score": 51.0,
+        "time_desirability": 0.52,
+        "accuracy_desirability": 0.5,
+        "safety_desirability": 1.0,
+        "acceptable": True,
+        "is_accurate": True,
+        "is_safe": True,
+        "measures": {
+            "completion_time_s": 105.0,
+            "tre_mm": 0.4,
+            "contact_time_s": 0.0,
+            "contact_path_mm": 0.0,
+            "pressing_depth_mm": 0.0,
+        },
+        "reference_time_s": 105.0,
+        "reference_tre_mm": 0.4,
+        "limit_mm": 1.5,
+        "version": "2",
+    }
+    second = TrialScore.from_json(stored)
+    assert (second.score, second.version, second.acceptable) == (51.0, "2", True)
+    assert (second.is_unbiased, second.measures.common_bias_mm) == (None, None)
+    assert second.measures.safety == (0.0, 0.0, 0.0)
+    assert TrialScore.from_json(json.loads(json.dumps(second.to_json()))) == second
+    with pytest.raises(InputError, match="common bias of the touches must be a number of mm"):
+        score_trial(second.measures, second.reference)
+
+
 @pytest.mark.parametrize("time", [0.0, -1.0, math.nan, math.inf])
 def test_an_invalid_time_is_refused(time):
     with pytest.raises(InputError, match="completion time"):
@@ -154,7 +193,7 @@ def test_an_invalid_time_is_refused(time):
 @pytest.mark.parametrize("value", [-0.1, math.nan, math.inf])
 @pytest.mark.parametrize("measure", LIMITS)
 def test_an_invalid_measure_is_refused(measure, value):
-    measures = ScoreMeasures(100.0, 0.4, 0.0, 0.0, 0.0)
+    measures = ScoreMeasures(100.0, 0.4, 0.0, 0.0, 0.0, 0.0)
     with pytest.raises(InputError, match="0 or above"):
         score_trial(replace(measures, **{measure: value}), REFERENCES[0])
 
@@ -162,5 +201,5 @@ def test_an_invalid_measure_is_refused(measure, value):
 def test_a_trial_whose_contacts_were_not_measured_has_no_score():
     with pytest.raises(InputError, match="pressing_depth_mm is missing"):
         ScoreMeasures.of(
-            100.0, 0.4, {"unintended_contact_time_s": 0.0, "unintended_contact_path_mm": 0.0}
+            100.0, 0.4, 0.0, {"unintended_contact_time_s": 0.0, "unintended_contact_path_mm": 0.0}
         )

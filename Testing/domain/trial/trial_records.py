@@ -63,9 +63,15 @@ def make_aborted(number=900, touches=3, **changes):
 REFERENCE = ScoreReference(time_s=105.0, tre_mm=0.4)
 
 
-def gentle_score(time_s: float, tre_mm: float, reference: ScoreReference = REFERENCE) -> TrialScore:
+def gentle_score(
+    time_s: float,
+    tre_mm: float,
+    reference: ScoreReference = REFERENCE,
+    common_bias_mm: float = 0.0,
+) -> TrialScore:
     """Return the score of a trial without unintended contact or pressing."""
-    return score_trial(ScoreMeasures(time_s, tre_mm, 0.0, 0.0, 0.0), reference)
+    measures = ScoreMeasures(time_s, tre_mm, 0.0, 0.0, 0.0, common_bias_mm)
+    return score_trial(measures, reference)
 
 
 def first_score(time_s: float, tre_mm: float) -> TrialScore:
@@ -73,7 +79,18 @@ def first_score(time_s: float, tre_mm: float) -> TrialScore:
     return replace(
         gentle_score(time_s, tre_mm),
         safety_desirability=None,
+        is_unbiased=None,
         is_safe=None,
-        measures=ScoreMeasures(time_s, tre_mm, None, None, None),
+        measures=ScoreMeasures(time_s, tre_mm, None, None, None, None),
         version=FIRST_SCORE_VERSION,
+    )
+
+
+def second_score(time_s: float, tre_mm: float) -> TrialScore:
+    """Return a score of version 2, without the common bias, of a gentle trial."""
+    return replace(
+        gentle_score(time_s, tre_mm),
+        is_unbiased=None,
+        measures=ScoreMeasures(time_s, tre_mm, 0.0, 0.0, 0.0, None),
+        version="2",
     )

@@ -263,7 +263,7 @@ def test_scores_of_two_versions_give_no_mark(study, capsys):
     with Study.open(study) as opened:
         add(opened, "N3", 20, 270.0, score=first_score)
     assert main(words(study)) == 2
-    assert "scores of the versions 1 and 2, which do not compare" in capsys.readouterr().err
+    assert "scores of the versions 1 and 3, which do not compare" in capsys.readouterr().err
 
 
 def test_a_mark_of_earlier_scores_is_reported_and_is_written_into_no_protocol(
@@ -279,7 +279,7 @@ def test_a_mark_of_earlier_scores_is_reported_and_is_written_into_no_protocol(
     protocol = tmp_path / "next.json"
     shutil.copy(SHIPPED, protocol)
     assert main(words(study, "--write", str(protocol))) == 2
-    assert "score version 1, and trials get scores of version 2 now" in capsys.readouterr().err
+    assert "score version 1, and trials get scores of version 3 now" in capsys.readouterr().err
     assert protocol.read_bytes() == SHIPPED.read_bytes()
 
 

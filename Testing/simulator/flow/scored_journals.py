@@ -8,6 +8,7 @@ from pathlib import Path
 from rastrainer.journal.journal_file import NO_LINE, encode_line
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.session.preferences import Preferences
@@ -19,11 +20,11 @@ TRAINEE = "P07"
 SCORES = (38.0, 52.4, 47.0, 66.6, 71.0, 69.0, 88.0)
 
 
-def write_scored(folder, number, *scores, version="2", **changes) -> Path:
+def write_scored(folder, number, *scores, version=SCORE_VERSION, **changes) -> Path:
     """Write the journal of a trial that was scored as often as there are scores."""
     trial_id = str(uuid.UUID(int=number))
     record = TrialRecord.from_json(make_record(trialId=trial_id, trainee=TRAINEE, **changes))
-    details = {"isAccurate": True, "isSafe": True}
+    details = {"isAccurate": True, "isUnbiased": True, "isSafe": True}
     details |= {"scoreVersion": version} if version else {}
     told = [{"trialId": trial_id, "score": score, "details": details} for score in scores]
     registered = {"kind": "registered", "record": record.to_json()}

@@ -10,6 +10,7 @@ import pytest
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
@@ -72,7 +73,7 @@ def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_
     (submitted,) = entries_of(outside, trial, "registration")
     errors_are_drawn_as_revealed(trainee, submitted)
     (own,) = entries_of(outside, trial, "scored")
-    assert own["details"]["scoreVersion"] == "2"
+    assert own["details"]["scoreVersion"] == SCORE_VERSION
     # Who has seen the truth cannot register again, not by a micrometre; the same is answered.
     moved = [*submitted["matrix"][:3], submitted["matrix"][3] + A_MICROMETRE]
     other = {**submitted, "matrix": [*moved, *submitted["matrix"][4:]]}

@@ -85,6 +85,21 @@ def test_the_true_error_in_the_brain_stands_beside_the_others(result_of):
     assert not any("acceptable" in sentence for sentence in menu.paragraphs)
 
 
+def test_the_common_bias_is_told_and_a_warning_beyond_its_limit(result_of):
+    within = facts_of(result_of(commonBiasMm=0.41, isAccurate=True, isUnbiased=True, isSafe=True))
+    fact = within["Bias that all touches share"]
+    assert (fact.value, fact.tone) == ("0.41 mm", Tone.PLAIN)
+    beyond = result_of(commonBiasMm=1.81, isAccurate=True, isUnbiased=False, isSafe=True)
+    assert facts_of(beyond)["Bias that all touches share"].tone is Tone.WARNING
+
+
+@pytest.mark.parametrize(
+    ("mark", "tone"), [(70.0, Tone.GOOD), (99.0, Tone.PLAIN), (None, Tone.PLAIN)]
+)
+def test_a_score_looks_good_where_it_reaches_the_mark_and_never_without_one(result_of, mark, tone):
+    assert facts_of(result_of(passMark=mark))["Score"].tone is tone
+
+
 def test_a_score_without_the_error_in_the_brain_has_no_line_for_it(result_of):
     assert "True error in the brain (TRE)" not in facts_of(result_of())
 
@@ -96,6 +111,11 @@ def test_a_score_without_the_error_in_the_brain_has_no_line_for_it(result_of):
             {"isAccurate": False, "isSafe": True},
             "Not acceptable: an instrument guided by this registration would miss its target.",
             id="inaccurate",
+        ),
+        pytest.param(
+            {"isAccurate": True, "isUnbiased": False, "isSafe": True},
+            "Not acceptable: all touches are off in the same direction, by more than the limit.",
+            id="biased",
         ),
         pytest.param(
             {"isAccurate": True, "isSafe": False},
@@ -123,6 +143,13 @@ def test_an_error_in_the_brain_beyond_the_limit_is_a_warning_however_small_it_lo
 
 def test_the_page_says_it_in_german_too():
     texts = Texts(GERMAN)
-    for key in ("region tre", "unacceptable score", "not accurate", "not safe"):
+    for key in (
+        "region tre",
+        "unacceptable score",
+        "not accurate",
+        "not safe",
+        "not unbiased",
+        "common bias",
+    ):
         assert f"result.{key}" in GERMAN
     assert texts.say("result.unacceptable score", score=12.4) == "12 / 100, nicht zulässig"

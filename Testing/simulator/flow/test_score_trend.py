@@ -26,6 +26,7 @@ def test_only_scores_of_the_mode_and_of_the_present_version_are_compared(tmp_pat
     write_scored(tmp_path, 2, 99.0, task="trial-run")
     write_scored(tmp_path, 3, 98.0, version="1")
     write_scored(tmp_path, 4, 97.0, version="")
+    write_scored(tmp_path, 9, 96.0, version="2")
     write_scored(tmp_path, 5, 60.0, mode="hmd")
     write_scored(tmp_path, 6)
     write_scored(tmp_path, 7, 55.0, task="task-2")

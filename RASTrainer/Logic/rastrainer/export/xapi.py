@@ -34,8 +34,11 @@ def statements(data: StudyData, home_page: str = HOME_PAGE) -> list[dict[str, An
         data: The study; statements have the trials' UUIDs, so duplicates are recognized.
         home_page: IRL of the lab's system, which makes pseudonyms unique.
     """
-    mark = pass_mark_of(data.protocol)
-    trials = [_trial(trial, mark, home_page) for trial in data.trials if trial.trial_id]
+    trials = [
+        _trial(trial, pass_mark_of(data.protocol, trial.score_version), home_page)
+        for trial in data.trials
+        if trial.trial_id
+    ]
     trials += [_aborted(stored.record, home_page) for stored in data.aborted]
     return trials + [_answers(answered, home_page) for answered in data.answers]
 
@@ -45,8 +48,11 @@ def statements_text(data: StudyData, home_page: str = HOME_PAGE) -> str:
     return json.dumps(statements(data, home_page), indent=1, allow_nan=False) + "\n"
 
 
-def _trial(trial: TrialRow, mark: float, home_page: str) -> dict[str, Any]:
-    """Return the statement of a completed trial; its duration excludes pauses."""
+def _trial(trial: TrialRow, mark: float | None, home_page: str) -> dict[str, Any]:
+    """Return the statement of a completed trial; its duration excludes pauses.
+
+    Without a pass mark for its score there is no `success`.
+    """
     result: dict[str, Any] = {
         "completion": True,
         "duration": f"PT{trial.values['completion_time_s']:.2f}S",
@@ -64,8 +70,9 @@ def _trial(trial: TrialRow, mark: float, home_page: str) -> dict[str, Any]:
     if "score" in trial.values:
         score = trial.values["score"]
         result["score"] = {"scaled": round(score / 100, 6), "raw": score, "min": 0, "max": 100}
-        result["success"] = passes(score, trial.acceptable, mark)
-        context[f"{home_page}/xapi/pass-mark"] = mark
+        if mark is not None:
+            result["success"] = passes(score, trial.acceptable, mark)
+            context[f"{home_page}/xapi/pass-mark"] = mark
     return _trial_statement("completed", trial, trial.completed_utc, result, context, home_page)
 
 

@@ -46,6 +46,7 @@ MAIN_OUTCOMES = (
     Outcome("expected_tre_mm", "Expected target error", "mm", -1, 2),
     Outcome("true_tre_mm", "True target error", "mm", -1, 2),
     Outcome("score_tre_mm", "True error in the brain", "mm", -1, 2),
+    Outcome("score_common_bias_mm", "Bias that all touches share", "mm", -1, 2),
     Outcome("score", "RASTrainer score", "", 1, 1),
 )
 MOTION_OUTCOMES = tuple(

@@ -256,10 +256,12 @@ def _score_parts(score: TrialScore) -> dict[str, float]:
     parts = {
         # In the first version it is the expected TRE, which the values include already.
         "score_tre_mm": None if score.version == FIRST_SCORE_VERSION else score.measures.tre_mm,
+        "score_common_bias_mm": score.measures.common_bias_mm,
         "score_time_desirability": score.time_desirability,
         "score_accuracy_desirability": score.accuracy_desirability,
         "score_safety_desirability": score.safety_desirability,
         "score_is_accurate": score.is_accurate,
+        "score_is_unbiased": score.is_unbiased,
         "score_is_safe": score.is_safe,
         "score_reference_time_s": score.reference.time_s,
         "score_reference_tre_mm": score.reference.tre_mm,

@@ -139,16 +139,19 @@ def with_progress(analysis: TrialAnalysis, study: Study) -> TrialAnalysis:
         InputError: an unknown trial.
     """
     record = analysis.record
-    if record.task == TRIAL_RUN or study.trial(record.trial_id).score is None:
+    score = study.trial(record.trial_id).score
+    if record.task == TRIAL_RUN or score is None:
         return analysis
-    pass_mark = pass_mark_of(StudyProgress(study).protocol())
+    pass_mark = pass_mark_of(StudyProgress(study).protocol(), score.version)
     return with_progress_among(analysis, AbortedTrials(study).attempts(record.trainee), pass_mark)
 
 
 def with_progress_among(
-    analysis: TrialAnalysis, attempts: Sequence[PastTrial], pass_mark: float
+    analysis: TrialAnalysis, attempts: Sequence[PastTrial], pass_mark: float | None
 ) -> TrialAnalysis:
     """Return the analysis of a scored trial, with its place among these attempts, itself included.
+
+    `pass_mark` is that for scores of its version; None without one.
 
     Raises:
         InputError: it is none of them.

@@ -10,6 +10,7 @@ import numpy as np
 
 from rastrainer.trial.scoring import DEPTH_LIMIT_MM, SCORE_VERSION, TrialScore, score_trial
 from rastrainer.trial.touch_findings import TouchFinding
+from rastrainer.trial.trueness import CommonBias
 from rastrainer.trial.wording import Sentence, say
 
 GOOD_EFFICIENCY = 0.35
@@ -20,6 +21,8 @@ ATTEMPT_S = 3.0
 """Minimum time lost by a refused touch."""
 LONG_CONTACT_S = 2.0
 """Longer contact is described by its duration, not as a bump."""
+MINOR_SHARE = 0.5
+"""A second direction of a common bias is named from this share of the first one on."""
 MIN_GAIN = 0.5
 MAX_ADVICE = 3
 
@@ -40,19 +43,28 @@ class Advice:
 
 
 def advise(
-    score: TrialScore | None, findings: Sequence[TouchFinding], motion: Mapping[str, float]
+    score: TrialScore | None,
+    findings: Sequence[TouchFinding],
+    motion: Mapping[str, float],
+    bias: CommonBias | None = None,
 ) -> tuple[Advice, ...]:
     """Return up to three improvements, the most rewarding first.
 
-    Unintended contact and pressing come first regardless of points: safety has priority. Without a
-    score of the current version there is no other advice.
+    Unintended contact and pressing come first regardless of points: safety has priority. So does a
+    common bias beyond its limit, after them: without it, the target error would be another one,
+    too. Without a score of the current version there is no other advice.
     """
     if score is None or score.version != SCORE_VERSION:
         return tuple(_contacts(motion, 0.0))
+    first = [*_safety(score, motion)]
     candidates = [*_accuracy(score, findings), *_time(score, motion)]
+    if bias is not None and score.is_unbiased is False:
+        first.append(_common_bias(score, bias))
+    elif bias is not None and bias.is_shown:
+        candidates.append(_common_bias(score, bias))
     ranked = sorted(candidates, key=lambda advice: -advice.gain)
     worth = [advice for advice in ranked if advice.gain >= MIN_GAIN]
-    return (*_safety(score, motion), *worth)[:MAX_ADVICE]
+    return (*first, *worth)[:MAX_ADVICE]
 
 
 def _safety(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
@@ -73,6 +85,25 @@ def _contacts(motion: Mapping[str, float], gain: float) -> Iterator[Advice]:
     elif count:
         sentence = say("contact") if count == 1 else say("contacts", count=count)
         yield Advice("contacts", sentence, gain)
+
+
+_DIRECTIONS = (
+    ("bias to the left", "bias to the right"),
+    ("bias to the back", "bias to the face"),
+    ("bias to the neck", "bias to the crown"),
+)
+"""Keys for the negative and the positive direction of the axes R, A and S."""
+
+
+def _common_bias(score: TrialScore, bias: CommonBias) -> Advice:
+    """Return the advice; its gain leaves out that the target error would be smaller, too."""
+    most, second = sorted(range(3), key=lambda axis: -abs(bias.vector_mm[axis]))[:2]
+    first, other = (say(_DIRECTIONS[axis][bias.vector_mm[axis] > 0]) for axis in (most, second))
+    if abs(bias.vector_mm[second]) < MINOR_SHARE * abs(bias.vector_mm[most]):
+        sentence = say("common bias", bias=bias.length_mm, direction=first)
+    else:
+        sentence = say("oblique common bias", bias=bias.length_mm, direction=first, second=other)
+    return Advice("common bias", sentence, _gain(score, common_bias_mm=0.0))
 
 
 def _accuracy(score: TrialScore, findings: Sequence[TouchFinding]) -> Iterator[Advice]:
@@ -141,13 +172,13 @@ def _time(score: TrialScore, motion: Mapping[str, float]) -> Iterator[Advice]:
 
 
 def _gain(
-    score: TrialScore, time_s: float | None = None, error_factor: float = 1.0, **safety: float
+    score: TrialScore, time_s: float | None = None, error_factor: float = 1.0, **others: float
 ) -> float:
     measures = replace(
         score.measures,
         completion_time_s=max(time_s or score.measures.completion_time_s, 1e-3),
         # On average, the target error is proportional to the registration error.
         tre_mm=score.measures.tre_mm * min(error_factor, 1.0),
-        **safety,
+        **others,
     )
     return max(0.0, score_trial(measures, score.reference).score - score.score)

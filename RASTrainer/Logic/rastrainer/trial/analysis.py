@@ -24,6 +24,7 @@ from rastrainer.trial.score_reference import region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
 from rastrainer.trial.touch_registration import normals_at, register_touches
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
+from rastrainer.trial.trueness import CommonBias, common_bias, true_touch_errors
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,8 @@ class TrialAnalysis:
     ) -> TrialAnalysis:
         """Return the analysis with the truth and its score.
 
-        The score uses the true error of the rigid registration of all touches.
+        The score uses the true error of the rigid registration of all touches, and their common
+        bias.
 
         Args:
             scenario: of the trial.
@@ -131,26 +133,42 @@ class TrialAnalysis:
             trajectory: from the journal; it explains inaccurate touches.
 
         Raises:
-            InputError: the trial's contacts were not measured, or its procedure is not of this
-                scenario.
+            InputError: the trial's contacts were not measured, its procedure is not of this
+                scenario, or the true pose has no inverse.
         """
         record = self.record
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
+        bias = self._common_bias(scenario, truth)
         score = score_trial(
-            ScoreMeasures.of(record.completion_time_s, tre_mm, record.motion),
+            ScoreMeasures.of(record.completion_time_s, tre_mm, bias.length_mm, record.motion),
             score_reference(scenario, record.task, references),
         )
         normals = normals_at(scenario, record.task, self.rigid.labels)
-        feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory)
+        feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory, bias=bias)
         procedure = procedure_outcome(record, scenario, truth.matrix, references)
         return replace(self, truth=truth, score=score, feedback=feedback, procedure=procedure)
 
-    def scored_as(self, score: TrialScore | None) -> TrialAnalysis:
-        """Return the analysis with a stored score, in its version."""
-        advice = advise(score, self.feedback.touches, self.record.motion)
+    def scored_as(
+        self, score: TrialScore | None, scenario: Scenario, truth: RevealedTruth | None
+    ) -> TrialAnalysis:
+        """Return the analysis with a stored score, in its version, and the stored truth.
+
+        Raises:
+            InputError: the true pose has no inverse.
+        """
+        bias = None if truth is None else self._common_bias(scenario, truth)
+        advice = advise(score, self.feedback.touches, self.record.motion, bias)
         return replace(
-            self, score=score, feedback=replace(self.feedback, score=score, advice=advice)
+            self,
+            truth=truth,
+            score=score,
+            feedback=replace(self.feedback, score=score, advice=advice),
         )
+
+    def _common_bias(self, scenario: Scenario, truth: RevealedTruth) -> CommonBias:
+        rigid = self.rigid
+        errors = true_touch_errors(rigid.moving_mm, truth.matrix, rigid.fixed_mm)
+        return common_bias(errors, normals_at(scenario, self.record.task, rigid.labels))
 
 
 def analyze_trial(

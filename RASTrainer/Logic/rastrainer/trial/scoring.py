@@ -1,4 +1,4 @@
-"""RASTrainer's score of a trial: 0 to 100, from completion time, true target error and safety.
+"""RASTrainer's score of a trial: 0 to 100, from completion time, true errors and safety.
 
 Each is a strictly decreasing desirability (Harrington 1965, Derringer and Suich 1980): faster, more
 accurate and gentler are better. The score is the geometric mean of time and accuracy, times the
@@ -6,9 +6,9 @@ square root of safety, which is 1 without unintended contact. Exceeding a limit 
 far that no such trial reaches any acceptable one.
 
 Accuracy is the true error over the region in which the registration has to be right
-(`rastrainer.trial.score_reference`), which only a simulator knows: neither FRE nor expected TRE can
-detect an offset common to all touches. The references come from the scenario and do not depend on
-the mode.
+(`rastrainer.trial.score_reference`), times the trueness of the touches: the bias that all of them
+share (`rastrainer.trial.trueness`). Only a simulator knows either; neither FRE nor expected TRE can
+detect a common bias. The references come from the scenario and do not depend on the mode.
 
 Pauses are not part of the completion time: the arm is still, and interruptions should not cost
 points. But they give time to think, so pauses longer in total than `LONG_PAUSE_S` are reported with
@@ -25,10 +25,11 @@ from typing import Any, NamedTuple
 from rastrainer.desirability import TIME_FLOOR, falling, of_time
 from rastrainer.errors import InputError
 
-SCORE_VERSION = "2"
+SCORE_VERSION = "3"
 """Changes with any change of a formula or a reference, so that scores stay comparable."""
 FIRST_SCORE_VERSION = "1"
-"""Scored time and the expected TRE at one target; such scores are read, and made no more."""
+"""Scored time and the expected TRE at one target; such scores are read, and made no more. Version 2
+did not score the common bias of the touches."""
 PASS_MARK = 70.0
 """Score to reach where a study's protocol has no mark of its own from contrasting groups."""
 LONG_PAUSE_S = 30.0
@@ -36,6 +37,10 @@ LONG_PAUSE_S = 30.0
 LIMIT_MM = 1.5
 """Largest acceptable true TRE. Image-guided neurosurgery asks for 2 mm in all, of which the images,
 the robot and its instrument take the rest: √(2² − 1.5²) = 1.3 mm."""
+HALF_COMMON_BIAS_MM, COMMON_BIAS_LIMIT_MM = 1.0, 1.5
+COMMON_BIAS_POWER = 4
+"""Steeper than the others: touches that scatter by 1 mm seem to share 0.4 mm, which should cost
+little, and a true bias of 2 mm much. Half, power and limit are our own convention."""
 HALF_CONTACT_S, CONTACT_LIMIT_S = 4.0, 8.0
 """Unintended contact in a trial that halves the desirability, and the most that is acceptable: a
 brush of a second now and then, not the tool's way of traveling. Our own convention, as the next."""
@@ -78,6 +83,7 @@ class ScoreMeasures:
         contact_time_s: of unintended contact; None in version 1, as the next two.
         contact_path_mm: of the tip during that.
         pressing_depth_mm: RMS over the fiducials of how deep the tool was pressed in.
+        common_bias_mm: length of the bias that all touches share; None in versions 1 and 2.
     """
 
     completion_time_s: float
@@ -85,10 +91,15 @@ class ScoreMeasures:
     contact_time_s: float | None
     contact_path_mm: float | None
     pressing_depth_mm: float | None
+    common_bias_mm: float | None
 
     @classmethod
     def of(
-        cls, completion_time_s: float, tre_mm: float, motion: Mapping[str, float]
+        cls,
+        completion_time_s: float,
+        tre_mm: float,
+        common_bias_mm: float,
+        motion: Mapping[str, float],
     ) -> ScoreMeasures:
         """Return the measures of a trial with these motion metrics.
 
@@ -96,12 +107,13 @@ class ScoreMeasures:
             InputError: its contacts were not measured.
         """
         try:
-            return cls(completion_time_s, tre_mm, *(float(motion[name]) for name in SAFETY_METRICS))
+            time_s, path_mm, depth_mm = (float(motion[name]) for name in SAFETY_METRICS)
         except KeyError as error:
             raise InputError(
                 f"The trial's contacts were not measured ({error.args[0]} is missing), so it "
                 "cannot be scored."
             ) from None
+        return cls(completion_time_s, tre_mm, time_s, path_mm, depth_mm, common_bias_mm)
 
     @property
     def safety(self) -> SafetyMeasures | None:
@@ -119,6 +131,7 @@ class ScoreMeasures:
             (self.contact_time_s, "time of unintended contact must be a number of seconds"),
             (self.contact_path_mm, "path of unintended contact must be a number of mm"),
             (self.pressing_depth_mm, "pressing depth must be a number of mm"),
+            (self.common_bias_mm, "common bias of the touches must be a number of mm"),
         ):
             if value is None or not 0 <= value <= MAX_MEASURE:
                 raise InputError(f"The {what}, 0 or above.")
@@ -137,10 +150,11 @@ class TrialScore:
     Attributes:
         score: above 0 up to 100; about 51 for a gentle trial at both references.
         time_desirability: from `TIME_FLOOR` (never done) to 1 (at once).
-        accuracy_desirability: from 0 (no registration) to 1 (no error).
+        accuracy_desirability: from 0 (no registration) to 1 (no error, no common bias).
         safety_desirability: from 0 to 1 (no unintended contact, nothing pressed in); None in
             version 1.
         is_accurate: whether the target error is within the limit.
+        is_unbiased: whether the common bias is; None in versions 1 and 2.
         is_safe: whether contact and pressing are; None in version 1.
         measures: what was scored.
         reference: what it was measured against.
@@ -152,6 +166,7 @@ class TrialScore:
     accuracy_desirability: float
     safety_desirability: float | None
     is_accurate: bool
+    is_unbiased: bool | None
     is_safe: bool | None
     measures: ScoreMeasures
     reference: ScoreReference
@@ -160,7 +175,7 @@ class TrialScore:
     @property
     def acceptable(self) -> bool:
         """Whether the trial is within all limits."""
-        return self.is_accurate and self.is_safe is not False
+        return self.is_accurate and self.is_unbiased is not False and self.is_safe is not False
 
     def to_json(self) -> dict[str, Any]:
         """Return the score as a JSON object."""
@@ -171,6 +186,7 @@ class TrialScore:
             "safety_desirability": self.safety_desirability,
             "acceptable": self.acceptable,
             "is_accurate": self.is_accurate,
+            "is_unbiased": self.is_unbiased,
             "is_safe": self.is_safe,
             "measures": dict(vars(self.measures)),
             "reference_time_s": self.reference.time_s,
@@ -181,21 +197,22 @@ class TrialScore:
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> TrialScore:
-        """Return the score that `to_json` described, of this version or the first."""
+        """Return the score that `to_json` described, of this version or an earlier one."""
         if "measures" not in value:
             is_accurate, is_safe = value["acceptable"], None
             measures = ScoreMeasures(
-                value["completion_time_s"], value["expected_tre_mm"], None, None, None
+                value["completion_time_s"], value["expected_tre_mm"], None, None, None, None
             )
         else:
             is_accurate, is_safe = value["is_accurate"], value["is_safe"]
-            measures = ScoreMeasures(**value["measures"])
+            measures = ScoreMeasures(**{"common_bias_mm": None, **value["measures"]})
         return cls(
             score=value["score"],
             time_desirability=value["time_desirability"],
             accuracy_desirability=value["accuracy_desirability"],
             safety_desirability=value.get("safety_desirability"),
             is_accurate=is_accurate,
+            is_unbiased=value.get("is_unbiased"),
             is_safe=is_safe,
             measures=measures,
             reference=ScoreReference(
@@ -221,17 +238,20 @@ def score_trial(measures: ScoreMeasures, reference: ScoreReference) -> TrialScor
         InputError: a measure is no such number.
     """
     safety_measures = measures.check()
+    bias_mm = measures.common_bias_mm
+    assert bias_mm is not None
     time = of_time(measures.completion_time_s, reference.time_s)
-    accuracy = falling(measures.tre_mm, reference.tre_mm)
+    accuracy = _accuracy(measures.tre_mm, bias_mm, reference)
     safety = _safety(*safety_measures)
     is_accurate = measures.tre_mm <= reference.limit_mm
+    is_unbiased = bias_mm <= COMMON_BIAS_LIMIT_MM
     is_safe = (
         safety_measures.contact_time_s <= CONTACT_LIMIT_S
         and safety_measures.contact_path_mm <= CONTACT_PATH_LIMIT_MM
         and safety_measures.pressing_depth_mm <= DEPTH_LIMIT_MM
     )
     product = time * accuracy * safety
-    if not (is_accurate and is_safe):
+    if not (is_accurate and is_unbiased and is_safe):
         product *= _worst_acceptable(reference)
     return TrialScore(
         score=100 * math.sqrt(product),
@@ -239,10 +259,16 @@ def score_trial(measures: ScoreMeasures, reference: ScoreReference) -> TrialScor
         accuracy_desirability=accuracy,
         safety_desirability=safety,
         is_accurate=is_accurate,
+        is_unbiased=is_unbiased,
         is_safe=is_safe,
         measures=measures,
         reference=reference,
     )
+
+
+def _accuracy(tre_mm: float, bias_mm: float, reference: ScoreReference) -> float:
+    trueness = falling(bias_mm, HALF_COMMON_BIAS_MM, COMMON_BIAS_POWER)
+    return falling(tre_mm, reference.tre_mm) * trueness
 
 
 def _safety(contact_time_s: float, contact_path_mm: float, depth_mm: float) -> float:
@@ -258,6 +284,6 @@ def _worst_acceptable(reference: ScoreReference) -> float:
 
     As a factor it brings every trial beyond a limit below every acceptable one.
     """
-    accuracy = falling(reference.limit_mm, reference.tre_mm)
+    accuracy = _accuracy(reference.limit_mm, COMMON_BIAS_LIMIT_MM, reference)
     safety = _safety(CONTACT_LIMIT_S, CONTACT_PATH_LIMIT_MM, DEPTH_LIMIT_MM)
     return TIME_FLOOR * accuracy * safety

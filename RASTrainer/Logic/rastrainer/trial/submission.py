@@ -24,6 +24,8 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
     # What was analyzed with its truth has a score.
     assert score is not None
     published = analysis.published_score
+    # A trial run has no progress, and no mark; null is a study's without a mark for this version.
+    mark = {} if progress is None else {"passMark": progress.pass_mark}
     return {
         "trialId": analysis.record.trial_id,
         "score": score.score,
@@ -32,14 +34,16 @@ def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
             "residualsMm": analysis.rigid.residuals_mm.tolist(),
             "treIntervalMm": list(analysis.expected_tre.interval_mm),
             "regionTreMm": score.measures.tre_mm,
+            "commonBiasMm": score.measures.common_bias_mm,
             "timeDesirability": score.time_desirability,
             "accuracyDesirability": score.accuracy_desirability,
             "safetyDesirability": score.safety_desirability,
             "isAccurate": score.is_accurate,
+            "isUnbiased": score.is_unbiased,
             "isSafe": score.is_safe,
             "ctps": None if published is None else published.published,
             "warnings": [warning.message for warning in analysis.rigid.warnings],
-            "passMark": None if progress is None else progress.pass_mark,
+            **mark,
             "feedback": [each.to_json() for each in analysis.feedback.short_sentences],
             **procedure,
         },

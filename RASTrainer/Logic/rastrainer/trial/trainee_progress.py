@@ -64,26 +64,28 @@ class TraineeProgress:
     Attributes:
         scores: Of the trials of this task in this mode, in order; like competence, without scores
             of other versions.
-        pass_mark: Score that passes.
+        pass_mark: Score that passes; None without one for scores of this version.
         competence: LC-CUSUM over the trainee's trials of all tasks in this mode; aborted ones count
-            as not passed.
+            as not passed. None without a pass mark.
         sentences: The same in words.
     """
 
     scores: tuple[float, ...]
-    pass_mark: float
-    competence: LcCusum
+    pass_mark: float | None
+    competence: LcCusum | None
     sentences: tuple[Sentence, ...]
 
 
-def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> TraineeProgress:
+def progress_of(
+    past: Sequence[PastTrial], trial_id: str, pass_mark: float | None
+) -> TraineeProgress:
     """Return the progress at a trial.
 
     Args:
         past: All scored trials of the trainee without trial runs, and aborted ones that count as
             not passed, in order; later ones are ignored.
         trial_id: Of one of them.
-        pass_mark: Score that passes.
+        pass_mark: Score that passes; None without one for scores of the trial's version.
 
     Raises:
         InputError: the trial is not among them.
@@ -100,11 +102,15 @@ def progress_of(past: Sequence[PastTrial], trial_id: str, pass_mark: float) -> T
         if (other.mode, other.task) == (trial.mode, trial.task) and not other.is_aborted
     ]
     scores = tuple(other.score for other in played if _compares(other, trial))
+    is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
+    about_scores = _about_scores(scores, is_best, len(scores) < len(played))
+    if pass_mark is None:
+        about_mark = say("no mark") if trial.acceptable else say("unacceptable")
+        return TraineeProgress(scores, None, None, (about_scores, about_mark))
     failures = [not passes(other.score, other.acceptable, pass_mark) for other in in_mode]
     competence = competence_of(failures)
-    is_best = len(scores) > 1 and scores[-1] > max(scores[:-1])
     sentences = (
-        _about_scores(scores, is_best, len(scores) < len(played)),
+        about_scores,
         _about_mark(trial.score, trial.acceptable, pass_mark),
         _about_competence(competence, len(failures)),
     )

@@ -12,6 +12,7 @@ from rastrainer.number_text import fixed
 from rastrainer.registration.registration import Registration
 from rastrainer.trial.advice import Advice, advise
 from rastrainer.trial.scoring import (
+    COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
@@ -22,6 +23,7 @@ from rastrainer.trial.scoring import (
 )
 from rastrainer.trial.touch_findings import TouchFinding, touch_findings
 from rastrainer.trial.trainee_progress import TraineeProgress
+from rastrainer.trial.trueness import CommonBias
 from rastrainer.trial.wording import Sentence, say
 
 MAX_SHORT = 6
@@ -104,6 +106,7 @@ def trial_feedback(
     motion: Mapping[str, float] | None = None,
     trajectory: Trajectory | None = None,
     progress: TraineeProgress | None = None,
+    bias: CommonBias | None = None,
 ) -> TrialFeedback:
     """Return the feedback on a trial; what is not known is left out.
 
@@ -114,13 +117,14 @@ def trial_feedback(
         motion: Motion metrics; with `path_efficiency`, detours are advised on too.
         trajectory: Of the trial, from its journal.
         progress: Of the trainee.
+        bias: That all touches share.
     """
     findings = touch_findings(registration, normals, trajectory)
     return TrialFeedback(
         score=score,
         touches=findings,
         worst=max(findings, key=lambda finding: finding.residual_mm),
-        advice=advise(score, findings, motion or {}),
+        advice=advise(score, findings, motion or {}, bias),
         progress=progress,
         paused_s=(motion or {}).get("pause_time_s", 0.0),
     )
@@ -129,11 +133,17 @@ def trial_feedback(
 def _accuracy_sentence(score: TrialScore) -> str:
     is_first = score.version == FIRST_SCORE_VERSION
     what = "expected at the target" if is_first else "true error in the brain"
-    limit = f"; more than {score.reference.limit_mm:g} mm is not acceptable."
-    beyond = "." if score.is_accurate else limit
+    bias_mm, limit_mm = score.measures.common_bias_mm, score.reference.limit_mm
+    bias = "" if bias_mm is None else f" and {fixed(bias_mm, 2)} mm common to all touches"
+    beyond = []
+    if not score.is_accurate:
+        beyond.append(f"more than {limit_mm:g} mm of error")
+    if score.is_unbiased is False:
+        beyond.append(f"more than {COMMON_BIAS_LIMIT_MM:g} mm common to all touches")
+    end = f"; {' and '.join(beyond)} is not acceptable." if beyond else "."
     return (
-        f"Accuracy: {fixed(score.measures.tre_mm, 2)} mm {what}, worth "
-        f"{fixed(100 * score.accuracy_desirability, 0)} of 100{beyond}"
+        f"Accuracy: {fixed(score.measures.tre_mm, 2)} mm {what}{bias}, worth "
+        f"{fixed(100 * score.accuracy_desirability, 0)} of 100{end}"
     )
 
 

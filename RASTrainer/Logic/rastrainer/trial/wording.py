@@ -27,6 +27,17 @@ ENGLISH: Mapping[str, str] = {
     "would be about {share:.0f} % more exact.",
     "depth": "Most of the error is in depth: bring the tip all the way onto the skin, and look "
     "from the side before you touch.",
+    "common bias": "On average, the touches are {bias:.1f} mm too far {direction}, which the "
+    "registration error cannot show: look at the tip from a second side before you touch.",
+    "oblique common bias": "On average, the touches are {bias:.1f} mm too far {direction} and "
+    "{second}, which the registration error cannot show: look at the tip from a second side before "
+    "you touch.",
+    "bias to the left": "to the patient's left",
+    "bias to the right": "to the patient's right",
+    "bias to the back": "toward the back of the head",
+    "bias to the face": "toward the face",
+    "bias to the neck": "toward the neck",
+    "bias to the crown": "toward the crown",
     "idle time": "The tool stood still for {idle:.0f} s of {time:.0f} s: look for the next point "
     "while you are still at this one.",
     "detours": "The tool went {times:.1f} times the shortest way: go around the head closer to it "
@@ -47,10 +58,12 @@ ENGLISH: Mapping[str, str] = {
     "more points than last": "{points:.0f} points more than in your last trial of this task.{best}",
     "less points than last": "{points:.0f} points less than in your last trial of this task.{best}",
     "best": " It is your best so far.",
-    "unacceptable": "Not passed: the true error in the brain, or the contact with the head, is "
-    "beyond what is acceptable.",
+    "unacceptable": "Not passed: the true error in the brain, the bias that all touches share, or "
+    "the contact with the head is beyond what is acceptable.",
     "passed": "Passed: the mark is {mark:.0f}.",
     "not passed": "Not passed yet: {points:.0f} points to the mark of {mark:.0f}.",
+    "no mark": "Neither passed nor failed: the pass mark of this study is for another version of "
+    "the score.",
     "competent": "Your trials show competence since number {number}: of those who still fail in "
     "{failing:.0f} % of their trials, {risk:.0f} % come so far by chance within {trials} trials "
     "(LC-CUSUM).",

@@ -164,6 +164,12 @@ class ResultPage(FinishedPage):
             fact = self._error("result.region tre", float(region))
             is_beyond = result.details.get("isAccurate") is False
             facts.append(replace(fact, tone=Tone.WARNING) if is_beyond else fact)
+        bias = result.details.get("commonBiasMm")
+        if _is_number(bias):
+            text = self.say("result.mm", error=float(bias))
+            is_biased = result.details.get("isUnbiased") is False
+            tone = Tone.WARNING if is_biased else Tone.PLAIN
+            facts.append(Fact(self.say("result.common bias"), text, tone))
         if is_unacceptable:
             facts = [_not_good(fact) for fact in facts]
         ctps = result.details.get("ctps")
@@ -181,7 +187,11 @@ class ResultPage(FinishedPage):
 
 def _beyond_limits(result: TrialResult) -> list[str]:
     """Return the keys of the sentences that say why a trial is not acceptable."""
-    told = (("isAccurate", "result.not accurate"), ("isSafe", "result.not safe"))
+    told = (
+        ("isAccurate", "result.not accurate"),
+        ("isUnbiased", "result.not unbiased"),
+        ("isSafe", "result.not safe"),
+    )
     return [key for name, key in told if result.details.get(name) is False]
 
 
@@ -193,8 +203,8 @@ def _not_good(fact: Fact) -> Fact:
 def _tone_of_score(result: TrialResult) -> Tone:
     if _beyond_limits(result):
         return Tone.WARNING
-    mark = result.details.get("passMark")
-    if result.score >= (mark if _is_number(mark) else PASS_MARK):
+    mark = result.details.get("passMark", PASS_MARK)
+    if _is_number(mark) and result.score >= mark:
         return Tone.GOOD
     return Tone.WARNING if result.score < POOR_SCORE else Tone.PLAIN
 
@@ -204,8 +214,7 @@ def _facts_of_trial(session: TrainingSession) -> tuple[Fact, ...]:
     say = session.texts.say
     return (
         Fact(say("result.time"), session.duration(session.state.elapsed)),
-        Fact(say("result.refused"), str(training.rejected)),
-        Fact(say("result.undone"), str(training.undone)),
+        Fact(say("result.repeated"), f"{training.rejected} / {training.undone}"),
     )
 
 

@@ -78,7 +78,9 @@ def _past_trial(journal: Path) -> PastTrial | None:
             record.mode,
             record.completion_time_s,
             float(told["score"]),
-            details["isAccurate"] is True and details["isSafe"] is not False,
+            details["isAccurate"] is True
+            and details.get("isUnbiased") is not False
+            and details["isSafe"] is not False,
             score_version=str(details["scoreVersion"]),
         )
     except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):

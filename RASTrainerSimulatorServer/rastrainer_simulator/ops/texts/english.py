@@ -293,9 +293,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "without bias and alike. It cannot see an offset that all of them share.",
         "result.true tre": "True error at the target (TRE)",
         "result.region tre": "True error in the brain (TRE)",
+        "result.common bias": "Bias that all touches share",
         "result.unacceptable score": "{score:.0f} / 100, not acceptable",
         "result.not accurate": "Not acceptable: an instrument guided by this registration would "
         "miss its target. The true error in the brain is beyond the limit.",
+        "result.not unbiased": "Not acceptable: all touches are off in the same direction, by more "
+        "than the limit.",
         "result.not safe": "Not acceptable: the tool lay on the head too long or was pressed in "
         "too deep.",
         "result.ctps": "CTPS",
@@ -303,8 +306,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "result.mm": "{error:.2f} mm",
         "result.points": "{points:.1f}",
         "result.time": "Time",
-        "result.refused": "Touches that did not count",
-        "result.undone": "Touches taken back",
+        "result.repeated": "Touches refused / taken back",
         "result.next": "Next: {task}",
         "result.again": "Again: {task}",
         "result.replay": "Show the trial again",

@@ -71,6 +71,18 @@ _FEEDBACK: Mapping[str, str] = {
     "Registrierung etwa {share:.0f} % genauer.",
     "feedback.depth": "Der Fehler liegt vor allem in der Tiefe: bring die Spitze ganz auf die "
     "Haut, und schau von der Seite, bevor du berührst.",
+    "feedback.common bias": "Die Berührungen liegen im Mittel {bias:.1f} mm zu weit {direction}, "
+    "was der Registrierungsfehler nicht zeigen kann: sieh dir die Spitze von einer zweiten Seite "
+    "an, bevor du berührst.",
+    "feedback.oblique common bias": "Die Berührungen liegen im Mittel {bias:.1f} mm zu weit "
+    "{direction} und {second}, was der Registrierungsfehler nicht zeigen kann: sieh dir die Spitze "
+    "von einer zweiten Seite an, bevor du berührst.",
+    "feedback.bias to the left": "zur linken Seite des Patienten hin",
+    "feedback.bias to the right": "zur rechten Seite des Patienten hin",
+    "feedback.bias to the back": "zum Hinterkopf hin",
+    "feedback.bias to the face": "zum Gesicht hin",
+    "feedback.bias to the neck": "zum Hals hin",
+    "feedback.bias to the crown": "zum Scheitel hin",
     "feedback.idle time": "Das Werkzeug stand {idle:.0f} s von {time:.0f} s still: such den "
     "nächsten Punkt, während du noch an diesem bist.",
     "feedback.detours": "Das Werkzeug fuhr das {times:.1f}-Fache des kürzesten Wegs: fahr näher "
@@ -93,11 +105,13 @@ _FEEDBACK: Mapping[str, str] = {
     "feedback.less points than last": "{points:.0f} Punkte weniger als in deinem letzten Versuch "
     "dieser Aufgabe.{best}",
     "feedback.best": " Es ist dein bisher bester.",
-    "feedback.unacceptable": "Nicht bestanden: der wahre Fehler im Gehirn oder der Kontakt mit dem "
-    "Kopf ist größer als zulässig.",
+    "feedback.unacceptable": "Nicht bestanden: der wahre Fehler im Gehirn, der gemeinsame Versatz "
+    "aller Berührungen oder der Kontakt mit dem Kopf ist größer als zulässig.",
     "feedback.passed": "Bestanden: die Marke ist {mark:.0f}.",
     "feedback.not passed": "Noch nicht bestanden: {points:.0f} Punkte bis zur Marke von "
     "{mark:.0f}.",
+    "feedback.no mark": "Weder bestanden noch nicht bestanden: die Marke dieser Studie gilt für "
+    "eine andere Version der Punktzahl.",
     "feedback.competent": "Deine Versuche zeigen Können seit Nummer {number}: von denen, die noch "
     "in {failing:.0f} % ihrer Versuche scheitern, kommen durch Zufall {risk:.0f} % in {trials} "
     "Versuchen so weit (LC-CUSUM).",
@@ -389,9 +403,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "Verschiebung, die alle gemeinsam haben, sieht er nicht.",
         "result.true tre": "Wahrer Fehler am Ziel (TRE)",
         "result.region tre": "Wahrer Fehler im Gehirn (TRE)",
+        "result.common bias": "Gemeinsamer Versatz aller Berührungen",
         "result.unacceptable score": "{score:.0f} / 100, nicht zulässig",
         "result.not accurate": "Nicht zulässig: ein Instrument, das dieser Registrierung folgt, "
         "würde sein Ziel verfehlen. Der wahre Fehler im Gehirn ist größer als zulässig.",
+        "result.not unbiased": "Nicht zulässig: alle Berührungen liegen in derselben Richtung "
+        "neben ihren Punkten, weiter als zulässig.",
         "result.not safe": "Nicht zulässig: das Werkzeug lag zu lange am Kopf an oder wurde zu "
         "tief eingedrückt.",
         "result.ctps": "CTPS",
@@ -399,8 +416,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "result.mm": "{error:.2f} mm",
         "result.points": "{points:.1f}",
         "result.time": "Zeit",
-        "result.refused": "Berührungen, die nicht zählten",
-        "result.undone": "Zurückgenommene Berührungen",
+        "result.repeated": "Berührungen abgelehnt / zurückgenommen",
         "result.next": "Weiter: {task}",
         "result.again": "Noch einmal: {task}",
         "result.replay": "Versuch noch einmal zeigen",

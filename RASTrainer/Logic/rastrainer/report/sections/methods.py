@@ -25,10 +25,13 @@ from rastrainer.trial.score_reference import (
     UNDER_SKIN_MM,
 )
 from rastrainer.trial.scoring import (
+    COMMON_BIAS_LIMIT_MM,
+    COMMON_BIAS_POWER,
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
     FIRST_SCORE_VERSION,
+    HALF_COMMON_BIAS_MM,
     HALF_CONTACT_PATH_MM,
     HALF_CONTACT_S,
     HALF_DEPTH_MM,
@@ -99,6 +102,7 @@ def _missing(data: StudyData) -> list[str]:
 
 
 REFERENCES = (
+    "ISO 5725-1:2023, Accuracy (trueness and precision) of measurement methods and results",
     "Student 1908, The probable error of a mean. Biometrika 6",
     "Wilcoxon 1945, Individual comparisons by ranking methods. Biometrics Bulletin 1",
     "Hedges 1981, Distribution theory for Glass's estimator of effect size. J Educ Stat 6",
@@ -194,7 +198,8 @@ def _measures(data: StudyData) -> str:
     )
     found = {name for trial in data.trials for name in trial.values}
     if "score" in found:
-        words += _first_score() if compared_version(data) == FIRST_SCORE_VERSION else _score()
+        version = compared_version(data)
+        words += _first_score() if version == FIRST_SCORE_VERSION else _score(version)
     if "sparc" in found:
         words += f" Motion metrics are of filtered trajectories ({FILTER})."
     return words
@@ -211,25 +216,36 @@ def _first_score() -> str:
     )
 
 
-def _score() -> str:
+def _score(version: str) -> str:
+    bias, bias_limit = "", ""
+    if version == SCORE_VERSION:
+        bias = (
+            "This is multiplied by the trueness (ISO 5725-1) of the touches, "
+            f"1/(1 + (b/{HALF_COMMON_BIAS_MM:g} mm)^{COMMON_BIAS_POWER}), with b the length of the "
+            "bias along the skin that best explains the true errors of all touches (least "
+            "squares), because on a small patch of skin such a bias hardly moves the brain. "
+        )
+        bias_limit = f"{COMMON_BIAS_LIMIT_MM:g} mm of common bias, "
     return (
-        f" The RASTrainer score (version {SCORE_VERSION}, 0 to 100) is made of three "
+        f" The RASTrainer score (version {version or 'unknown'}, 0 to 100) is made of three "
         "desirabilities (Harrington 1965), each of the form 1/(1 + (value/half)²): the geometric "
         "mean (Derringer and Suich 1980) of time and accuracy, times the square root of safety. "
         "Accuracy is the true target error of the rigid registration, which the simulator reveals "
         "once the registration is final: the root mean square over the scenario's targets and "
         f"over a {SPACING_MM:g} mm grid of the brain, half and half (points at least "
         f"{UNDER_SKIN_MM:g} mm under the skin and at most {BELOW_VERTEX_MM:g} mm below the "
-        "vertex). Safety is the product of three: the time of unintended contact (one half at "
-        f"{HALF_CONTACT_S:g} s), its path ({HALF_CONTACT_PATH_MM:g} mm) and the depth to which the "
-        f"tool was pressed in ({HALF_DEPTH_MM:g} mm, root mean square over the fiducials). A trial "
-        f"with more than {LIMIT_MM:g} mm (where the protocol sets no other limit), "
+        f"vertex). {bias}Safety is the product of three: the time of unintended contact (one half "
+        f"at {HALF_CONTACT_S:g} s), its path ({HALF_CONTACT_PATH_MM:g} mm) and the depth to which "
+        f"the tool was pressed in ({HALF_DEPTH_MM:g} mm, root mean square over the fiducials). A "
+        f"trial with more than {LIMIT_MM:g} mm of error (where the protocol sets no other limit), "
+        f"{bias_limit}"
         f"{CONTACT_LIMIT_S:g} s, {CONTACT_PATH_LIMIT_MM:g} mm or {DEPTH_LIMIT_MM:g} mm deep scores "
         "below every trial of its task within the limits, and does not pass. The references of "
         "time and error are the same in all modes and, where the protocol sets none, come from the "
-        "scenario: time from the path through the fiducials, the error from the target error that "
-        "Fitzpatrick, West and Maurer (1998) expect for a localization error of "
-        f"{REFERENCE_FLE_MM:.1f} mm. "
+        "scenario: time from the path through the fiducials; the error by propagating independent "
+        f"localization errors along the skin, of {REFERENCE_FLE_MM:.1f} mm, to the same region to "
+        "first order (RASTrainer's own; Fitzpatrick, West and Maurer 1998 assume isotropic "
+        "errors). "
         "Halves and limits are RASTrainer's own conventions."
     )
 

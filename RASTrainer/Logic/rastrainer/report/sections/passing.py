@@ -10,7 +10,7 @@ import numpy as np
 from rastrainer.number_text import counted, percent
 from rastrainer.report.elements.charts import learning_curves
 from rastrainer.report.elements.markup import bullets, figure, heading, paragraph, section, table
-from rastrainer.report.elements.scores import compared_version, versions_note
+from rastrainer.report.elements.scores import SCORE, compared_version, versions_note
 from rastrainer.report.elements.svg import mode_color
 from rastrainer.statistics.competence import (
     FALSE_DISCOVERY,
@@ -26,10 +26,12 @@ from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import (
+    COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
     FIRST_SCORE_VERSION,
+    SCORE_VERSION,
     passes,
 )
 from rastrainer.trial.trainee_progress import (
@@ -125,15 +127,17 @@ HEADER = [
 
 def passing(data: StudyData) -> str:
     """Return the section; "" where no trial has a score."""
-    mark = pass_mark_of(data.protocol)
+    if not any(SCORE in trial.values for trial in data.trials):
+        return ""
+    mark = pass_mark_of(data.protocol, compared_version(data))
+    if mark is None:
+        return section("Pass mark", paragraph(_no_mark(data), "warning"))
     found = {mode: _failures(data, mode, mark) for mode in data.modes}
     found = {mode: failures for mode, failures in found.items() if failures}
     competence = {
         mode: {trainee: competence_of(own) for trainee, own in failures.items()}
         for mode, failures in found.items()
     }
-    if not found:
-        return ""
     return section(
         "Pass mark",
         table([HEADER], [_row(data, mode, found[mode], competence[mode]) for mode in found]),
@@ -212,21 +216,8 @@ def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
 def _words(data: StudyData, mark: float) -> str:
     version = compared_version(data)
     source = "the default, since the study sets no mark; no data support it"
-    protocol = data.protocol
-    if protocol is not None and protocol.pass_mark is not None:
+    if data.protocol is not None and data.protocol.pass_mark is not None:
         source = "set by the protocol"
-        if version and protocol.score_version != version:
-            source += (
-                f" for score version {protocol.score_version}, so that it need not fit these "
-                f"scores of version {version}"
-            )
-    acceptable = (
-        "an expected target error within the limit of its task"
-        if version == FIRST_SCORE_VERSION
-        else "within the limits of the score: a true target error in the brain within that of its "
-        f"task, unintended contact of at most {CONTACT_LIMIT_S:g} s and "
-        f"{CONTACT_PATH_LIMIT_MM:g} mm, and a pressing depth of at most {DEPTH_LIMIT_MM:g} mm"
-    )
     limit = lc_cusum_limit(ADEQUATE_FAILURES, INADEQUATE_FAILURES, TRAINING_TRIALS)
     fewest = fewest_trials(ADEQUATE_FAILURES, INADEQUATE_FAILURES, limit)
     too_likely = chance_of_successes(
@@ -234,7 +225,7 @@ def _words(data: StudyData, mark: float) -> str:
     )
     return (
         f"A trial passes with {mark:g} of 100 points ({source}) and "
-        f"{acceptable}; one that was aborted after a touch is not passed. "
+        f"{_acceptable(version)}; one that was aborted after a touch is not passed. "
         "LC-CUSUM (Biau and Porcher 2010) calls a trainee competent "
         "once the trials of a mode, over all tasks, speak clearly enough for a failure rate of "
         f"{percent(ADEQUATE_FAILURES)} against one of {percent(INADEQUATE_FAILURES)}. Fewer than "
@@ -242,4 +233,28 @@ def _words(data: StudyData, mark: float) -> str:
         f"{fewest - 1} passed trials would be reached by chance, within {TRAINING_TRIALS} trials, "
         f"by {100 * too_likely:.1f} % of those who fail in {percent(INADEQUATE_FAILURES)}, and at "
         f"most {percent(FALSE_DISCOVERY)} of them may be called competent."
+    )
+
+
+def _acceptable(version: str) -> str:
+    if version == FIRST_SCORE_VERSION:
+        return "an expected target error within the limit of its task"
+    bias = f"a bias common to all touches of at most {COMMON_BIAS_LIMIT_MM:g} mm, "
+    return (
+        "within the limits of the score: a true target error in the brain within that of its "
+        f"task, {bias if version == SCORE_VERSION else ''}unintended contact of at most "
+        f"{CONTACT_LIMIT_S:g} s and {CONTACT_PATH_LIMIT_MM:g} mm, and a pressing depth of at most "
+        f"{DEPTH_LIMIT_MM:g} mm"
+    )
+
+
+def _no_mark(data: StudyData) -> str:
+    assert data.protocol is not None
+    version = compared_version(data)
+    return (
+        f"The protocol's pass mark of {data.protocol.pass_mark:g} points was set for score version "
+        f"{data.protocol.score_version}, and these trials have scores of "
+        f"{f'version {version}' if version else 'an unknown version'}. The two do not compare, so "
+        "that this report does not say which trials passed or who is competent. "
+        f"`rastrainer pass-mark` computes a mark of your own. {versions_note(data)}".rstrip()
     )

@@ -179,7 +179,8 @@ class ReplayLogic:
         analysis = self._run(EXPLAIN, progress, trial.record, scenario, self._records)
         with self._openStudy() as study:
             # A score keeps its version, however it would be made today.
-            return with_progress(analysis.scored_as(trial.score), study).feedback
+            scored = analysis.scored_as(trial.score, scenario, trial.truth)
+            return with_progress(scored, study).feedback
 
     def _track(self, trialId: str, progress: Progress) -> ReplayTrack:
         return self._run(READ_TRACK, progress, self._records, trialId)

@@ -20,6 +20,7 @@ from rastrainer.study.database.values import StoredTrial
 from rastrainer.trial.analysis import published_score
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import (
+    COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
     CONTACT_PATH_LIMIT_MM,
     DEPTH_LIMIT_MM,
@@ -106,10 +107,6 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
 
 def _parts(score: TrialScore) -> list[Row]:
     """Return a score and the parts that it has in its version."""
-    limit = score.reference.limit_mm
-    accuracy = _("within the limit of {limit:g} mm")
-    if not score.is_accurate:
-        accuracy = _("beyond the limit of {limit:g} mm")
     version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
     rows = [
         Row(_("Score"), score.score, "/ 100", version.format(v=score.version)),
@@ -118,22 +115,19 @@ def _parts(score: TrialScore) -> list[Row]:
             _("… its part for accuracy"),
             100 * score.accuracy_desirability,
             "%",
-            accuracy.format(limit=limit),
+            _accuracyNote(score),
         ),
     ]
     if score.safety_desirability is None:
         return rows
-    measures = score.measures
+    measures, limit_mm = score.measures, score.reference.limit_mm
+    error = "; ".join([_("RMS over targets and brain"), _limit(limit_mm, "mm")])
     safety = _("within the limits") if score.is_safe else _("beyond a limit")
     return [
         *rows,
         Row(_("… its part for safety"), 100 * score.safety_desirability, "%", safety),
-        Row(
-            _("True TRE in the brain"),
-            measures.tre_mm,
-            "mm",
-            _("RMS over targets and brain"),
-        ),
+        Row(_("True TRE in the brain"), measures.tre_mm, "mm", error),
+        *_bias(measures.common_bias_mm),
         Row(_("Unintended contact"), measures.contact_time_s, "s", _limit(CONTACT_LIMIT_S, "s")),
         Row(
             _("… its path"),
@@ -143,6 +137,24 @@ def _parts(score: TrialScore) -> list[Row]:
         ),
         Row(_("Pressing depth"), measures.pressing_depth_mm, "mm", _limit(DEPTH_LIMIT_MM, "mm")),
     ]
+
+
+def _accuracyNote(score: TrialScore) -> str:
+    if score.is_unbiased is None:
+        note = _("within the limit of {limit:g} mm")
+        if not score.is_accurate:
+            note = _("beyond the limit of {limit:g} mm")
+        return note.format(limit=score.reference.limit_mm)
+    is_within = score.is_accurate and score.is_unbiased
+    return _("within the limits") if is_within else _("beyond a limit")
+
+
+def _bias(bias_mm: float | None) -> list[Row]:
+    """Return the row of the common bias, which scores before version 3 lack."""
+    if bias_mm is None:
+        return []
+    limit = _limit(COMMON_BIAS_LIMIT_MM, "mm")
+    return [Row(_("Bias that all touches share"), bias_mm, "mm", limit)]
 
 
 def _limit(value: float, unit: str) -> str:

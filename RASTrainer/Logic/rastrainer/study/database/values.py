@@ -10,6 +10,7 @@ import numpy as np
 
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
+from rastrainer.trial.analysis import RevealedTruth
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 
@@ -139,3 +140,10 @@ class StoredTrial:
     true_tre_mm: float | None
     head_to_world: tuple[float, ...] | None
     motion: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def truth(self) -> RevealedTruth | None:
+        """What the simulator revealed; None until then."""
+        if self.head_to_world is None or self.true_tre_mm is None:
+            return None
+        return RevealedTruth(self.head_to_world, self.true_tre_mm)

@@ -25,8 +25,8 @@ BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
     "after-all",
 )
 MOST_STEPS = 1000
-READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, SCORE_VERSION)
-"""A study started with the first continues with the present one; each score holds its own."""
+READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, "2", SCORE_VERSION)
+"""A study started with an earlier one continues with the present; each score holds its own."""
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
     *("repetitions", "trialRun", "breaks", "questionnaires", "scoring", "guidance", "tutorial"),
@@ -117,9 +117,15 @@ class StudyProtocol:
         }
 
 
-def pass_mark_of(protocol: StudyProtocol | None) -> float:
-    """Return the protocol's pass mark, or the default."""
-    return PASS_MARK if protocol is None or protocol.pass_mark is None else protocol.pass_mark
+def pass_mark_of(protocol: StudyProtocol | None, score_version: str) -> float | None:
+    """Return the pass mark of a study for scores of a version.
+
+    The default holds for every version. A protocol's mark was made of scores of one version: there
+    is none for the others.
+    """
+    if protocol is None or protocol.pass_mark is None:
+        return PASS_MARK
+    return protocol.pass_mark if protocol.score_version == score_version else None
 
 
 def read_study_protocol(path: Path | str) -> StudyProtocol:
@@ -174,7 +180,7 @@ def _protocol(fields: Fields) -> StudyProtocol:
         ),
         # Those of the first version are of the expected TRE, which is scored no more.
         references=_references(scoring.fields("references"), tasks)
-        if version == SCORE_VERSION
+        if version != FIRST_SCORE_VERSION
         else {},
         score_version=version,
         pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,

@@ -1,0 +1,104 @@
+"""The estimate of the bias that all touches of a trial share."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.trial.trueness import CommonBias, common_bias, true_touch_errors
+from Testing.touched_head import head_points, random_rotation
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+def skin(rng, count=15):
+    """Normals of the upper half of a head."""
+    normals = head_points(rng, count) / np.array([75.0, 95.0, 85.0]) ** 2
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def along_skin(errors, normals):
+    return errors - normals * np.einsum("...ij,ij->...i", errors, normals)[..., None]
+
+
+@given(seeds)
+def test_a_bias_is_recovered_whatever_part_of_it_leads_off_the_skin(seed):
+    rng = np.random.default_rng(seed)
+    normals, bias = skin(rng), rng.normal(0.0, 2.0, 3)
+    depth = normals * rng.normal(0.0, 3.0, (15, 1))
+    for errors in (along_skin(np.tile(bias, (15, 1)), normals), bias + depth):
+        found = common_bias(errors, normals)
+        assert found.vector_mm == pytest.approx(bias, abs=1e-9)
+        assert found.is_shown
+
+
+@given(seeds)
+def test_it_is_the_least_squares_solution_and_turns_with_the_head(seed):
+    rng = np.random.default_rng(seed)
+    normals, errors = skin(rng), rng.normal(0.0, 1.0, (15, 3))
+    found = common_bias(errors, normals)
+    along = np.eye(3) - normals[:, :, None] * normals[:, None, :]
+    expected = np.linalg.lstsq(along.reshape(45, 3), (along @ errors[..., None]).ravel())[0]
+    assert found.vector_mm == pytest.approx(expected, abs=1e-9)
+    turn = random_rotation(rng)
+    turned = common_bias(errors @ turn.T, normals @ turn.T)
+    assert turned.vector_mm == pytest.approx(turn @ expected, abs=1e-9)
+    assert turned.p == pytest.approx(found.p, abs=1e-9)
+
+
+def test_the_p_value_of_unbiased_errors_is_uniform_and_a_bias_of_a_millimeter_is_shown():
+    rng = np.random.default_rng(3)
+    normals = skin(rng)
+    noise = along_skin(rng.normal(0.0, 0.7, (2000, 15, 3)), normals)
+    p = np.sort([common_bias(errors, normals).p for errors in noise])
+    # Kolmogorov's distance, whose 99.9 % quantile is 1.95/sqrt(n).
+    assert np.abs(p - np.arange(1, 2001) / 2000).max() < 1.95 / np.sqrt(2000)
+    assert np.mean(p < 0.05) == pytest.approx(0.05, abs=0.015)
+    biased = noise + along_skin(np.tile([0.0, 1.0, 0.0], (15, 1)), normals)
+    assert np.mean([common_bias(errors, normals).is_shown for errors in biased]) > 0.95
+
+
+def test_its_variance_is_that_of_least_squares():
+    rng = np.random.default_rng(4)
+    normals = skin(rng)
+    noise = along_skin(rng.normal(0.0, 1.0, (4000, 15, 3)), normals)
+    found = np.array([common_bias(errors, normals).vector_mm for errors in noise])
+    expected = np.linalg.inv(15 * np.eye(3) - normals.T @ normals)
+    assert np.cov(found.T) == pytest.approx(expected, abs=0.012)
+
+
+def test_where_the_skin_is_flat_a_bias_off_it_is_not_estimated():
+    rng = np.random.default_rng(5)
+    normals = np.array([0.0, 0.0, 1.0]) + rng.normal(0.0, 0.05, (15, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    errors = rng.normal(0.0, 0.7, (15, 3)) + np.array([1.0, 0.0, 5.0])
+    found = common_bias(errors, normals)
+    assert found.vector_mm[0] == pytest.approx(1.0, abs=0.6)
+    assert abs(found.vector_mm[2]) < 0.3
+
+
+@pytest.mark.parametrize(("bias", "p"), [((0.0, 0.0, 0.0), 1.0), ((3.0, 0.0, 4.0), 0.0)])
+def test_errors_without_scatter_show_any_bias_and_no_errors_show_none(bias, p):
+    normals = skin(np.random.default_rng(6))
+    found = common_bias(along_skin(np.tile(bias, (15, 1)), normals), normals)
+    assert found.p == pytest.approx(p, abs=1e-9)
+    assert found.length_mm == pytest.approx(np.linalg.norm(bias), abs=1e-9)
+
+
+def test_true_errors_are_those_in_the_head():
+    rng = np.random.default_rng(7)
+    fiducials, errors = head_points(rng), rng.normal(0.0, 1.0, (15, 3))
+    pose = transforms.rigid(random_rotation(rng), rng.uniform(-500.0, 500.0, 3))
+    touches = transforms.apply(pose, fiducials + errors)
+    assert true_touch_errors(touches, pose, fiducials) == pytest.approx(errors, abs=1e-9)
+
+
+def test_a_pose_that_is_none_gets_a_sentence():
+    with pytest.raises(InputError, match="must be a rigid transform"):
+        true_touch_errors(np.zeros((3, 3)), np.zeros((4, 4)), np.zeros((3, 3)))
+
+
+def test_the_length_is_that_of_the_vector():
+    assert CommonBias((0.0, 3.0, 4.0), 0.5).length_mm == 5.0
