@@ -13,34 +13,33 @@ from rastrainer.number_text import fixed
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import PASS_MARK, TrialScore, passes, score_trial
 from rastrainer.trial.trainee_progress import TRAINING_TRIALS, competence_of
-from rastrainer_simulator.core.setup import load_setup
+from Testing.error_rates.equal_hands import scenario_of
 from Testing.error_rates.measured import Measured, share_of
-from Testing.error_rates.played import TASKS, stored
+from Testing.error_rates.played import HEADS, OBLIQUE_WAYS, TASKS, stored
 
 MOST = 40.0
 """Points that a cheat may get."""
 HEADER = ("strategy", "highest score", "passed", f"competent after {TRAINING_TRIALS}", *TASKS)
-FIVE = TASKS[1:]
-ROWS: tuple[tuple[str, str, Sequence[str], float | None], ...] = (
-    ("honest, FLE 1 mm", "honest", TASKS, None),
-    ("hover with an offset of 9 mm, the paper's touch rule", "hover", TASKS, MOST),
-    ("hover with an offset of 2 mm, the paper's touch rule", "hover 2 mm", TASKS, MOST),
-    ("aim 2 mm off along the skin, Tasks 1 to 5", "aim beside", FIVE, MOST),
-    ("the same, trial run", "aim beside", TASKS[:1], PASS_MARK),
-    ("drag from fiducial to fiducial", "drag", TASKS, MOST),
-    ("press 2 mm into the head", "press", TASKS, MOST),
-    ("aim 2 mm off along x, to the front", "aim beside, x", TASKS, None),
-    ("aim 2 mm off along y, to the left", "aim beside, y", TASKS, None),
-    ("aim 2 mm off along z, upward", "aim beside, z", TASKS, None),
+ROWS: tuple[tuple[str, Sequence[str], float | None], ...] = (
+    ("honest, FLE 1 mm", ["honest"], None),
+    ("hover with an offset of 9 mm, the paper's touch rule", ["hover"], MOST),
+    ("hover with an offset of 2 mm, the paper's touch rule", ["hover 2 mm"], MOST),
+    ("drag from fiducial to fiducial", ["drag"], MOST),
+    ("press 2 mm into the head", ["press"], MOST),
+    ("aim 2 mm off, along the skin as far as possible", ["aim beside"], MOST),
+    ("aim 2 mm off along x, to the front", ["aim beside, x"], MOST),
+    ("aim 2 mm off along y, to the left", ["aim beside, y"], MOST),
+    ("aim 2 mm off along z, upward", ["aim beside, z"], MOST),
+    ("aim 2 mm off in four oblique directions", OBLIQUE_WAYS, MOST),
 )
 
 
 @dataclass(frozen=True)
 class Scored:
-    """The scores of one way to play.
+    """The scores of one strategy.
 
     Attributes:
-        case: the way, in words.
+        case: the strategy, in words.
         scores: of each trial, by task.
         at_most: what none may exceed; None where it is only told.
     """
@@ -99,19 +98,19 @@ def _passes(score: TrialScore) -> bool:
     return passes(score.score, score.acceptable, PASS_MARK)
 
 
-def scores_of(way: str, tasks: Sequence[str] = TASKS) -> dict[str, list[TrialScore]]:
-    """Return the scores of the trials played in a way on Colin27, by task."""
-    scenario = load_setup().scenario
-    found: dict[str, list[TrialScore]] = {task: [] for task in tasks}
+def scores_of(head: str, ways: Sequence[str]) -> dict[str, list[TrialScore]]:
+    """Return the scores of the trials played on a head in some ways, by task."""
+    scenario = scenario_of(head)
+    found: dict[str, list[TrialScore]] = {task: [] for task in TASKS}
     for one in stored():
-        if (one.head, one.way) == ("colin27", way) and one.task in found:
+        if one.head == head and one.way in ways:
             found[one.task].append(score_trial(one.measures, score_reference(scenario, one.task)))
     return found
 
 
 def played(_sets: int) -> list[Scored]:
-    """Return the scores of each way to play."""
-    return [Scored(words, scores_of(way, tasks), most) for words, way, tasks, most in ROWS]
+    """Return the scores of each strategy on Colin27."""
+    return [Scored(words, scores_of(HEADS[0], ways), most) for words, ways, most in ROWS]
 
 
 ABORTED_HEADER = (

@@ -11,10 +11,11 @@ import numpy as np
 
 from rastrainer.number_text import fixed
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.score_reference import Region, fiducial_normals, region_of, score_reference
+from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
 from rastrainer_simulator.core.setup import SimulationSetup
 from Testing.error_rates.played import HEADS, SLOW, TASKS, USUAL, stored
+from Testing.error_rates.registered import common_biases, errors_along_skin, registered_errors
 from Testing.simulator.authoring.planned_heads import setup_of
 
 MOST_OFF = 2.0
@@ -90,14 +91,14 @@ def scores(way: str, sets: int, at_most: float | None, seed: int = 22) -> list[E
         if not trials:
             continue
         reference = score_reference(scenario, task)
-        tre_mm = true_errors(scenario, task, FLE_MM[way], sets, random)
+        tre_mm, bias_mm = true_errors(scenario, task, FLE_MM[way], sets, random)
         times_s = [one.completion_time_s for one in trials]
         # Half of the score is time and half accuracy: each mean is taken over all that there is.
         gentle = [
             score_trial(
-                ScoreMeasures(times_s[number % len(times_s)], value, 0.0, 0.0, 0.0), reference
+                ScoreMeasures(times_s[number % len(times_s)], tre, 0.0, 0.0, 0.0, bias), reference
             ).score
-            for number, value in enumerate(tre_mm)
+            for number, (tre, bias) in enumerate(zip(tre_mm, bias_mm, strict=True))
         ]
         safety = [np.sqrt(score_trial(one, reference).safety_desirability) for one in trials]
         rms = float(np.sqrt(np.mean(tre_mm**2)))
@@ -119,33 +120,17 @@ def scores(way: str, sets: int, at_most: float | None, seed: int = 22) -> list[E
 
 def true_errors(
     scenario: Scenario, task: str, fle_mm: float, sets: int, random: np.random.Generator
-) -> np.ndarray:
-    """Return the true errors over the region, (sets,) mm, of registered touches on the skin.
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the true errors over the region, (sets,) mm, of registered touches, and their biases.
 
-    The errors of the touches are along the skin, of RMS length `fle_mm`.
+    The errors of the touches are along the skin, of RMS length `fle_mm`; their common biases are
+    (sets,) mm.
     """
     fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
     normals = fiducial_normals(scenario, task)
-    errors = random.normal(0.0, fle_mm / np.sqrt(2.0), (sets, *fiducials.shape))
-    errors -= normals * np.einsum("sij,ij->si", errors, normals)[..., None]
-    return registered_errors(region_of(scenario), fiducials, fiducials + errors)
-
-
-def registered_errors(region: Region, fixed_mm: np.ndarray, moving_mm: np.ndarray) -> np.ndarray:
-    """Return the true errors of many rigid fits at once (Arun 1987), (sets,) mm.
-
-    The head is where its MRI is; `fixed_mm` is (n, 3) float, `moving_mm` (sets, n, 3).
-    """
-    centers, center = moving_mm.mean(axis=1), fixed_mm.mean(axis=0)
-    u, _, vt = np.linalg.svd(
-        np.einsum("sni,nj->sij", moving_mm - centers[:, None], fixed_mm - center)
-    )
-    vt[:, 2] *= np.sign(np.linalg.det(u @ vt))[:, None]
-    turns = np.swapaxes(u @ vt, 1, 2)
-    matrices = np.tile(np.eye(4), (len(moving_mm), 1, 1))
-    matrices[:, :3, :3] = turns
-    matrices[:, :3, 3] = center - np.einsum("sij,sj->si", turns, centers)
-    return np.array([region.tre_mm(matrix, np.eye(4)) for matrix in matrices])
+    errors = errors_along_skin(normals, fle_mm, sets, random)
+    tre_mm = registered_errors(region_of(scenario), fiducials, fiducials + errors)
+    return tre_mm, common_biases(normals, errors)
 
 
 def scenario_of(head: str) -> Scenario:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from Testing.error_rates import (
+    biased_aim,
     cheats,
     equal_hands,
     groups,
@@ -35,6 +36,7 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "target errors": (target_errors.HEADER, target_errors.intervals),
     "propagation": (propagation.HEADER, propagation.targets),
     "cheats": (cheats.HEADER, cheats.played),
+    "biased aim": (biased_aim.HEADER, biased_aim.scores),
     "equal hands": (equal_hands.HEADER, equal_hands.usual),
     "slow hands": (equal_hands.HEADER, equal_hands.slow),
 }

@@ -107,7 +107,7 @@ def _fit(points: np.ndarray, directions: np.ndarray) -> Capsule:
 
     The search starts along each of the `directions` (3, 3) and moves the ends of the axis.
     """
-    outermost = points[np.unique((points @ _sphere_directions().T).argmax(axis=0))]
+    outermost = points[np.unique((points @ sphere_directions().T).argmax(axis=0))]
     found = []
     for direction in directions:
         along = outermost @ direction
@@ -153,7 +153,7 @@ def _radius(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
     return float(np.linalg.norm(points - start - shares[:, None] * axis, axis=1).max())
 
 
-def _sphere_directions(count: int = 200) -> np.ndarray:
+def sphere_directions(count: int = 200) -> np.ndarray:
     """Return `count` unit vectors spread evenly over the sphere (a Fibonacci spiral)."""
     index = np.arange(count) + 0.5
     z = 1.0 - 2.0 * index / count

@@ -95,8 +95,8 @@ def test_a_delivered_trial_is_checked_once_and_stored_with_unknown_keys(study, m
 
 def test_scoring_a_registered_trial_neither_registers_nor_estimates_again(study, monkeypatch):
     registered = analyze_trial(TrialRecord.from_json(exact_touches(1)), SCENARIO)
-    monkeypatch.setattr("rastrainer.trial.analysis.register_all_kinds", None)
-    monkeypatch.setattr("rastrainer.trial.analysis.target_error", None)
+    monkeypatch.setattr("rastrainer.trial.touch_registration.register_all_kinds", None)
+    monkeypatch.setattr("rastrainer.trial.touch_registration.target_error", None)
     scored = review(registered, TRUTH, SCENARIO, study)
     assert scored.fits is registered.fits
     assert scored.target_errors is registered.target_errors

@@ -18,6 +18,7 @@ from rastrainer.protocol import CommandName, Proximity, TouchRule, check_argumen
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import fiducial_normals
+from rastrainer_simulator.collision.capsules import sphere_directions
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
@@ -243,9 +244,5 @@ class Pilot:
 
 def _most_outward(normals: np.ndarray) -> np.ndarray:
     """Return the unit vector with the greatest least part along the normals, (n, 3) float."""
-    count = 4000
-    z = 1.0 - (2.0 * np.arange(count) + 1.0) / count
-    turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
-    flat = np.sqrt(1.0 - z**2)
-    directions = np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+    directions = sphere_directions(4000)
     return directions[(directions @ normals.T).min(axis=1).argmax()]

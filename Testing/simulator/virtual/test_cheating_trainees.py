@@ -108,4 +108,4 @@ def test_no_cheat_has_more_than_40_points_or_passes(setup, cheat, way):
 def test_honest_play_is_acceptable_and_worth_far_more(setup, honest):
     score = score_of(setup, honest)
     assert score.acceptable
-    assert score.score > 60.0
+    assert score.score > 50.0
