@@ -70,7 +70,7 @@ class SurvivingPlayer:
 
     Attributes:
         task: of the trials that are begun.
-        kept: for each trial the touches that were acknowledged and not taken back.
+        kept: for each trial the touches that were acknowledged and not undone.
         registered: the trials whose registration was acknowledged.
         resumed: how often an interrupted trial was resumed.
         trial_id: of the present trial; "" between two.

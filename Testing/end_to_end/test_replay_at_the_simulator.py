@@ -74,7 +74,7 @@ def test_all_views_see_the_trial_again_and_then_the_arm_and_the_journal_stays(tm
     wait_until(lambda: shown(first) == "result", "the result")
     client.send({"type": "item", "name": "worst"})
     for view in (first, second):
-        wait_until(lambda view=view: shown(view) is None, "the film")
+        wait_until(lambda view=view: shown(view) is None, "the replay")
         assert "the worst touch, at half speed" in view.screen.instruction.text
         wait_until(lambda view=view: view.state["phase"] in ("running", "complete"), "the trial")
     client.send({"type": "key", "code": "Escape", "isDown": True, "text": ""})

@@ -86,7 +86,7 @@ def test_what_cannot_be_kept_is_reported_once_and_not_acknowledged(lab):
     lab.is_study_broken = False
     lab.offer(make_aborted())
     lab.run_until(lambda: lab.acknowledged())
-    assert lab.problems == ["An aborted trial could not be kept: The disk is full."]
+    assert lab.problems == ["An aborted trial could not be stored: The disk is full."]
     assert lab.acknowledged() == [TRIAL]
 
 

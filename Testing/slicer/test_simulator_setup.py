@@ -171,7 +171,7 @@ def test_an_invalid_index_address_is_reported_before_the_set_up_starts(setup, ad
 def test_a_simulator_that_is_missing_or_damaged_in_the_module_is_reported(setup, source, package):
     wheel = package.folder / WHEEL
     wheel.write_bytes(wheel.read_bytes()[:-1])
-    with pytest.raises(InputError, match="is damaged: install the extension RASTrainer anew"):
+    with pytest.raises(InputError, match="is damaged: reinstall the extension RASTrainer"):
         setup.begin(source)
     (package.folder / f"{WHEEL}.sha256").unlink()
     with pytest.raises(InputError, match=r"is missing in .*: install the extension"):

@@ -124,7 +124,7 @@ def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
     told = "Aborted: 1, of them 1 after all touches"
     begun.wait_until(lambda: told in begun.text("traineeText"), "it is counted")
     assert not begun.find("startStepButton").visible
-    begun.answer("Why is the aborted trial played again?", "no reason")
+    begun.answer("Why is the aborted trial repeated?", "no reason")
     begun.answer("only with a reason", "the tracking of the headset was lost")
     begun.press("repeatStepButton")
     assert begun.find("startStepButton").visible

@@ -159,7 +159,7 @@ def test_a_trial_is_not_acknowledged_before_it_is_kept(lab, make_record):
     for _ in range(3):
         lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.problems)
-    assert lab.problems == ["A trial could not be kept: The disk is full."]
+    assert lab.problems == ["A trial could not be stored: The disk is full."]
     assert not lab.sent("AcknowledgeTrial")
     lab.is_study_broken = False
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
@@ -179,7 +179,7 @@ def test_a_trial_that_cannot_be_scored_is_kept_all_the_same(lab, make_record):
     lab.simulator.send_command("TrialCompleted", record)
     lab.run_until(lambda: lab.sent("AcknowledgeTrial"))
     assert lab.problems == [
-        "A trial is kept but cannot be scored: The scenario elsewhere is not here."
+        "A trial is stored but cannot be scored: The scenario elsewhere is not here."
     ]
     assert lab.stored().score is None
     assert not lab.sent("TrialScored")

@@ -10,7 +10,7 @@ from Testing.web.hands import Controllers, PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
 from Testing.web.relay import Relay
 
-LOST = "#warnings li[data-tone=error]:has-text('connection to the simulator is lost')"
+LOST = "#warnings li[data-tone=error]:has-text('connection to the simulator was lost')"
 TOUCHED = 2
 
 

@@ -50,10 +50,10 @@ def test_the_trial_is_shown_sought_and_left_by_the_keyboard(place, browser):
     trainee.choose("replay")
     trainee.until_menu(None)
     wait_for(page, "page.screen.instruction.text === 'Task 1 of P07, shown again'")
-    trainee.until(lambda: trainee.view.state["phase"] == "running", "the film")
+    trainee.until(lambda: trainee.view.state["phase"] == "running", "the replay")
     for _ in range(3):
         trainee.hands.tap("right")
-    trainee.until(lambda: 0 < trainee.touched < POINTS, "a later part of the film")
+    trainee.until(lambda: 0 < trainee.touched < POINTS, "a later part of the replay")
     trainee.hands.tap("up")
     trainee.until(lambda: "worst" in trainee.view.screen.instruction.text, "the worst touch")
     trainee.hands.tap("back")

@@ -17,7 +17,7 @@ LONGEST_TITLE, LONGEST_NAME, LONGEST_TEXT = 80, 60, 4000
 
 
 def options_of(arguments: argparse.Namespace, source: str) -> ScenarioOptions:
-    """Return the wishes of a command line; `source` is where nothing is said.
+    """Return the options of a command line; `source` is the default for its source.
 
     Raises:
         InputError: a text or a number cannot be used.

@@ -57,7 +57,7 @@ SLICER_TIMEOUT_S = 60.0
 def play_demo(output: Path, seed: int, speed: float) -> None:
     """Play the trial run and Task 1, write the results into `output`, and print a summary.
 
-    An `output` that is not empty is moved aside, never overwritten.
+    An `output` that is not empty is renamed, never overwritten.
 
     Raises:
         InputError: the package that plays Slicer's part is not installed; nothing was done then.

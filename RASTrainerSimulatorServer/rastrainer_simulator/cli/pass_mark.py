@@ -50,14 +50,14 @@ def run(arguments: argparse.Namespace) -> int:
     """Print the mark, write it to the protocol if requested, and return the exit status.
 
     Raises:
-        InputError: there is no such study, trainee or protocol, somebody has too few scored trials
+        InputError: there is no such study, trainee or protocol, someone has too few scored trials
             or is in both groups, or the groups give no mark.
     """
     if not arguments.study.is_file():
         raise InputError(f"There is no file {arguments.study}.")
     both = sorted({*arguments.novices} & {*arguments.experts})
     if both:
-        raise InputError(f"{both[0]} is named in both groups; name everybody in one, and once.")
+        raise InputError(f"{both[0]} is named in both groups; name each person once, in one group.")
     with Study.open_for_reading(arguments.study) as study:
         counted = [
             [_last_trials(study, pseudonym) for pseudonym in dict.fromkeys(group)]
@@ -111,7 +111,8 @@ def _version(groups: Sequence[Sequence[Sequence[PastTrial]]]) -> str:
     if len(versions) > 1:
         raise InputError(
             f"The last {LAST_TRIALS} trials of these people have scores of the versions "
-            f"{' and '.join(versions)}, which do not compare: no mark can be made of them."
+            f"{' and '.join(versions)}, which cannot be compared: no mark can be computed from "
+            "them."
         )
     return versions[0]
 

@@ -53,7 +53,9 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     packing.add_argument("folder", type=Path, metavar="DIR")
     packing.add_argument("package", type=Path, metavar="ZIP")
-    packing.add_argument("--keep-face", action="store_true", help="the patient may be recognized")
+    packing.add_argument(
+        "--keep-face", action="store_true", help="the patient can then be recognized"
+    )
     packing.add_argument("--keep-names", action="store_true", help="title, name and source, too")
     packing.set_defaults(run=_pack)
     unpacking = parts.add_parser("unpack", help="unpack a scenario into your library")

@@ -12,7 +12,7 @@ ABOVE_TABLE_M = 0.02
 
 
 class LineOfSight:
-    """Tells whether places can be seen past the head and one posture of the arm."""
+    """Finds whether points can be seen past the head and one posture of the arm."""
 
     def __init__(
         self, head: HeadClearance, arm: ArmCapsules, posed: PosedArm, table_height: float

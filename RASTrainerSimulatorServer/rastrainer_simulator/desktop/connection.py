@@ -159,7 +159,7 @@ class ServerConnection:
         )
 
     async def _content(self, session: aiohttp.ClientSession, path: str, most: int) -> bytes:
-        """Return what the simulator has at a path, at most so many bytes of it."""
+        """Return what the simulator has at a path, at most `most` bytes of it."""
         async with session.get(self._url + path) as answer:
             answer.raise_for_status()
             content = await answer.content.read(most)

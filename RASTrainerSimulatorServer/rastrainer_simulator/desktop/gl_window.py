@@ -1,7 +1,7 @@
 """A window of SDL's into which VTK draws.
 
-SDL tells keys by their place on the keyboard, typed text, repeats and the loss of the focus alike
-on every system, all of which VTK's own windows leave out.
+On every system, SDL reports typed text, repeats, the loss of the focus and keys by their place on
+the keyboard, all of which VTK's own windows leave out.
 """
 
 from __future__ import annotations

@@ -97,7 +97,7 @@ class Inbox:
             _log.warning("A state of the simulator cannot be used: %s", error)
 
     def touch(self) -> None:
-        """Wake whoever waits for news."""
+        """Wake the thread that waits for news."""
         self._has_changed.set()
 
     async def wait(self, timeout: float) -> None:

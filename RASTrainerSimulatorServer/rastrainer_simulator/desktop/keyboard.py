@@ -40,7 +40,7 @@ def without_late_repeats(
     SDL repeats a key until its release is looked at. A window that draws for a second has looked at
     nothing meanwhile: a key that was only tapped would type a row of letters.
 
-    `is_held` tells whether a key, by its SDL scancode, was down before.
+    `is_held` returns whether a key, by its SDL scancode, was down before.
     """
     late: set[int] = set()
     first: dict[int, int] = {}
@@ -63,7 +63,7 @@ FOCUS_LOST = frozenset((pygame.WINDOWFOCUSLOST, pygame.WINDOWMINIMIZED))
 
 
 class OperatorKeys:
-    """Tells the simulator which keys are held, for as long as they are."""
+    """Reports to the simulator which keys are held."""
 
     def __init__(self, connection: ServerConnection):
         self._connection = connection

@@ -57,7 +57,7 @@ class FrameCount:
     """Counts the pictures of each second, and those that were due and did not come."""
 
     def __init__(self, report: Callable[[int, int], None], now: float):
-        """`report` is told once a second how many were shown and how many dropped."""
+        """`report` is called once a second with how many were shown and how many dropped."""
         self._on_second = report
         self._since = now
         self._shown = self._due = 0

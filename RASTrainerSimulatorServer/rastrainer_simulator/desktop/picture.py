@@ -40,7 +40,7 @@ class Pointer:
         self._is_visible = True
 
     def move(self, place: tuple[int, int], now: float) -> None:
-        """Somebody moved it, or clicked, at `now` (s)."""
+        """The mouse was moved or clicked at `now` (s)."""
         self._place, self._moved = place, now
 
     def place(self, now: float) -> tuple[int, int]:
@@ -60,7 +60,7 @@ def notice(key: str, language: str) -> Screen:
 
 @lru_cache(maxsize=8)
 def own_facts(language: str, holder: str, pairing: tuple[str, str] | None) -> tuple[str, ...]:
-    """Return who holds the control, and how another view is paired where that is to be told."""
+    """Return who holds the control, and how another view is paired where that is to be shown."""
     texts = Texts(LANGUAGES.get(language, {}))
     key = f"source.{holder}"
     source = texts.say(key) if key in texts else holder

@@ -16,7 +16,7 @@ ZOOM_LIMITS = (0.25, 4.0)
 
 
 class ViewMouse:
-    """Adds up what the hand does between two pictures, and tells the simulator."""
+    """Adds up the mouse's motion between two pictures, and sends it to the simulator."""
 
     def __init__(self, connection: ServerConnection) -> None:
         self._connection = connection

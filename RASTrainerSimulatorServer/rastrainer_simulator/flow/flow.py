@@ -35,8 +35,8 @@ INTERRUPTED = ("interrupted", "interrupted procedure")
 class Flow:
     """Follows the trial with the pages, and the trainee's presses with commands.
 
-    The trial's phase decides what is open, whoever changed it: a trial that Slicer starts, pauses
-    or aborts leads to the same screen as one of the trainee's.
+    The trial's phase decides what is open, no matter who changed it: a trial that Slicer starts,
+    pauses or aborts leads to the same screen as one of the trainee's.
     """
 
     def __init__(self, session: TrainingSession, control_loop: ControlLoop) -> None:
@@ -175,7 +175,7 @@ class Flow:
         return Answer(0, True, data={"isNeeded": True})
 
     def close(self) -> None:
-        """Let go of what the open pages have begun."""
+        """Release what the open pages have started."""
         self._session.pages.show(None)
 
     @property

@@ -32,7 +32,7 @@ from rastrainer_simulator.state import Answer, SimulationState, StepResult
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
 REFRESH_S = 0.1
-"""How often a screen is made anew though nothing was pressed: its clock, distances and axes."""
+"""How often a screen is rebuilt though nothing was pressed: its clock, distances and axes."""
 
 _IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
 """What a view's own buttons mean while a menu is open: those of a headset have no bindings."""
@@ -47,7 +47,7 @@ class FlowPresenter:
     Attributes:
         controls: what the operator holds.
         shown: the states that the views show.
-        rumble: has the simulator's gamepads vibrate with a strength of 0 to 1 for so many seconds.
+        rumble: has the simulator's gamepads vibrate with a strength of 0 to 1 for a time (s).
         screen: what is read.
         control: who holds the control.
     """
@@ -83,7 +83,7 @@ class FlowPresenter:
         self._unsubscribe = control_loop.subscribe(self._take_tick)
 
     def close(self) -> None:
-        """Let go of the sticks and of the control loop."""
+        """Release the sticks and the control loop."""
         self._unsubscribe()
         self._flow.close()
         self._session.view.close()
@@ -233,7 +233,7 @@ class FlowPresenter:
         self._is_changed = True
 
     def refused(self, _source: Source) -> None:
-        """Say to somebody who wants to operate how to."""
+        """Explain how to take control to the one who tries to."""
         holder = self.controls.holder
         if holder is None:
             return
@@ -284,7 +284,7 @@ class FlowPresenter:
         return next((view for view in choices if view is not None), None)
 
     def _lose_sight(self, view: int, why: str) -> None:
-        """Let go of what is worked without being seen; `why` is the key of a sentence."""
+        """Release what is operated without being seen; `why` is the key of a sentence."""
         if view == self._watched():
             self._flow.pause(why)
         for kind in SourceKind:

@@ -77,7 +77,7 @@ class RunningPresenter:
         self.presenter.advance(dt)
 
     def close(self) -> None:
-        """Let go of everything."""
+        """Release everything."""
         self.presenter.close()
         if self._gamepads is not None:
             self._gamepads.close()
@@ -95,7 +95,7 @@ class RunningPresenter:
         self.presenter.controls.set_inputs(self._sources[number], inputs)
 
     def gamepad_went(self, number: int, name: str) -> None:
-        """A gamepad was unplugged: what it held is let go."""
+        """A gamepad was unplugged: release what it held."""
         self.presenter.unplugged(self._sources.pop(number))
         self.presenter.warn("gamepad", "warning.unplugged", name=name)
 

@@ -15,7 +15,7 @@ from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 IDLE_S = 30.0
 """How long the holder has to rest before another operator may take the control.
 
-Whoever looks closely or listens to the instructor rests for some seconds, and is not asked.
+A trainee who looks closely or listens to the instructor rests for some seconds, and is not asked.
 """
 REPEAT_AFTER_S = 0.4
 REPEAT_EVERY_S = 0.12
@@ -36,7 +36,7 @@ class ControlsListener(Protocol):
         """Another operator has taken the control."""
 
     def refused(self, source: Source) -> None:
-        """Somebody wants to operate who does not hold the control."""
+        """Someone who is not in control wants to operate."""
 
 
 class Controls:
@@ -46,7 +46,7 @@ class Controls:
     keys and the mouse of its windows; the keys, pad and controllers of one page) shares it and
     passes it on by being used. Another seat's input does nothing, except that pressing `menu`
     takes the control over once the holder has done nothing for `IDLE_S` seconds: on purpose, and
-    never from under somebody's hands. A holder that is unplugged or leaves gives the control up.
+    never while someone operates. A holder that is unplugged or leaves gives the control up.
 
     Attributes:
         bindings: which input does what; may be exchanged at any time.
@@ -108,7 +108,7 @@ class Controls:
         self._state(source)
 
     def enter(self, situation: ControlContext) -> None:
-        """Change the situation; what is held does nothing until it was let go."""
+        """Change the situation; what is held does nothing until it is released."""
         if situation is not self.situation:
             self.situation = situation
             self._repeating = None
@@ -152,7 +152,7 @@ class Controls:
         return False
 
     def forget(self, source: Source) -> None:
-        """Drop a source that is gone: what it held is let go, and so is the control."""
+        """Drop a source that is gone: what it held is released, and so is the control."""
         self._states.pop(source, None)
         if self._repeating is not None and self._repeating[0] == source:
             self._repeating = None

@@ -74,7 +74,7 @@ class Gamepads:
             pad.rumble(strength, strength, milliseconds)
 
     def close(self) -> None:
-        """Let go of all gamepads and of SDL."""
+        """Close all gamepads and SDL."""
         self._open.clear()
         self._controller.quit()
         self._pygame.display.quit()

@@ -25,7 +25,7 @@ class InputState:
     """What a source is doing.
 
     Keys are ramped, so that a tap moves the tip a little; they stop at once, as a released stick
-    does. What is held while the situation changes does nothing until it was let go: the arm must
+    does. What is held while the situation changes does nothing until it is released: the arm must
     not start because a menu closes.
 
     Attributes:
@@ -91,7 +91,7 @@ class InputState:
         self._sticks_blocked = self._sticks_blocked and _are_pushed(sticks)
 
     def block(self) -> None:
-        """Ignore what is held now until it is let go."""
+        """Ignore what is held now until it is released."""
         self._blocked = {name for name, value in self._inputs.items() if _is_pushed(value)}
         self._sticks_blocked = _are_pushed(self._sticks)
 

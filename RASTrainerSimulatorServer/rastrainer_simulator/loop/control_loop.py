@@ -212,7 +212,7 @@ class ControlLoop:
             with precise_timing(self.is_first_in_line):
                 self._tick_on_time()
         except Exception:
-            _log.exception("The control loop has broken down")
+            _log.exception("The control loop has failed")
         finally:
             self._finish()
 

@@ -86,7 +86,7 @@ def _in_line(priority: int) -> Iterator[None]:
     try:
         yield
     finally:
-        # Whoever is not root may not take the flag back.
+        # Only root may clear the flag again.
         os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameters)
 
 

@@ -21,7 +21,7 @@ _NO_DESCRIPTORS_LEFT_S = 1.0
 class Listener:
     """Takes connections at a bounded rate; the operating system keeps the others waiting.
 
-    Whoever connects again and again is then slowed down, and not the control loop.
+    A peer that connects again and again is then slowed down, and not the control loop.
     """
 
     def __init__(

@@ -119,7 +119,7 @@ class Journal:
             self._descriptor = None
 
     def _caught_up(self) -> int:
-        """Read on from what somebody else has written; return the size of its whole lines."""
+        """Continue after what another process has written; return the size of its whole lines."""
         reading = read_journal(self.path)
         if reading.integrity is Integrity.ALTERED:
             raise RecordError(f"{self.path.name} is {reading.sentence}; nothing is added to it.")
@@ -140,7 +140,7 @@ def _write_at(descriptor: int, place: int, data: bytes) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Make a new file's name durable; Windows has no such call and does it by itself."""
+    """Make a new file's name durable; Windows has no such call and does it automatically."""
     if os.name == "posix":
         descriptor = os.open(folder, os.O_RDONLY)
         try:

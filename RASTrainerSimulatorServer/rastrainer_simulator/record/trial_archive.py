@@ -182,7 +182,7 @@ class TrialArchive:
                 self._load(path)
         if trial_id not in self._trials:
             raise InputError(
-                f"There is no registered trial {trial_id} here; TrialCompleted tells the IDs."
+                f"There is no registered trial {trial_id} here; TrialCompleted lists the IDs."
             )
         return self._trials[trial_id]
 

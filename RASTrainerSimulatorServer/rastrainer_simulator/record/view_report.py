@@ -19,8 +19,8 @@ class ViewReport:
         azimuth_deg: turn about the vertical, counterclockwise from above.
         elevation_deg: how much higher it is.
         zoom: its distance, as a share.
-        is_automatic: whether it has gone there by itself.
-        follows: whether it goes to the best view of each next point by itself, as is set.
+        is_automatic: whether it has gone there automatically.
+        follows: whether it goes automatically to the best view of each next point, as set.
     """
 
     azimuth_deg: float

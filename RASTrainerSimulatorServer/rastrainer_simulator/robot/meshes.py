@@ -80,8 +80,8 @@ def _check_shape(part: MeshPart, vertices: np.ndarray, faces: np.ndarray) -> Non
         raise InputError(f"{part.path} has faces that are no triangles of its vertices.")
     if not np.all(np.abs(vertices * part.scale) <= FARTHEST):
         raise InputError(
-            f"{part.path} has vertices that are not finite or beyond {FARTHEST:g} m; "
-            "robot meshes should be in metres."
+            f"{part.path} has vertices that are not finite or beyond {FARTHEST:g} m; robot meshes "
+            "should be in meters."
         )
 
 

@@ -125,7 +125,7 @@ def _turned(
 def _walk(
     skin: Skin, start: np.ndarray, goal: np.ndarray, turn: float, longest: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Walk over the skin, `turn` (rad) aside of `goal`; return places a step apart, and normals."""
+    """Walk over the skin, `turn` (rad) off `goal`; return places a step apart, and normals."""
     outward = skin.outward(start)
     place = skin.onto(np.atleast_2d(start), outward)[0]
     path, normals = [place], [outward]

@@ -1,4 +1,4 @@
-"""Serves a recorded trial to the simulator's views until somebody ends it."""
+"""Serves a recorded trial to the simulator's views until a user ends it."""
 
 from __future__ import annotations
 

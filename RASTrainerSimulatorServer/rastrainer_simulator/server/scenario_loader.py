@@ -15,7 +15,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import TRIAL_IS_OPEN, ControlLoop
 from rastrainer_simulator.state import Answer
 
-BUSY = "A scenario is being loaded already: wait until it is there."
+BUSY = "A scenario is being loaded already: wait until it is loaded."
 _HANDOVER_TIMEOUT_S = 5.0
 
 

@@ -304,7 +304,7 @@ class SimulatorServer:
             with contextlib.suppress(asyncio.TimeoutError):
                 await asyncio.wait_for(stop.wait(), _LOOP_CHECK_PERIOD_S)
             if not self._control_loop.is_running:
-                raise RASTrainerError("The control loop has broken down: the log says why.")
+                raise RASTrainerError("The control loop has failed: the log says why.")
 
     def _stop(self) -> None:
         self._scenarios.close()

@@ -1,14 +1,14 @@
-/** Stay joined to the simulator, and come back whenever it was away. */
+/** Stay connected to the simulator, and reconnect whenever it was away. */
 
 import { SUBPROTOCOL, type Hello, type News } from "./messages";
 
 const RETRY_MS = 1000;
-/** A view that holds something says so at least this often; the simulator lets go after 0.5 s. */
+/** A view that holds something says so at least this often; the simulator releases it after 0.5 s. */
 const ALIVE_MS = 150;
 const LOOK_MS = 50;
 /** The simulator says something 60 times a second: after so long it cannot be heard any more. */
 const SILENCE_MS = 3000;
-/** So many looks without a word between: what came while the page itself stood still is read by then. */
+/** This many checks without a message between: what arrived while the page itself was stalled is read by then. */
 const SILENT_LOOKS = 5;
 
 export interface ConnectionListener {
@@ -34,7 +34,7 @@ export class Connection {
     window.setInterval(() => this.look(), LOOK_MS);
   }
 
-  /** Tells whether something is held that the simulator must not let go. */
+  /** Returns whether something is held that the simulator must not release. */
   isHolding: () => boolean = () => false;
 
   get isConnected(): boolean {
@@ -110,7 +110,7 @@ export class Connection {
     const isSilent = this.silentLooks >= SILENT_LOOKS && now - this.lastHeard > SILENCE_MS;
     const { socket } = this;
     if (socket !== null && this.isConnected && isSilent) {
-      // A network that is gone says no farewell, and waits long for the other side's.
+      // A lost network sends no close frame, and waits long for the other side's.
       this.lose(true);
       socket.close();
     }

@@ -1,4 +1,4 @@
-/** How smoothly the picture is drawn, told to the simulator once a second. */
+/** How smoothly the picture is drawn, reported to the simulator once a second. */
 
 import type { Connection } from "./connection";
 
@@ -10,7 +10,7 @@ export class FrameCount {
   private shown = 0;
   private dropped = 0;
   private last = 0;
-  private told = 0;
+  private reported = 0;
   /** Of the display, Hz; estimated unless `fixedHz` is known. */
   private interval = 1000 / 60;
   fixedHz = 0;
@@ -40,8 +40,8 @@ export class FrameCount {
 
   /** Tell what was counted if it is time. */
   tell(now: number): void {
-    if (now - this.told < PERIOD_MS) return;
-    this.told = now;
+    if (now - this.reported < PERIOD_MS) return;
+    this.reported = now;
     this.connection.send("frames", {
       shown: Math.min(MOST, this.shown),
       dropped: Math.min(MOST, this.dropped),
@@ -50,10 +50,10 @@ export class FrameCount {
     this.shown = this.dropped = 0;
   }
 
-  /** Begin anew, on another display. */
+  /** Start over, on another display. */
   reset(fixedHz = 0): void {
     this.fixedHz = fixedHz;
     this.shown = this.dropped = 0;
-    this.last = this.told = performance.now();
+    this.last = this.reported = performance.now();
   }
 }

@@ -35,7 +35,7 @@ export class Gamepads {
     this.connection.send("pad", { axes: this.axes, buttons: this.buttons });
   }
 
-  /** Let go: nobody sees what the pad does. */
+  /** Release everything: nobody sees what the pad does. */
   release(): void {
     if (this.isHolding) this.tellRest();
   }
@@ -49,7 +49,7 @@ export class Gamepads {
     void firstPad()?.vibrationActuator?.playEffect("dual-rumble", { duration, ...strength });
   }
 
-  /** Take the positions; return whether they differ from those that were told. */
+  /** Take the positions; return whether they differ from those that were sent. */
   private take(pad: Gamepad): boolean {
     let differs = false;
     this.isHolding = false;

@@ -1,4 +1,4 @@
-/** The keys, told to the simulator as they are; it knows what each does. */
+/** The keys, sent to the simulator as they are; it knows what each does. */
 
 import type { Connection } from "./connection";
 

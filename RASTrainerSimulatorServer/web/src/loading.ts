@@ -14,7 +14,7 @@ export class Loading {
     this.place.append(this.text, this.bar);
   }
 
-  /** Show so many bytes of `total`, 0 where that is not known. */
+  /** Show the number of loaded bytes of `total`, 0 where that is not known. */
   show(loaded: number, total: number): void {
     this.place.hidden = false;
     const known = { loaded: megabytes(loaded), total: megabytes(total) };

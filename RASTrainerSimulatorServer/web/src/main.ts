@@ -1,4 +1,4 @@
-/** The page: joins the simulator, shows what it says, and tells what is pressed. */
+/** The page: connects to the simulator, shows its screens, and sends what is pressed. */
 
 import { Connection, isPaired } from "./connection";
 import { byId } from "./elements";
@@ -72,7 +72,7 @@ export class Page {
     stage.renderer.setAnimationLoop((now, frame) => this.turn(stage, now, frame));
   }
 
-  /** Pair if need be, and join. */
+  /** Pair if need be, and connect. */
   async begin(wasPaired = false): Promise<void> {
     if (!(await isPaired())) await pair(byId("pairing") as HTMLFormElement, wasPaired);
     this.connection.start();

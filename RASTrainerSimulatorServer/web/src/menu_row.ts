@@ -16,7 +16,7 @@ export class MenuRow {
   private readonly control: HTMLButtonElement | HTMLInputElement | null;
   private item: Item;
   private typed = -Infinity;
-  /** Whether the focus comes from the simulator, which then need not be told of it. */
+  /** Whether the focus comes from the simulator, which then need not hear of it. */
   private isFollowing = false;
 
   constructor(

@@ -141,7 +141,7 @@ export interface ControlNews {
   readonly isYou: boolean;
 }
 
-/** How another view is paired; only views at the simulator's own computer are told. */
+/** How another view is paired; sent only to views on the simulator's own computer. */
 export interface PairingNews {
   readonly type: "pairing";
   readonly code: string;
@@ -150,7 +150,7 @@ export interface PairingNews {
 
 export type News = Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews | PairingNews;
 
-/** What a view says of itself when it joins. */
+/** What a view says about itself when it connects. */
 export interface Hello {
   readonly kind: "page" | "headset";
   readonly device: string;

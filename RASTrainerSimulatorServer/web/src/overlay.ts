@@ -1,4 +1,4 @@
-/** The simulator's screen over a flat picture: each part is made anew when it has changed. */
+/** The simulator's screen over a flat picture: each part is rebuilt when it has changed. */
 
 import { BESIDE } from "./flat_view";
 import type { Connection } from "./connection";

@@ -4,7 +4,7 @@ import { say, type TextName } from "./texts";
 
 /**
  * Return when the browser is paired. A code in the address, as `#code=123456`, is tried first.
- * `wasPaired` tells whether it was until now.
+ * `wasPaired`: whether it was until now.
  */
 export async function pair(form: HTMLFormElement, wasPaired: boolean): Promise<void> {
   const given = /^#code=(\d{1,64})$/.exec(location.hash)?.[1];

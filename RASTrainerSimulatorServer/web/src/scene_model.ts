@@ -142,7 +142,7 @@ function tipColor(stage: TouchStage): Color {
   return stage === "on skin" ? COLORS.onSkin : stage === "near" ? COLORS.near : COLORS.free;
 }
 
-/** Load the scene that `news` tells of; `onProgress` is told the bytes that are there, and of how many. */
+/** Load the scene of `news`; `onProgress` receives the number of bytes loaded, and their total. */
 export async function loadScene(
   news: SceneNews,
   bodies: readonly string[],

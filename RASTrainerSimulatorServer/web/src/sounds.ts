@@ -15,7 +15,7 @@ export class Sounds {
   private readonly place = { x: 0, y: 0, z: 0 };
 
   constructor() {
-    // Browsers are silent until somebody does something.
+    // Browsers are silent until the user does something.
     for (const kind of ["pointerdown", "keydown"]) {
       window.addEventListener(kind, () => this.unlock());
     }

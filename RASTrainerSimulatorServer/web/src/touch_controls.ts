@@ -61,7 +61,7 @@ export class TouchControls {
     return this.fine.getAttribute("aria-pressed") === "true";
   }
 
-  /** Say that a touch screen is used, before what was touched is told. */
+  /** Say that a touch screen is used, before what was touched is sent. */
   private use(): void {
     if (!this.isHolding) this.tell();
     if (this.isUsed) return;

@@ -387,7 +387,9 @@ def test_scores_of_different_versions_are_reported_but_never_compared(tmp_path):
     data = StudyData("Mixed", (*old, *new), has_order=True)
     written = write_report(data, tmp_path / "report")
     words = words_of(written.page.read_text(encoding="utf-8"))
-    assert "scores of several versions, which measure different things and do not compare" in words
+    assert (
+        "scores of several versions, which measure different things and cannot be compared" in words
+    )
     assert "4 trials of version 2, 15 trials of version 1" in words
     assert "99.5" not in words
     assert "Headset (HMD) 4 0 (0 %) 0 of 1 –" in words

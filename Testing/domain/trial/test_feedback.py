@@ -233,7 +233,7 @@ def test_competence_is_shown_by_passed_trials_in_the_same_mode():
     long = [past(i, 80.0) for i in range(100)]
     told = progress_of(long, long[-1].trial_id, pass_mark=60.0)
     assert told.competence.false_discovery > 0.05
-    risk = f"{100 * told.competence.false_discovery:.0f} % come so far by chance within 100 trials"
+    risk = f"{100 * told.competence.false_discovery:.0f} % get this far by chance within 100 trials"
     assert risk in told.sentences[2]
     other = [past(i, 80.0, mode="hmd") for i in range(19)] + [past(19, 80.0)]
     assert progress_of(other, other[-1].trial_id, 60.0).competence.competent_at is None

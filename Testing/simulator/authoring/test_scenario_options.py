@@ -25,7 +25,7 @@ def test_what_is_not_said_is_as_usual(tmp_path):
     assert (wishes.title, wishes.source, wishes.seed) == ("my-head", "the volume", 1)
     assert (wishes.targets, wishes.trajectory, wishes.task_files) == ((), None, ())
     assert wishes.setup.head_center == (480.0, 0.0, 220.0)
-    assert "nothing is known" in wishes.license
+    assert "its license is unknown" in wishes.license
 
 
 def test_everything_that_is_said_is_taken(tmp_path):

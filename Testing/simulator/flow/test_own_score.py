@@ -101,7 +101,7 @@ def test_while_slicer_is_connected_or_a_study_is_led_the_simulator_scores_nothin
     # Longer than a lost connection is waited for.
     trainee.step(1000)
     assert trainee.menu.name == "waiting"
-    assert "it scores them as soon as it is" in trainee.menu.paragraphs[0]
+    assert "it will score them as soon as it is" in trainee.menu.paragraphs[0]
     for one in (trial, trial_of_study):
         assert entries_of(outside, one, "registration") == []
 

@@ -119,7 +119,7 @@ def test_a_score_without_the_error_in_the_brain_has_no_line_for_it(result_of):
         ),
         pytest.param(
             {"isAccurate": True, "isSafe": False},
-            "Not acceptable: the tool lay on the head too long or was pressed in too deep.",
+            "Not acceptable: the tool rested on the head too long or was pressed in too deeply.",
             id="unsafe",
         ),
     ],

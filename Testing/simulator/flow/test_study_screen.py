@@ -48,8 +48,8 @@ def test_only_what_comes_next_can_be_begun_and_the_menu_says_what_that_is(menu, 
     assert enabled(menu) == ["task-2"]
     assert menu.menu.paragraphs == ("Step 3 of 19: play Task 2 on the desktop screen.",)
     assert menu.item("task-1").help == (
-        "Not now. Step 3 of 19: play Task 2 on the desktop screen. Only your instructor can leave "
-        "a step out, in 3D Slicer and with a reason."
+        "Not now. Step 3 of 19: play Task 2 on the desktop screen. Only your instructor can skip "
+        "a step, in 3D Slicer and with a reason."
     )
     menu.focus("task-3")
     menu.tap("accept")
@@ -74,8 +74,8 @@ def test_in_another_mode_nothing_can_be_begun(menu, guide):
     [
         (
             StudyStep("P07", "repeat", 3, 19, "task-2", "desktop"),
-            "Step 3 of 19: Task 2 was aborted. The instructor says in 3D Slicer why it is played "
-            "again.",
+            "Step 3 of 19: Task 2 was aborted. The instructor must enter a reason for repeating "
+            "it in 3D Slicer.",
         ),
         (
             StudyStep("P07", "questionnaire", 1, 19, mode="hmd", questionnaire="nasa-tlx"),

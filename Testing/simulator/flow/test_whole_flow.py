@@ -71,8 +71,8 @@ def train_and_look_at_the_result(trainee, outside, monkeypatch):
         "Point 3 was 2.5 mm off, mostly in depth (1.3 mm above the skin).",
         "What only another one knows.",
         "You passed.",
-        "The expected error counts on touches that err independently, without bias and alike. "
-        "It cannot see an offset that all of them share.",
+        "The expected error assumes independent, unbiased, equally large touch errors. It cannot "
+        "detect an offset that all touches share.",
     )
     trainee.choose("next")
     trainee.until_menu("experiment")

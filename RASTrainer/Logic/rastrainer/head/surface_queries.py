@@ -9,7 +9,7 @@ import numpy as np
 from rastrainer.head.mesh import HeadMesh
 
 POINTS_AT_ONCE = 128
-"""So that the distances of so many points to all vertices fit into a processor's cache."""
+"""The distances of this many points to all vertices fit into a processor's cache."""
 
 
 @dataclass(frozen=True)

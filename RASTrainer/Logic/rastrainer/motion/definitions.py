@@ -223,7 +223,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             better=-1,
         ),
         MetricDefinition(
-            "undone_touches", "Touches taken back", "How many touches the trainee took back."
+            "undone_touches", "Undone touches", "Number of touches that the trainee undid."
         ),
         MetricDefinition("camera_switches", "Camera switches", "How often the view was changed."),
         MetricDefinition("pauses", "Pauses", "How often the trial was paused."),

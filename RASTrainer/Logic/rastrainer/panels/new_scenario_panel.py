@@ -24,20 +24,20 @@ _USUAL = SetUp()
 _MOVED = _USUAL.perturbation
 _PLACE, _EXTENT = (-WORLD_LIMIT_MM, WORLD_LIMIT_MM), (1.0, WORLD_LIMIT_MM)
 _ROWS = (
-    (_("Head's middle, mm:"), "head", _PLACE, _USUAL.head_center),
-    (_("Head's turn, °:"), "yaw", (-180.0, 180.0), (_USUAL.head_yaw_deg,)),
+    (_("Center of the head, mm:"), "head", _PLACE, _USUAL.head_center),
+    (_("Rotation of the head, °:"), "yaw", (-180.0, 180.0), (_USUAL.head_yaw_deg,)),
     (
         _("Shift in a trial, ± mm:"),
         "shift",
         (0.0, MAX_PERTURBATION.translation_mm),
         (_MOVED.translation_mm,),
     ),
-    (_("Turn in a trial, ± °:"), "turn", (0.0, MAX_PERTURBATION.yaw_deg), (_MOVED.yaw_deg,)),
+    (_("Rotation in a trial, ± °:"), "turn", (0.0, MAX_PERTURBATION.yaw_deg), (_MOVED.yaw_deg,)),
     (_("Tilt in a trial, ± °:"), "tilt", (0.0, MAX_PERTURBATION.tilt_deg), (_MOVED.tilt_deg,)),
-    (_("Table's middle, mm:"), "table", _PLACE, _USUAL.table_center),
-    (_("Table's size, mm:"), "size", _EXTENT, _USUAL.table_size),
-    (_("Stand's diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand_diameter,)),
-    (_("Robot's base, mm:"), "base", _PLACE, _USUAL.robot_base),
+    (_("Center of the table, mm:"), "table", _PLACE, _USUAL.table_center),
+    (_("Size of the table, mm:"), "size", _EXTENT, _USUAL.table_size),
+    (_("Diameter of the stand, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand_diameter,)),
+    (_("Base of the robot, mm:"), "base", _PLACE, _USUAL.robot_base),
 )
 """Label, name, lowest and highest, usual values; places are in the table's frame."""
 
@@ -138,8 +138,8 @@ class NewScenarioPanel:
             warnings = self._work.run(lambda report: self._maker.preview(*self._wanted(), report))
             if warnings is not None:
                 text = _(
-                    "This head is found. Change the threshold or the cut and find it again, or "
-                    "change its segment in the Segment Editor; then make the scenario."
+                    "This is the head that was found. Change the threshold or the cut and find it "
+                    "again, or edit its segment in the Segment Editor; then make the scenario."
                 )
                 self._showMessage(" ".join([text, *warnings]))
                 fitThreeDViews()
@@ -168,7 +168,7 @@ class NewScenarioPanel:
     def _useScenario(self, scenario: Scenario, warnings: list[str]) -> None:
         """Choose the new scenario, show it, and have the simulator take it."""
         self._session.scenarioMade.emit(scenario.name)
-        text = _("{title} is made and chosen above.").format(title=scenario.title)
+        text = _("{title} was made and is chosen above.").format(title=scenario.title)
         self._showMessage(" ".join([text, *warnings]))
 
     def _wanted(self) -> tuple[Any, NewScenarioOptions]:
@@ -202,20 +202,20 @@ class NewScenarioPanel:
         setUsable(
             ui.makeScenarioButton,
             hasVolume or isAtWork,
-            _("Find the head, place fiducials and tasks, and train on it at once."),
+            _("Find the head, and place fiducials and tasks; the scenario can be used at once."),
             reason,
         )
         setUsable(
             ui.previewHeadButton,
             hasVolume and not isAtWork,
-            _("Show the head that is found, and as a segment that may be edited."),
-            reason if not hasVolume else _("A head is being looked for."),
+            _("Show the head, and as a segment that can be edited."),
+            reason if not hasVolume else _("A head is already being searched for."),
         )
         setUsable(
             ui.checkScenarioButton,
             hasVolume and not isAtWork,
-            _("Report what is wrong with set-up, plan and fiducials on this head; make nothing."),
-            reason if not hasVolume else _("A head is being looked for."),
+            _("Check set-up, plan and fiducials without creating anything."),
+            reason if not hasVolume else _("A head is already being searched for."),
         )
         ui.sampleDataButton.enabled = ui.scanComboBox.enabled = not isAtWork
 

@@ -83,7 +83,7 @@ class PlanPanel:
             self.showState()
 
     def undo(self) -> None:
-        """Take the last placing or removal back."""
+        """Undo the last placing or removal."""
         with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
             self._logic.points.undo()
             self.showState()
@@ -126,11 +126,11 @@ class PlanPanel:
             problem or _("Connect to the simulator first."),
         )
         isKeeping = self._keeping.isUnderWay
-        ui.keepPlanButton.text = _("Cancel") if isKeeping else _("Keep in a new scenario")
+        ui.keepPlanButton.text = _("Cancel") if isKeeping else _("Save as a new scenario")
         setUsable(
             ui.keepPlanButton,
             isKeeping or ui.planComboBox.currentNode() is not None,
-            _("Copy the scenario above with this plan in the place of its targets or trajectory."),
+            _("Copy the scenario above, with this plan in place of its targets or trajectory."),
             _("Place a target or a trajectory, or choose one."),
         )
         color = {None: GRAY, True: GREEN, False: RED}[self._logic.isReachable]
@@ -153,12 +153,12 @@ class PlanPanel:
         setUsable(
             ui.undoPlanButton,
             self._logic.points.canUndo,
-            _("Take back the last point that was placed or removed."),
+            _("Undo the last placing or removal of a point."),
             _("Nothing was placed or removed."),
         )
 
     def _read(self) -> tuple[PlanOnImages | None, str]:
-        """Return the plan, or why there is none; computed anew only where something changed."""
+        """Return the plan, or why there is none; recomputed only where something changed."""
         node = self._ui.planComboBox.currentNode()
         self._offerTargets(node)
         row = self._row()

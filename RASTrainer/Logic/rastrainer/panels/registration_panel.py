@@ -78,7 +78,7 @@ class RegistrationPanel:
                 self._logic.localize(self._logic.shown.labels[row], self._ui.fleSpinBox.value)
 
     def undo(self) -> None:
-        """Take the last change of the pairs back."""
+        """Undo the last change of the pairs."""
         with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
             self._logic.undo()
 
@@ -147,7 +147,7 @@ class RegistrationPanel:
         setUsable(
             ui.undoButton,
             self._logic.canUndo,
-            _("Take the last change of the pairs back."),
+            _("Undo the last change of the pairs."),
             _("No pair was changed."),
         )
 
@@ -198,7 +198,7 @@ class RegistrationPanel:
                 button = qt.QPushButton(buttonTitle(remedy.title))
                 button.setObjectName(f"remedy{number}Button")
                 button.minimumWidth = 1
-                button.toolTip = _("Change the pairs so and register again; Undo takes it back.")
+                button.toolTip = _("Apply this change and register again. Undo reverts it.")
                 button.connect("clicked()", self._applying(remedy))
                 self._add(layout, button)
 
@@ -233,7 +233,7 @@ def _summary(comparison: Comparison) -> str:
 def _treText(comparison: Comparison) -> str:
     error = comparison.errors.get(RIGID)
     if error is None:
-        return _("Place or choose a target to see the error to expect there.")
+        return _("Place or choose a target to see the expected error there.")
     low, high = error.interval_mm
     return _(
         "Expected TRE at the target, rigid: {expected:.2f} mm (95 %: {low:.2f} to {high:.2f} mm). "

@@ -23,7 +23,7 @@ def registerSampleData(assets: Path) -> None:
     """Register the MRI below the folder of assets; nothing happens where either is not there.
 
     The file lies on this computer, so that the sample needs no network. Its checksum makes Sample
-    Data fetch it anew where its cache has one of an older version.
+    Data fetch it again where its cache has one of an older version.
     """
     try:
         import SampleData

@@ -76,7 +76,7 @@ class ScenarioPanel:
             scenario = self._session.scenario.find(chosenData(self._ui.scenarioComboBox))
             self._session.training.loadScenario(scenario.name)
             self._showMessage(
-                _("The simulator is asked to load {title}.").format(title=scenario.title)
+                _("The simulator was asked to load {title}.").format(title=scenario.title)
             )
 
     def showRobot(self, shown: bool) -> None:
@@ -94,7 +94,7 @@ class ScenarioPanel:
             if used is not None:
                 model, warnings = used
                 fitThreeDViews()
-                text = _("{name} is the head now; the simulator keeps its own.")
+                text = _("{name} is the head now; the simulator keeps its own head.")
                 self._showHeadMessage(" ".join([text.format(name=model.GetName()), *warnings]))
 
     def importScenario(self) -> None:
@@ -226,7 +226,7 @@ class ScenarioPanel:
         setUsable(
             self._ui.loadScenarioButton,
             isConnected and isUsable,
-            _("Load this head into the simulator; only between two trials."),
+            _("Load this head into the simulator; only between trials."),
             _("Connect to the simulator first.") if isUsable else broken,
         )
         hasHead = self._ui.headModelComboBox.currentNode() is not None
@@ -235,7 +235,7 @@ class ScenarioPanel:
         setUsable(
             self._ui.useHeadButton,
             hasHead or isAtWork,
-            _("Look at this as the head, instead of the one above; of a volume, at its skin."),
+            _("Use this as the head in Slicer, instead of the one above; for a volume, its skin."),
             _("Choose a model or a volume of the scene first."),
         )
 

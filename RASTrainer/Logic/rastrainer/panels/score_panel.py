@@ -246,7 +246,7 @@ class ScorePanel:
             busy if isAtWork else unjudged,
         )
         allTrials = _("Write all trials of all trainees of the study into a CSV file.")
-        report = _("Write the report of the whole study as a page to be printed, and open it.")
+        report = _("Write the report of the whole study as a printable page, and open it.")
         setUsable(ui.exportScoresButton, not isAtWork, allTrials, busy)
         setUsable(ui.reportButton, not isAtWork, report, busy)
 

@@ -75,7 +75,7 @@ class SetupPanel:
         setUsable(
             ui.setupButton,
             not runs,
-            _("Install the simulator into a folder of its own, by Slicer's own Python."),
+            _("Install the simulator into its own folder, with Slicer's Python."),
             _("Stop the simulator first."),
         )
         setUsable(
@@ -107,7 +107,8 @@ class SetupPanel:
         need = _("The simulator is not set up on this computer yet: press Set up, once.")
         if old:
             need = _(
-                "The simulator that is set up, version {old}, is not this module's: set it up anew."
+                "The installed simulator, version {old}, does not match this module: set it up "
+                "again."
             ).format(old=old)
         return f"{need} {costSentence(self._ui, setup)}"
 
@@ -146,7 +147,7 @@ def costSentence(ui: Any, setup: SimulatorSetup) -> str:
         source = _("the package index {address}").format(address=ui.indexLineEdit.text)
     where = _(
         "The simulator itself comes with this module. What it needs comes from {source}, each "
-        "file known by its hash, and goes into {folder}."
+        "file verified by its hash, and is installed in {folder}."
     ).format(source=source, folder=setup.folder)
     sizes = setup.package.sizes()
     if sizes is None:

@@ -74,7 +74,7 @@ class SimulatorPanel:
             return
         question = _(
             "The simulator is not set up on this computer yet. Set it up now, and start it then? "
-            "{cost} Slicer itself stays as it is. This takes some minutes."
+            "{cost} Slicer itself is not changed. This takes some minutes."
         ).format(cost=costSentence(self._ui, self._simulator.setup))
         if slicer.util.confirmOkCancelDisplay(toolTip(question), _("Set up the simulator")):
             self._ui.setupButton.click()

@@ -52,10 +52,10 @@ class StudyPanel:
 
     def begin(self) -> None:
         """Make the chosen file the protocol of the study, after asking."""
-        with slicer.util.tryWithErrorDisplay(_("The study was not begun.")):
+        with slicer.util.tryWithErrorDisplay(_("The study was not started.")):
             question = _(
-                "Begin the study with this protocol? A study keeps its protocol for good; another "
-                "one needs another study's file."
+                "Begin the study with this protocol? A study keeps its protocol permanently; "
+                "another protocol needs a new study file."
             )
             if slicer.util.confirmYesNoDisplay(question, _("Begin the study")):
                 self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
@@ -77,7 +77,7 @@ class StudyPanel:
 
     def skipStep(self) -> None:
         """Leave the step out, for a reason; one that does not do can be completed."""
-        question = _("Why is it left out? The reason goes into the report.")
+        question = _("Why is it skipped? The reason goes into the report.")
         step = None if self._progress is None else self._progress.next_step
         if step is not None:
             # By its name: while the dialog is open, the step may be done.
@@ -87,7 +87,7 @@ class StudyPanel:
 
     def explainRepeat(self) -> None:
         """Say why an aborted trial is played again; only then can it be started."""
-        question = _("Why is the aborted trial played again? The reason goes into the report.")
+        question = _("Why is the aborted trial repeated? The reason goes into the report.")
         with slicer.util.tryWithErrorDisplay(_("The reason was not saved.")):
             self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
 
@@ -213,7 +213,7 @@ def _row(progress: Progress, number: int) -> tuple[str, str, str]:
 
 def _outcome(entry: StepEntry) -> str:
     if entry.outcome == SKIPPED:
-        return _("left out: {reason}").format(reason=entry.details["reason"])
+        return _("skipped: {reason}").format(reason=entry.details["reason"])
     return _("done")
 
 

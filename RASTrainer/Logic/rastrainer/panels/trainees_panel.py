@@ -107,7 +107,7 @@ class TraineesPanel:
 
     def bringBack(self) -> None:
         """Show the chosen trainee in the list again, who was archived."""
-        with slicer.util.tryWithErrorDisplay(_("The trainee was not brought back.")):
+        with slicer.util.tryWithErrorDisplay(_("The trainee was not restored.")):
             self._logic.setArchived(False)
 
     def exportTrainee(self) -> None:
@@ -138,8 +138,8 @@ class TraineesPanel:
             name, trials = self._logic.chosen, len(self._logic.history())
             question = _(
                 "Delete {name} with {trials} trials from the study and from the journals on this "
-                "computer, for good? This cannot be undone; export the trainee first if the data "
-                "may be needed. Earlier exports and backups are yours to delete."
+                "computer, permanently? This cannot be undone; export the trainee first if the "
+                "data may be needed. Earlier exports and backups are yours to delete."
             ).format(name=name, trials=trials)
             if slicer.util.confirmYesNoDisplay(toolTip(question), _("Delete the trainee")):
                 erased = self._deletion.run(self._logic.delete)

@@ -135,7 +135,7 @@ class TrainingPanel:
         isConnected = session.link.status.state is LinkState.CONNECTED
         self._showButtons(progress, isConnected)
         received = len(session.trials.received)
-        kept = _("{count}, all kept in the study").format(count=received)
+        kept = _("{count}, all stored in the study").format(count=received)
         setText(ui.receivedText, kept if received else _("none"))
         if not isConnected:
             setText(ui.phaseText, _("not connected; no touch is lost"))

@@ -38,7 +38,7 @@ CAMERAS = ("close-up", "far")
 MAX_TASKS = 20
 STAND_DIAMETERS_MM = (1.0, 500.0)
 SKULL_KINDS = ("bone", "approximation")
-UNKNOWN_LICENSE = "Not to be given away: nothing is known about its license."
+UNKNOWN_LICENSE = "Not to be shared: its license is unknown."
 
 
 @dataclass(frozen=True)

@@ -108,7 +108,7 @@ def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankSumTest | None:
 
 
 def _sum_probabilities(doubled_ranks: np.ndarray, drawn: int) -> np.ndarray:
-    """Return the probability of each sum of so many ranks, (sum + 1,) float."""
+    """Return the probability of each sum of `drawn` ranks, (sum + 1,) float."""
     counts = np.zeros((drawn + 1, int(doubled_ranks.sum()) + 1))
     counts[0, 0] = 1.0
     for rank in doubled_ranks:

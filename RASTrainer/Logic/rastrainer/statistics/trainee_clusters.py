@@ -226,7 +226,7 @@ def stability(
 ) -> np.ndarray:
     """Return the mean Jaccard similarity of each cluster under resampling (Hennig 2007).
 
-    Of each bootstrap sample clustered anew, the cluster most like the original one counts.
+    Each bootstrap sample is clustered; the cluster most like the original one counts.
     """
     clusters = np.unique(labels)
     found = np.zeros((rounds, len(clusters)))

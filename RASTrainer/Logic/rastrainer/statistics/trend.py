@@ -27,7 +27,7 @@ MIN_TRIALS = 4
 STEADY = 0.1
 """A fall by less than this share of the mean is called none; our own convention."""
 MAX_ORDERS = 9999
-"""All orders of up to seven trials; of more, so many random ones."""
+"""Up to seven trials, all orders are used; beyond, this many random ones."""
 
 
 class TrendVerdict(Enum):

@@ -41,7 +41,7 @@ class AbortedTrial:
         reason: An `AbortReason`, or that of a later version.
         points: The touches that were kept so far; their labels differ and their times do not fall.
         rejected_touches: Number of touches that were refused.
-        undone_touches: Number of touches that the trainee took back.
+        undone_touches: Number of touches that the trainee undid.
         versions: Name and version of each program and format that made the record.
         touch_rule: Which touches counted, a `TouchRule`.
     """

@@ -78,7 +78,7 @@ class TrialRecord:
         completion_time_s: Simulated time from the start to the last kept touch, without pauses.
         points: The kept touches; their labels differ and their times do not fall.
         rejected_touches: Number of touches that were refused (too far off, wrong fiducial).
-        undone_touches: Number of touches that the trainee took back.
+        undone_touches: Number of touches that the trainee undid.
         versions: Name and version of each program and format that made the record.
         seed: Seed of the trial, where the simulator reveals it.
         touch_rule: Which touches counted, a `TouchRule`; in older records the paper's.

@@ -21,10 +21,10 @@ ENGLISH: Mapping[str, str] = {
     "mm: lift off before you travel to the next point.",
     "pressing": "You pressed {depth:.1f} mm into the head at the points: stop as soon as the tip "
     "touches the skin.",
-    "worst touch": "Take more care at the point {points}: without this error the registration "
-    "would be about {share:.0f} % more exact.",
-    "worst touches": "Take more care at the points {points}: without these errors the registration "
-    "would be about {share:.0f} % more exact.",
+    "worst touch": "Take more care at point {points}: without this error the registration would "
+    "be about {share:.0f} % more accurate.",
+    "worst touches": "Take more care at points {points}: without these errors the registration "
+    "would be about {share:.0f} % more accurate.",
     "depth": "Most of the error is in depth: bring the tip all the way onto the skin, and look "
     "from the side before you touch.",
     "common bias": "On average, the touches are {bias:.1f} mm too far {direction}, which the "
@@ -40,17 +40,17 @@ ENGLISH: Mapping[str, str] = {
     "bias to the crown": "toward the crown",
     "idle time": "The tool stood still for {idle:.0f} s of {time:.0f} s: look for the next point "
     "while you are still at this one.",
-    "detours": "The tool went {times:.1f} times the shortest way: go around the head closer to it "
-    "and in one sweep.",
-    "repeated touch": "1 touch was refused or taken back: check the number of the point before you "
+    "detours": "The tool traveled {times:.1f} times the shortest path: move around the head "
+    "closer to it and in one sweep.",
+    "repeated touch": "1 touch was refused or undone: check the number of the point before you "
     "touch.",
-    "repeated touches": "{count} touches were refused or taken back: check the number of the point "
+    "repeated touches": "{count} touches were refused or undone: check the number of the point "
     "before you touch.",
     "pace": "You took {time:.0f} s where {usual:.0f} s are usual: travel faster between the points "
     "and slow down only near the skin.",
     "first trial": "This is your first trial of this task in this mode.",
     "first of this score": "Your earlier trials of this task have scores of an earlier version, "
-    "which do not compare with this one.",
+    "which cannot be compared with this one.",
     "more points": "{points:.0f} points more than the mean of your last {trials} trials of this "
     "task.{best}",
     "less points": "{points:.0f} points less than the mean of your last {trials} trials of this "
@@ -65,7 +65,7 @@ ENGLISH: Mapping[str, str] = {
     "no mark": "Neither passed nor failed: the pass mark of this study is for another version of "
     "the score.",
     "competent": "Your trials show competence since number {number}: of those who still fail in "
-    "{failing:.0f} % of their trials, {risk:.0f} % come so far by chance within {trials} trials "
+    "{failing:.0f} % of their trials, {risk:.0f} % get this far by chance within {trials} trials "
     "(LC-CUSUM).",
     "not competent": "{share:.0f} % of the way to demonstrated competence (LC-CUSUM; trials so "
     "far: {trials}).",

@@ -20,7 +20,7 @@ class Sprite:
     """One picture in a renderer's overlay, invisible until it is shown."""
 
     def __init__(self, renderer: vtkRenderer, order: int = 0):
-        """`order` tells what lies over what: the higher is nearer."""
+        """Of overlapping sprites, the one with the higher `order` is in front."""
         self._renderer = renderer
         self._points = vtkPoints()
         self._points.SetNumberOfPoints(4)

@@ -33,7 +33,7 @@ class ErrorsPage(SessionPage):
         return Menu(self.name, self._title, items=(self.button("back"),))
 
     def screen(self) -> Screen:
-        """Return the arrows: they tell the truth, which the score has told already."""
+        """Return the arrows; they show the true errors, which the score has already revealed."""
         session = self.session
         touches = session.training.touches if session.training.result is not None else ()
         return Screen(

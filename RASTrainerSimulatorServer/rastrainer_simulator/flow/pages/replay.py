@@ -19,7 +19,7 @@ _WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
 
 
 class ReplayPage(SessionPage):
-    """Waits for the recorded trial, and plays it to whoever holds the control.
+    """Waits for the recorded trial, and replays it for the one in control.
 
     Attributes:
         playback: what is played; None while it is being loaded.

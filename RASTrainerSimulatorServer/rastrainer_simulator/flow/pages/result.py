@@ -196,7 +196,7 @@ def _beyond_limits(result: TrialResult) -> list[str]:
 
 
 def _not_good(fact: Fact) -> Fact:
-    """Nothing about a trial looks good that would have missed the target or hurt somebody."""
+    """Nothing about a trial looks good that would have missed the target or hurt the patient."""
     return replace(fact, tone=Tone.PLAIN) if fact.tone is Tone.GOOD else fact
 
 

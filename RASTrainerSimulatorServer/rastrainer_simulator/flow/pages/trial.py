@@ -108,7 +108,7 @@ class PracticePage(SessionPage):
 
 
 class CompletePage(SessionPage):
-    """All points are touched: they are registered, or the last one is taken back."""
+    """All points are touched: they are registered, or the last one is undone."""
 
     name = "complete"
 

@@ -69,13 +69,13 @@ class Page:
 
 
 GRACE_S = 0.7
-"""How long a page that opened by itself has no focus: a press meant for the arm does nothing."""
+"""How long a page that opens automatically has no focus: presses meant for the arm do nothing."""
 
 
 class OpenPages:
     """The open pages; none while the trainee works.
 
-    A page that opened by itself takes no control for `GRACE_S` seconds of the simulator's clock;
+    A page that opens automatically ignores presses for `GRACE_S` seconds of the simulator's clock;
     clicks on its items count at once.
 
     Attributes:
@@ -112,7 +112,7 @@ class OpenPages:
         self.show(self.home())
 
     def open(self, page: Page, has_grace: bool = False) -> None:
-        """Open a page over the others; with a grace time where it opens by itself."""
+        """Open a page over the others; with a grace time where it opens automatically."""
         self._grace_s = GRACE_S if has_grace else 0.0
         self._open.append(page)
         self._focus.append(page.first)

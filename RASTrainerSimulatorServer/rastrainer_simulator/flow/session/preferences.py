@@ -38,7 +38,7 @@ class Preferences:
         axes: whose right, forward and up the sticks follow.
         direction: who decides the tool's direction.
         touch: whether a touch has to be on the skin.
-        view: when the view goes to each next point by itself: "practice" is outside of a study.
+        view: when the view goes to each next point automatically: "practice" is outside of a study.
         guidance: how the trainee is guided to the next point, unless a study says otherwise.
         tutorial: whether it comes before the trial run, unless a study says otherwise.
     """

@@ -21,8 +21,8 @@ PLAYED, ANSWERED = "played", "answered"
 class StudySteps:
     """Keeps the next step of each trainee; a trainee without one practices freely.
 
-    Nothing of it outlives the process: Slicer, which keeps the study, sends everything anew as soon
-    as it is connected again. Answers that it has not taken until then are asked for again.
+    Nothing of it outlives the process: Slicer, which keeps the study, sends everything again once
+    it is connected. Answers that it has not received by then are asked for again.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:

@@ -64,7 +64,7 @@ class OutgoingQueue:
         self._latest[key] = data
 
     def take(self, about: int) -> bytes:
-        """Remove and return messages of `about` so many bytes in all, the lasting ones first."""
+        """Remove and return messages of `about` bytes in all, the lasting ones first."""
         taken, size = [], 0
         while size < about and self._lasting:
             taken.append(self._lasting.popleft())

@@ -222,7 +222,7 @@ class Publisher:
     def _publish_training(
         self, everyone: Iterable[ClientConnection], training: TrainingState
     ) -> None:
-        """Send the touched points whenever one was touched or taken back, and with a new trial."""
+        """Send the touched points whenever one was touched or undone, and with a new trial."""
         sent = self._sent_training
         self._sent_training = training
         if sent is None or (sent.touches, sent.trial_id) != (training.touches, training.trial_id):

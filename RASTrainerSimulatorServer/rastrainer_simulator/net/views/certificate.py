@@ -24,7 +24,7 @@ NAMES_NAME = "views.names"
 
 
 def tls_context(folder: Path) -> ssl.SSLContext:
-    """Return TLS with this machine's certificate, made anew when it is old or has moved.
+    """Return TLS with this machine's certificate, renewed when old or when addresses changed.
 
     The file holds the private key: only its owner can read it, and it leaves the machine never.
 
@@ -36,7 +36,7 @@ def tls_context(folder: Path) -> ssl.SSLContext:
     try:
         make_private_folder(folder)
         if _is_usable(file, names_file, names):
-            # Torn, as by a full disk, it is made anew.
+            # An incomplete one, as after a full disk, is replaced.
             with contextlib.suppress(ssl.SSLError):
                 return _context(file)
         _make(file, names_file, names)

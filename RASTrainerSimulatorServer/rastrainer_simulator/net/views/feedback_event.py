@@ -66,7 +66,7 @@ def feedback_event(
     """Return the feedback to an event of the simulation, None where it has none.
 
     `touch` is how the touch is going when it happens: a contact where a touch counts is no alarm.
-    `not_recorded` says that a change of the phase took back what the disk had refused.
+    `not_recorded` says that a change of the phase undid what the disk had refused.
     """
     if event.kind is EventKind.TOUCH:
         return FeedbackEvent.TOUCH

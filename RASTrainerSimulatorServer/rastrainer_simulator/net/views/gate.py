@@ -92,7 +92,7 @@ class Gate:
         return response
 
     def _check_pause(self) -> None:
-        """Refuse while no code is looked at; whoever has made the pause hears of the new code."""
+        """Refuse while pairing is paused; the one who caused the pause is told of the new code."""
         wait = self._code.seconds_to_wait()
         if wait > 0:
             headers = {hdrs.RETRY_AFTER: str(math.ceil(wait))}
@@ -124,7 +124,7 @@ async def _code(request: web.Request) -> str:
 def check_origin(request: web.Request) -> None:
     """Let a request pass if it is for us and, from a browser, from our own page.
 
-    A name that somebody else's name server points here (DNS rebinding) is not ours.
+    A name that another name server points here (DNS rebinding) is not ours.
 
     Raises:
         web.HTTPForbidden: it may not pass.

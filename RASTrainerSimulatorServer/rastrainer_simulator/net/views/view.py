@@ -21,9 +21,9 @@ from rastrainer_simulator.net.views.presenter import Frames, Presenter
 
 _log = logging.getLogger(__name__)
 
-TOO_MANY_MESSAGES = "The view has sent more messages than a trainee's hands can give."
+TOO_MANY_MESSAGES = "The view has sent more messages than a trainee's inputs can produce."
 TOO_MANY_EVENTS = "The view has not read its events; it may come back."
-NOT_TEXT = "Messages are texts."
+NOT_TEXT = "Messages must be text."
 MOST_KEYS = 32
 _BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING)
 
@@ -72,7 +72,7 @@ class View:
                 await sending
 
     def release_if_silent(self, silent_s: float) -> None:
-        """Let go of what is held by a view that has not been heard for `silent_s`."""
+        """Release what is held by a view that has been silent for `silent_s`."""
         if self.held.is_anything_held and self._clock() - self._last_message > silent_s:
             self.held.release()
 
@@ -186,7 +186,7 @@ class HeldInput:
         self._presenter.on_sticks(self._view, translation, rotation, is_fine, yaw_deg)
 
     def release(self) -> None:
-        """Let go of everything."""
+        """Release everything."""
         for code in tuple(self._keys):
             self.key(code, False, "")
         if self._pad is not None:

@@ -31,7 +31,7 @@ from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzi
 
 FOREVER = "private, max-age=31536000, immutable"
 FULL_SIZE = "X-File-Size"
-FULL = "As many views as can be served are connected."
+FULL = "The maximum number of views is connected."
 HELLO_FIRST = "The first message of a view must be a hello."
 LARGEST_BODY = 1024
 SHUTDOWN_S = 1.0
@@ -178,7 +178,7 @@ class ViewServer:
         except LookupError:
             raise web.HTTPNotFound from None
         if "gzip" in request.headers.get("Accept-Encoding", ""):
-            # The size is for whoever shows how much of it has come.
+            # The size is for views that show the progress of the download.
             headers |= {"Content-Encoding": "gzip", FULL_SIZE: str(size)}
         else:
             content = await asyncio.to_thread(gzip.decompress, content)

@@ -31,7 +31,7 @@ export class Board {
   private regions: readonly Region[] = [];
   private shown = "";
 
-  /** Make a board of so many pixels, `wide` m wide. */
+  /** Make a board of `width` × `height` pixels, `wide` m wide. */
   constructor(
     readonly width: number,
     readonly height: number,
@@ -56,7 +56,7 @@ export class Board {
     this.mesh.userData.board = this;
   }
 
-  /** Paint the board if `content`, which tells all that is painted, has changed. */
+  /** Paint the board if `content`, which describes all that is painted, has changed. */
   show(content: string, paint: (pen: Pen) => readonly Region[] | void): void {
     if (content === this.shown) return;
     this.shown = content;

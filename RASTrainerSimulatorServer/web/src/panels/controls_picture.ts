@@ -69,7 +69,7 @@ class Sketch {
     this.parts.push(`<text ${place} font-size="${size}" fill="${color}">${text}</text>`);
   }
 
-  /** A button or key with its name on it; `input` is what people are told it is called. */
+  /** A button or key with its name on it; `input` is its name in the texts. */
   button(text: string, input: string, x: number, y: number, width: number, height: number, isUsed = this.isUsed(input)): void {
     this.slab(x, y, width, height, 14, isUsed ? COLORS.accent : COLORS.row, isUsed ? COLORS.accentEdge : COLORS.edge);
     this.label(text, x + width / 2, y + height / 2, 34, isUsed ? COLORS.text : COLORS.pale);

@@ -95,7 +95,7 @@ export class Boards {
     return this.screen?.menu != null;
   }
 
-  /** Stand where somebody who is seated so reads them well. */
+  /** Place the boards where a person seated like this reads them well. */
   arrange(seating: Seating): void {
     this.seating = seating;
     const aside = this.screen?.menu?.picture ? MENU_ASIDE : 0;

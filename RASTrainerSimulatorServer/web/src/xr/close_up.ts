@@ -21,7 +21,7 @@ const HEIGHT = 480;
 const ANGLE_DEG = 10;
 /** Of the dark frame around it, m: so it is seen to be a picture. */
 const FRAME = 0.012;
-/** A picture of its own in every so many pictures: its price is spread over them. */
+/** It is drawn only in every n-th picture, which spreads its cost. */
 const EVERY = 3;
 
 export class CloseUp {

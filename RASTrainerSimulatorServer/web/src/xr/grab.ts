@@ -44,7 +44,7 @@ export class Grab {
     this.tool.getWorldPosition(this.tipBegan);
   }
 
-  /** Let go, if it is this hand that holds. */
+  /** Release, if it is this hand that holds. */
   end(hand: Object3D): void {
     if (hand === this.hand) this.hand = null;
   }

@@ -65,8 +65,8 @@ export class Hands {
     fine: false,
     yawDeg: 0,
   };
-  private readonly told = new Float32Array(6);
-  private toldYaw = 0;
+  private readonly sent = new Float32Array(6);
+  private sentYaw = 0;
   private hovered = "";
   private repeated = "";
   private repeatIn = 0;
@@ -123,7 +123,7 @@ export class Hands {
 
   release(): void {
     this.isHolding = false;
-    this.told.fill(0);
+    this.sent.fill(0);
     for (const hand of this.hands) hand.down.fill(false);
   }
 
@@ -182,17 +182,17 @@ export class Hands {
     let isPushed = fine;
     for (let index = 0; index < 6; index++) {
       const value = index < 3 ? translation[index]! : index < 5 ? rotation[index - 3]! : Number(fine);
-      const isEnd = value === 0 && this.told[index] !== 0;
-      if (Math.abs(value - this.told[index]!) > CHANGE || isEnd) differs = true;
+      const isEnd = value === 0 && this.sent[index] !== 0;
+      if (Math.abs(value - this.sent[index]!) > CHANGE || isEnd) differs = true;
       if (value !== 0) isPushed = true;
     }
     this.isHolding = isPushed;
-    const hasTurned = isPushed && Math.abs(this.yawDeg - this.toldYaw) > YAW_CHANGE_DEG;
+    const hasTurned = isPushed && Math.abs(this.yawDeg - this.sentYaw) > YAW_CHANGE_DEG;
     if (!differs && !hasTurned) return;
-    this.message.yawDeg = this.toldYaw = this.yawDeg;
-    this.told.set(translation);
-    this.told.set(rotation, 3);
-    this.told[5] = Number(fine);
+    this.message.yawDeg = this.sentYaw = this.yawDeg;
+    this.sent.set(translation);
+    this.sent.set(rotation, 3);
+    this.sent[5] = Number(fine);
     this.connection.send("sticks", this.message);
   }
 

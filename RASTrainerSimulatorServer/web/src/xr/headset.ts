@@ -137,14 +137,14 @@ export class Headset {
     this.seat();
   }
 
-  /** Have the boards stand for somebody who is where they belong. */
+  /** Place the boards for a person who is where they belong. */
   private seat(): void {
     const { eyes, forward, focus } = this.placement;
     this.seating.put(eyes, forward, focus);
     this.boards.arrange(this.seating);
   }
 
-  /** Have the boards come after whoever has walked or turned away from them. */
+  /** Have the boards follow a person who has walked or turned away from them. */
   private bringBoards(): void {
     const eyes = this.camera.getWorldPosition(this.ears.place);
     const hasMoved = this.seating.follow(eyes, this.ears.forward, this.boards.isMenu);

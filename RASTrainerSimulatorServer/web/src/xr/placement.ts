@@ -33,7 +33,7 @@ export class Placement {
     this.settle();
   }
 
-  /** Raise the table by so many steps. */
+  /** Raise the table by a number of steps. */
   raise(steps: number): void {
     this.rise = Math.min(MOST_M, Math.max(-MOST_M, this.rise + steps * STEP_M));
     localStorage.setItem(STORED, String(this.rise));

@@ -25,7 +25,7 @@ export class Seating {
   }
 
   /**
-   * Follow the person's eyes and their level `gaze`; return whether the boards have to be arranged anew. Menus
+   * Follow the person's eyes and their level `gaze`; return whether the boards have to be rearranged. Menus
    * come up where the eyes look, what is read at work stands around the head.
    */
   follow(eyes: Vector3, gaze: Vector3, isMenu: boolean): boolean {

@@ -89,10 +89,10 @@ def versions_note(data: StudyData) -> str:
         for version, count in sorted(left_out.items())
     )
     return (
-        f"This study has scores of several versions, which measure different things and do not "
-        f"compare: {counted(own, 'trial')} of version {compared}, {others}. Wherever this report "
-        f"reports scores, trials passed or competence, it means version {compared} "
-        "alone. trials.csv has all of them, each with its version."
+        "This study has scores of several versions, which measure different things and cannot be "
+        f"compared: {counted(own, 'trial')} of version {compared}, {others}. Wherever this report "
+        f"reports scores, trials passed or competence, it means version {compared} alone. "
+        "trials.csv has all of them, each with its version."
     )
 
 

@@ -149,8 +149,8 @@ def _limits(data: StudyData) -> str:
     if not data.has_order:
         return (
             "The order of the trials is not in the data; the tasks stand in the order of their "
-            "numbers. Where tasks were always done in this order, difficulty, practice and fatigue "
-            "cannot be told apart, and a rising curve is no proof against learning."
+            "numbers. Where tasks were always done in this order, difficulty, practice and "
+            "fatigue cannot be separated, and a rising curve does not disprove learning."
         )
     if len(data.tasks) == 1:
         return "All trials were of one task: curves and tests show practice and fatigue together."

@@ -83,7 +83,7 @@ def _paused(data: StudyData) -> list[str]:
 
 
 def _missing(data: StudyData) -> list[str]:
-    """Return which tasks some trainees lack, since means over different tasks do not compare."""
+    """Return the tasks some trainees lack: means over different tasks cannot be compared."""
     lacking = []
     for mode in data.modes:
         own = data.of_mode(mode)

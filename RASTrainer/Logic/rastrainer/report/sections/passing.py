@@ -75,13 +75,13 @@ def started_trials(data: StudyData) -> str:
             )
         )
     if repeats := _repeats(scored):
-        parts += [heading("Steps of the protocol that were played again"), bullets(repeats)]
+        parts += [heading("Steps of the protocol that were repeated"), bullets(repeats)]
     silent = sum(not stored.repeat_reason for stored in scored)
     if data.protocol is not None and silent:
         parts.append(
             paragraph(
-                f"For {counted(silent, 'aborted trial')} no reason of a repeat is stored: the step "
-                "was not played again, was left out, or its repeat had arrived before.",
+                f"For {counted(silent, 'aborted trial')} no reason of a repeat is stored: the "
+                "step was not repeated, was skipped, or its repeat had arrived before.",
                 "small",
             )
         )

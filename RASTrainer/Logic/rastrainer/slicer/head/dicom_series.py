@@ -39,9 +39,9 @@ def readDicomFolder(folder: Path) -> Volume:
     """
     paths = [path for path in sorted(folder.iterdir()) if _isDicom(path)]
     if not paths:
-        raise InputError(f"The folder {folder} holds no DICOM files.")
+        raise InputError(f"The folder {folder} contains no DICOM files.")
     if len(paths) > MOST_FILES or sum(path.stat().st_size for path in paths) > MOST_BYTES:
-        raise InputError(f"The folder {folder} holds more than one head's worth of DICOM files.")
+        raise InputError(f"The folder {folder} contains more DICOM files than one head needs.")
     series: dict[str, list[_Slice]] = {}
     for path in paths:
         uid, image = _readSlice(path)
@@ -99,7 +99,7 @@ def _stacked(folder: Path, slices: list[_Slice]) -> Volume:
     if step <= 0 or np.abs(steps - step).max() > EVEN_WITHIN * step:
         raise InputError(
             f"The slices of the DICOM series in {folder} are not evenly spaced: some are missing "
-            "or there twice."
+            "or duplicated."
         )
     matrix = first.copy()
     matrix[:3, 2] = (places[-1] - places[0]) / (len(slices) - 1)

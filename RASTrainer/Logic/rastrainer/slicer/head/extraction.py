@@ -54,8 +54,8 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
         base = max(lowest + SPACING_MM, top - LONGEST_HEAD_MM)
     if not lowest <= base < top:
         raise InputError(
-            f"The head is found between {lowest:.0f} and {top:.0f} mm (S); its base must be there, "
-            f"not at {base:.0f} mm."
+            f"The head is found between {lowest:.0f} and {top:.0f} mm (S); its base must be in "
+            f"this range, not at {base:.0f} mm."
         )
     below = max(0, int((base - lowest) / SPACING_MM) - 1)
     around = _around(found.level > 0, below)

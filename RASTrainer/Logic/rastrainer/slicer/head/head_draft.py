@@ -139,7 +139,7 @@ def checkVolume(volume: Volume) -> list[str]:
     if values.size > MOST_VOXELS:
         raise InputError(f"The volume has {values.size / 1e6:.0f} million voxels; crop it.")
     if not np.isfinite(values).all():
-        raise InputError("The volume holds values that are no numbers (NaN or infinite).")
+        raise InputError("The volume contains values that are not numbers (NaN or infinite).")
     if values.min() == values.max():
         raise InputError("The volume is empty: all its voxels have the same value.")
     return _checkSpacing(volume)
@@ -165,8 +165,8 @@ def _checkSpacing(volume: Volume) -> list[str]:
         )
     if spacing.max() > COARSE_MM:
         return [
-            f"The slices are {spacing.max():.1f} mm apart: between them the skin is guessed, and "
-            "may be off by a millimeter or two at the nose, the ears and the crown."
+            f"The slices are {spacing.max():.1f} mm apart: between them the skin is interpolated, "
+            "and may be off by a millimeter or two at the nose, the ears and the crown."
         ]
     return []
 
@@ -184,6 +184,6 @@ def checkHead(mesh: HeadMesh) -> None:
     if not isSize or volume > FULLEST * extent.prod():
         raise InputError(
             f"No head was found: what is above the threshold measures {extent[0]:.0f} × "
-            f"{extent[1]:.0f} × {extent[2]:.0f} mm and looks like no head. Try another threshold "
-            "or cut."
+            f"{extent[1]:.0f} × {extent[2]:.0f} mm and does not look like a head. Try another "
+            "threshold or cut."
         )

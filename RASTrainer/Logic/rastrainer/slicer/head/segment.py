@@ -76,7 +76,9 @@ def readSegment(node: Any, segmentId: str) -> SegmentImage:
 
     image = slicer.vtkOrientedImageData()
     if not segmentId or not node.GetBinaryLabelmapRepresentation(segmentId, image):
-        raise InputError("The segment of the head is not there; choose another, or make it anew.")
+        raise InputError(
+            "The segment of the head does not exist; choose another one, or make it again."
+        )
     array = image.GetPointData().GetScalars()
     if array is None:
         raise InputError("The segment of the head is empty.")

@@ -183,7 +183,7 @@ class SlicerConnection:
             connector.SetTypeClient(ip, port)
             connector.Start()
         else:
-            # `Stop` would block for as long as 0.1 s, and the connector tries by itself.
+            # `Stop` would block for as long as 0.1 s, and the connector retries automatically.
             connector.SetServerPort(port)
         self._connectsUntil = self._clock() + CONNECT_WITHIN_S
 

@@ -15,7 +15,7 @@ from rastrainer.slicer.translation import _
 
 STALE_AFTER_S = 3.5
 RECONNECT_AFTER_S = 10.0
-"""Seconds of silence after which the link is called stale, and after which it is made anew."""
+"""Seconds of silence after which the link counts as stale, and after which it is reopened."""
 
 
 class LinkState(str, Enum):

@@ -154,7 +154,7 @@ class Link:
     def wantPoses(self, areWanted: bool) -> None:
         """Have the simulator send poses while the arm moves, or none.
 
-        Slicer renders all its views for each pose, so request them only while somebody looks.
+        Slicer renders all its views for each pose, so request them only while someone is looking.
         """
         if areWanted != self._wantsPoses:
             self._wantsPoses = areWanted

@@ -15,7 +15,7 @@ from rastrainer.slicer.translation import _
 RETRY_S = 1.0
 RETRY_OTHER_S = 5.0
 """Seconds until the next question: soon where a simulator may just be starting, later where
-somebody else answers."""
+another program answers."""
 
 
 class SimulatorSearch:

@@ -111,7 +111,7 @@ class HeadPreview:
             raise InputError(
                 _(
                     "The threshold or the cut has been changed since the head was found: find the "
-                    "head again, or set it back."
+                    "head again, or reset it."
                 )
             )
         segment = node.GetSegmentation().GetSegmentIdBySegmentName(SEGMENT_NAME)

@@ -88,7 +88,7 @@ class ModuleSession:
         studyPath: file of the present study.
         task: name of the chosen task.
         taskTitle: what people read.
-        isSeen: returns whether somebody may be looking at the module, at the 3D view, or (where
+        isSeen: returns whether someone may be looking at the module, at the 3D view, or (where
             asked to count them) at the slice views; the module's widget sets it.
         taskChosen: emits nothing, whenever another task is chosen.
         scenarioMade: emits the name of a scenario that has just been made.

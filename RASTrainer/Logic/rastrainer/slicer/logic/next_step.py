@@ -140,7 +140,7 @@ _DURING_TRIAL = {
     Phase.COMPLETE.value: (
         NextAction.WAIT,
         _("Waiting…"),
-        _("All points are touched: the trainee registers them, or takes some back."),
+        _("All points are touched: the trainee registers them, or undoes some."),
         Section.REGISTRATION,
     ),
     Phase.VERIFYING.value: (
@@ -216,7 +216,7 @@ def _trainee(now: WorkflowState) -> NextStep:
     if now.hasTrainees:
         text = _("Choose who trains, or create a new trainee.")
         return NextStep(NextAction.CHOOSE_TRAINEE, _("Choose a trainee"), text, Section.TRAINEES)
-    text = _("A pseudonym is given, unless you type one below.")
+    text = _("A pseudonym is assigned, unless you type one below.")
     return NextStep(NextAction.CREATE_TRAINEE, _("New trainee"), text, Section.TRAINEES)
 
 

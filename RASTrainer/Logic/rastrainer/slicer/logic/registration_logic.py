@@ -100,7 +100,7 @@ class RegistrationLogic:
 
     @property
     def canUndo(self) -> bool:
-        """Whether there is a change to take back."""
+        """Whether there is a change to undo."""
         return len(self._history) > 1
 
     @property

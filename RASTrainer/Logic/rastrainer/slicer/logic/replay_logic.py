@@ -222,7 +222,7 @@ class ReplayLogic:
 
     def _checkNoTrialIsOpen(self) -> None:
         if self._isTrialOpen():
-            raise InputError(_("A trial is being played: look at another one when it is over."))
+            raise InputError(_("A trial is in progress: replay another one when it is over."))
 
     def _play(self, until: float | None) -> None:
         self._until = until

@@ -100,7 +100,7 @@ class SimulatorLogic:
             InputError: it cannot start.
         """
         if self.program.isRunning or self.running.look():
-            raise InputError(_("End the simulator that is running before it is set up anew."))
+            raise InputError(_("End the simulator that is running before setting it up again."))
         self.setup.begin(SetupSource(index.strip(), Path(wheels) if wheels else None))
 
     def removeSetup(self) -> None:
@@ -110,7 +110,7 @@ class SimulatorLogic:
             InputError: the simulator runs, or is being set up, or cannot be removed.
         """
         if self.program.isRunning or self.running.look():
-            raise InputError(_("End the simulator that is running before it is removed."))
+            raise InputError(_("End the simulator that is running before removing it."))
         self.setup.remove()
 
     def process(self) -> None:

@@ -151,7 +151,7 @@ class StudyLogic:
             progress = StudyProgress(self._trainees.study).progress(trial.trainee)
             if progress.unexplained:
                 return _(
-                    "{trainee} plays an aborted trial again: it will count once there is a reason."
+                    "{trainee} is repeating an aborted trial: it will count once a reason is given."
                 ).format(trainee=trial.trainee)
             progress.check_start(trial.mode, trial.task)
         except InputError:
@@ -238,7 +238,7 @@ class StudyLogic:
             if isAsked and step is not None:
                 study.finish(answers.trainee, step.name, {"answers": answers.answers})
         except InputError as error:
-            logging.error("What was answered at the simulator is not kept: %s", error)
+            logging.error("Answers given at the simulator were not stored: %s", error)
         else:
             self._leadAgain(answers.trainee)
 

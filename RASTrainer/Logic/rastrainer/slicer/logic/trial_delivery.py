@@ -155,7 +155,7 @@ class AbortedTrialsLogic:
             work,
             lambda delivery: lambda: self._keep(delivery),
             self.kept.emit,
-            _("An aborted trial could not be kept: {error}"),
+            _("An aborted trial could not be stored: {error}"),
         )
         self.problemFound = self._queue.problemFound
 

@@ -96,7 +96,7 @@ class TrialLogic:
             work,
             self._storing,
             self._accept,
-            _("A trial could not be kept: {error}"),
+            _("A trial could not be stored: {error}"),
             _("Trials arrive faster than they can be scored; they are offered again later."),
         )
         self.problemFound = self._queue.problemFound
@@ -204,7 +204,9 @@ class TrialLogic:
         self._work.do(lambda: self._analyze(record), take, refuse)
 
     def _reportUnscored(self, reason: object) -> None:
-        self._queue.report(_("A trial is kept but cannot be scored: {error}").format(error=reason))
+        self._queue.report(
+            _("A trial is stored but cannot be scored: {error}").format(error=reason)
+        )
 
     def _show(self, analysis: TrialAnalysis) -> None:
         """Show a trial in the scene, unless another one is being played there."""

@@ -124,7 +124,7 @@ def _signal(holder: FolderHolder, isAsked: bool) -> None:
         endProcess(holder.pid, holder.started_by == SLICER, isAsked)
     except PermissionError:
         raise InputError(
-            _("Another user of this computer has started this simulator, and can end it.")
+            _("This simulator was started by another user of this computer, who can end it.")
         ) from None
 
 

@@ -1,6 +1,6 @@
 """What the simulator is set up from: its wheel, the lock of all other packages, and pip.
 
-Nothing of our own comes from an index: whoever registered our name there would run code in
+Nothing of our own comes from an index: anyone who registered our name there would run code in
 hospitals. An installed module has the wheel, known by its SHA-256. In a checkout the sources are
 run as they are. What others have made is fixed by the hashes of the lock.
 """
@@ -88,7 +88,7 @@ class SimulatorPackage:
         if found is None or found.group(2) != WHEEL:
             raise InputError(
                 _(
-                    "The simulator is missing in {folder}: install the extension RASTrainer anew."
+                    "The simulator is missing in {folder}: reinstall the extension RASTrainer."
                 ).format(folder=self.folder)
             )
         return found.group(1)
@@ -119,7 +119,7 @@ class SimulatorPackage:
         path = self.folder / WHEEL
         if hashlib.sha256(read_bytes(path, LIMIT_BYTES)).hexdigest() != digest:
             raise InputError(
-                _("{path} is damaged: install the extension RASTrainer anew.").format(path=path)
+                _("{path} is damaged: reinstall the extension RASTrainer.").format(path=path)
             )
         return path.resolve().as_uri()
 
@@ -181,8 +181,8 @@ class SetupSource:
         if not ADDRESS.fullmatch(self.index):
             raise InputError(
                 _(
-                    "“{address}” is no address of a package index: it begins with https://, or "
-                    "leave it empty."
+                    "“{address}” is not the address of a package index: start it with https://, "
+                    "or leave it empty."
                 ).format(address=self.index)
             )
         return [*OPTIONS, "--index-url", self.index]

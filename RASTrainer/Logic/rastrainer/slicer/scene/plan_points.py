@@ -94,7 +94,7 @@ class PlanPoints:
 
     @property
     def canUndo(self) -> bool:
-        """Whether the user has placed or removed points that can be taken back."""
+        """Whether the user has placed or removed points that can be undone."""
         return bool(self._changes)
 
     def undo(self) -> None:

@@ -49,7 +49,7 @@ def showRobot(scene: Any, folder: Path) -> None:
         node = scene.AddNewNodeByClass("vtkMRMLModelNode", f"Robot link {number}")
         node.SetAttribute(ROLE_ATTRIBUTE, _role(number))
         node.SetAndObservePolyData(surface)
-        # It is made anew from the module's files; a saved scene need not carry it.
+        # It is rebuilt from the module's files, so a saved scene need not contain it.
         node.SetSaveWithScene(False)
         node.SetSelectable(False)
         node.CreateDefaultDisplayNodes()

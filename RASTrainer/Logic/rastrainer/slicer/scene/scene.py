@@ -76,7 +76,7 @@ def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:
 SCENARIO_ATTRIBUTE = "RASTrainer.scenario"
 TASK_ATTRIBUTE = "RASTrainer.task"
 CONTENT_ATTRIBUTE = "RASTrainer.content"
-"""Stamp of what a node shows: a scenario that is built anew may keep its name."""
+"""Stamp of what a node shows: a rebuilt scenario may keep its name."""
 
 
 def isShown(node: Any, attribute: str, name: str, content: str) -> bool:

@@ -78,7 +78,7 @@ def _titleOf(pseudonym: str, trials: Sequence[StoredTrial]) -> str:
     title = f"Learning curve of {pseudonym}"
     if len(versions) < 2:
         return title
-    return f"{title} (scores of versions {' and '.join(versions)} do not compare)"
+    return f"{title} (scores of versions {' and '.join(versions)} cannot be compared)"
 
 
 def plotSeries(

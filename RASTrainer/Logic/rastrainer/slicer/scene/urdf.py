@@ -135,7 +135,7 @@ def readArmChain(urdf: Path) -> ArmChain:
             axes.append(_axis(joint))
             link = attribute(joint, "child", "link")
     except ValueError:
-        raise InputError(f"The URDF {urdf} is no chain of turning and fixed joints.") from None
+        raise InputError(f"The URDF {urdf} is not a chain of revolute and fixed joints.") from None
     return ArmChain(np.array(origins), np.array(axes))
 
 

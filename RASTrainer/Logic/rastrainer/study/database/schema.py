@@ -106,7 +106,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         """,
     ),
     (
-        # How long a trial run has been practiced, so that an interruption does not begin it anew.
+        # How long a trial run has been practiced, so that an interruption does not restart it.
         """
         CREATE TABLE practice (
             trainee_id INTEGER NOT NULL REFERENCES trainees (id) ON DELETE CASCADE,
