@@ -1,7 +1,7 @@
 # ruff: noqa: ARG002, I001, PT009, UP007, UP045 (the order of imports, observers and assertions is Slicer's)
 import sys
 from pathlib import Path
-from typing import Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import qt
 
@@ -12,6 +12,9 @@ from slicer.i18n import translate
 from slicer.ScriptedLoadableModule import *
 from slicer.util import VTKObservationMixin
 from slicer.parameterNodeWrapper import parameterNodeWrapper
+
+if TYPE_CHECKING:
+    from rastrainer.panels.panel_stack import PanelStack
 
 #
 # RASTrainer
@@ -105,13 +108,13 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
     def __init__(self, parent=None) -> None:
         ScriptedLoadableModuleWidget.__init__(self, parent)
         VTKObservationMixin.__init__(self)
-        self.logic = None
-        self._parameterNode = None
-        self._parameterNodeGuiTag = None
-        self._uiWidget = None
-        self._panels = None
-        self._timer = None
-        self._workTimer = None
+        self.logic: Optional[RASTrainerLogic] = None
+        self._parameterNode: Any = None
+        self._parameterNodeGuiTag: Any = None
+        self._uiWidget: Any = None
+        self._panels: Optional[PanelStack] = None
+        self._timer: Any = None
+        self._workTimer: Any = None
 
     def setup(self) -> None:
         from rastrainer.panels.panel_stack import PanelStack
@@ -123,10 +126,9 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self.layout.addWidget(uiWidget)
         self._uiWidget = uiWidget
         self.logic = RASTrainerLogic()
-        self.logic.session.isSeen = lambda inSlices: isSomethingSeen(
-            self.parent.isEntered, inSlices
-        )
-        self._panels = PanelStack(uiWidget, self.resourcePath, self.logic.session)
+        session = self.logic.session
+        session.isSeen = lambda inSlices: isSomethingSeen(self.parent.isEntered, inSlices)
+        self._panels = PanelStack(uiWidget, self.resourcePath, session)
         self.ui = self._panels.ui
         uiWidget.setMRMLScene(slicer.mrmlScene)
         self.addObserver(slicer.mrmlScene, slicer.mrmlScene.StartCloseEvent, self.onSceneStartClose)
@@ -140,7 +142,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self._workTimer = qt.QTimer()
         self._workTimer.setInterval(PERIOD_MS)
         self._workTimer.connect("timeout()", self.onWorkTimeout)
-        self.logic.session.work.began.connect(self._workTimer.start)
+        session.work.began.connect(self._workTimer.start)
 
     def cleanup(self) -> None:
         for timer, slot in (
@@ -166,27 +168,31 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self.initializeParameterNode()
 
     def exit(self) -> None:
-        self.logic.session.layout.giveBack()
+        if self.logic is not None:
+            self.logic.session.layout.giveBack()
         self.setParameterNode(None)
 
     def onTimeout(self) -> None:
-        self.logic.process()
-        self._panels.showState()
+        if self.logic is not None and self._panels is not None:
+            self.logic.process()
+            self._panels.showState()
 
     def onWorkTimeout(self) -> None:
-        if not self.logic.session.giveTimeToWork():
+        if self.logic is None or not self.logic.session.giveTimeToWork():
             self._workTimer.stop()
 
     def onSceneStartClose(self, caller=None, event=None) -> None:
         self.setParameterNode(None)
 
     def onSceneEndClose(self, caller=None, event=None) -> None:
-        self.logic.session.sceneWasCleared()
+        if self.logic is not None:
+            self.logic.session.sceneWasCleared()
         if self.parent.isEntered:
             self.initializeParameterNode()
 
     def initializeParameterNode(self) -> None:
-        self.setParameterNode(self.logic.getParameterNode())
+        if self.logic is not None:
+            self.setParameterNode(self.logic.getParameterNode())
 
     def setParameterNode(self, parameterNode) -> None:
         if self._parameterNode is not None:
@@ -217,7 +223,9 @@ class RASTrainerLogic(ScriptedLoadableModuleLogic):
         self.session = ModuleSession(slicer.mrmlScene, places, desktopKit, settings, callSoon)
 
     def getParameterNode(self):
-        return RASTrainerParameterNode(super().getParameterNode())
+        # Its decorator gives the class this constructor, which types cannot express.
+        wrapped: Any = RASTrainerParameterNode
+        return wrapped(super().getParameterNode())
 
     def process(self) -> None:
         """Do what is due; called about ten times a second."""

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+MODULE = ROOT / "RASTrainer" / "RASTrainer.py"
 FOLDERS = {
     "rastrainer": ROOT / "RASTrainer" / "Logic" / "rastrainer",
     "rastrainer_simulator": ROOT / "RASTrainerSimulatorServer" / "rastrainer_simulator",
@@ -43,6 +44,7 @@ LAYERS = {
         rastrainer.slicer.head
         rastrainer.slicer.logic
         rastrainer.panels, rastrainer_headless
+        RASTrainer
     """,
     "the simulator": """
         rastrainer_simulator
@@ -98,9 +100,12 @@ def module_name(path: Path) -> str:
 FILES = {
     module_name(path): path for folder in FOLDERS.values() for path in sorted(folder.rglob("*.py"))
 }
+FILES[MODULE.stem] = MODULE
 
 
 def room_of(module: str) -> str:
+    if FILES[module] == MODULE:
+        return module
     is_package = FILES[module].name == "__init__.py"
     return module if is_package else module.rpartition(".")[0]
 
