@@ -309,4 +309,6 @@ def test_a_trial_whose_journal_has_gone_is_told_of_in_one_sentence(place):
     place.choose("replay")
     place.step(20)
     assert place.menu.name == "result"
-    assert "its journal is not in the folder" in place.presenter.screen.warnings[-1].text
+    assert (
+        "its journal is no longer in the records folder" in place.presenter.screen.warnings[-1].text
+    )

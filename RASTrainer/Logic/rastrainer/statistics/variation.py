@@ -36,7 +36,7 @@ class Trials:
         modes: Index of the mode, from 0.
         tasks: Index of the task, from 0.
         numbers: Which trial of the trainee's it was, over all modes, from 1.
-        lapses: 1.0 where a touch was taken back, else 0.0.
+        lapses: 1.0 where a touch was undone, else 0.0.
     """
 
     trainees: np.ndarray
@@ -52,7 +52,7 @@ class Variation:
 
     Attributes:
         learning: b; the n-th trial has n^−b of the first one's value.
-        lapse: What a touch taken back adds to the logarithm; None where there was none.
+        lapse: What an undone touch adds to the logarithm; None where there was none.
         modes: What each mode adds to the logarithm against the first mode, from the second on.
         trainee_variance: Between trainees, over the modes.
         interaction_variance: Between trainees × modes.
@@ -74,7 +74,7 @@ class Variation:
 def fit_variation(trials: Trials, values: np.ndarray) -> Variation | None:
     """Return what positive values (n,) vary by; None where the trials do not allow it.
 
-    They do not where there are fewer than four trainees or two modes, where somebody lacks a mode,
+    They do not where there are fewer than four trainees or two modes, where a trainee lacks a mode,
     or where there are no more trials than unknowns.
     """
     trainees, modes = int(trials.trainees.max()) + 1, int(trials.modes.max()) + 1
@@ -143,7 +143,7 @@ class _Levels:
         self._trainees, self._modes = levels.shape
         between = np.eye(self._trainees) - 1 / self._trainees
         of_modes = np.full((self._modes, self._modes), 1 / self._modes)
-        # Of a mean over the modes, each square stands there so many times.
+        # Of a mean over the modes, each square occurs that many times.
         self._between = self._square(np.kron(between, of_modes), self._trainees - 1)
         self._both = self._square(
             np.kron(between, np.eye(self._modes) - of_modes),

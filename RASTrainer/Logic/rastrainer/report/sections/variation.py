@@ -167,7 +167,7 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
         ["Trainee × mode (SD)", trainees, *(_sd(one.interaction_variance) for one in both)],
         ["From trial to trial (SD)", trials, *(_sd(one.trial_variance) for one in both)],
         [
-            "Trials with a touch taken back against others",
+            "Trials with an undone touch against others",
             f"{found.lapses.count} of {found.trials}",
             *("–" if one.lapse is None else _factor(one.lapse) for one in both),
         ],
@@ -234,11 +234,11 @@ def _root(square: float) -> float:
 def _words(found: StudyVariation) -> str:
     return (
         f"{found.trials} trials of the {found.trainees} trainees who did every mode. Logarithms, "
-        "regressed on the trial’s number over all modes, the task, and one level for each trainee "
-        "in each mode. SD are of logarithms: 10 % is about a tenth of the value; 0 stands for a "
-        "variance below 0. Their intervals are those of mean squares (χ²; Burdick and Graybill "
-        "1992), that of the share is Wilson’s (1927), the others are of t. They assume that "
-        "trainees learn and slip alike; the exponent also, that practice in one mode counts in the "
-        "next. Where all did the tasks in the same order, practice is told from difficulty only by "
-        "the shape of its curve."
+        "regressed on the trial’s number over all modes, the task, and one level for each "
+        "trainee in each mode. SD are of logarithms: 10 % is about a tenth of the value; 0 "
+        "stands for a variance below 0. Their intervals are those of mean squares (χ²; Burdick "
+        "and Graybill 1992), that of the share is Wilson’s (1927), the others are of t. They "
+        "assume that trainees learn and slip alike; the exponent also, that practice in one mode "
+        "counts in the next. Where all did the tasks in the same order, practice can be "
+        "distinguished from difficulty only by the shape of its curve."
     )
