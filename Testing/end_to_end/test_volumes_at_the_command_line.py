@@ -95,7 +95,7 @@ NO_FILE_OF_A_VOLUME = {
     "a cut header": (cut("head.nii", share=0.0001), "head.nii could not be read"),
     "DICOM, one slice cut short": (dicom_with_a_cut_slice, "is cut short"),
     "DICOM, one slice missing": (dicom_without_a_slice, "not evenly spaced"),
-    "a folder without DICOM": (lambda folder: folder / "home", "holds no DICOM files"),
+    "a folder without DICOM": (lambda folder: folder / "home", "contains no DICOM files"),
     "a file of no bytes": (content("head.nrrd", b""), "head.nrrd could not be read"),
     "a file of something else": (content("head.nii", b"text" * 999), "could not be read"),
     "no file": (lambda folder: folder / "none.nii", "none.nii does not exist"),

@@ -190,7 +190,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     assert not rendering.GetVisibility()
     host.press("previewHeadButton")
     assert host.messages == []
-    assert "This head is found" in host.text("newScenarioText")
+    assert "This is the head that was found" in host.text("newScenarioText")
     assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
 
 

@@ -168,7 +168,7 @@ def test_an_answer_is_not_shown_for_another_plan(change, room):
         room.register()
     room.logic.follow(None if change == "none" else room.logic.read(node))
     assert room.logic.isReachable is room.logic.trueErrorMm is None
-    assert "not this plan any more" in room.logic.sentence
+    assert "The plan has changed" in room.logic.sentence
 
 
 def test_an_answer_that_comes_after_the_plan_was_changed_is_not_shown(room):

@@ -103,7 +103,7 @@ def test_a_trial_that_is_played_is_not_disturbed_and_begins_without_the_replays_
         host.wait_until(lambda: captured.GetNumberOfControlPoints() == 0, "the trial begins")
         assert captured.GetDisplayNode().GetVisibility()
         host.press("replayButton")
-        assert "A trial is being played" in host.messages[-1].text
+        assert "A trial is in progress" in host.messages[-1].text
         host.press("connectButton")
         host.press("replayButton")
         assert len(host.messages) == 1

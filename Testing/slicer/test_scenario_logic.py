@@ -67,7 +67,7 @@ def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
 @pytest.mark.parametrize(
     ("broken", "sentence"),
     [
-        pytest.param(np.full((60, 60, 60), np.nan, np.float32), "no numbers", id="NaN"),
+        pytest.param(np.full((60, 60, 60), np.nan, np.float32), "not numbers", id="NaN"),
         pytest.param(np.ones((1, 200, 200), np.float32), "needs a 3D volume", id="2D"),
         pytest.param(np.zeros((60, 60, 60), np.float32), "volume is empty", id="empty"),
     ],

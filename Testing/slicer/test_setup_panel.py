@@ -90,4 +90,4 @@ def test_the_simulator_is_not_removed_while_it_runs(host, setup):
 def test_a_module_without_its_simulator_says_to_install_it_anew(host, setup, tmp_path):
     setup.package = SimulatorPackage(tmp_path)
     host.press("setupButton")
-    assert "install the extension RASTrainer anew" in host.messages[-1].text
+    assert "reinstall the extension RASTrainer" in host.messages[-1].text

@@ -163,7 +163,7 @@ def test_pip_ignores_the_settings_of_the_user(setup, source, bolt, tmp_path, mon
 
 @pytest.mark.parametrize("address", ["pypi", "ftp://127.0.0.1/simple", "https://", "file:///tmp"])
 def test_an_invalid_index_address_is_reported_before_the_set_up_starts(setup, address):
-    with pytest.raises(InputError, match="it begins with https://"):
+    with pytest.raises(InputError, match="start it with https://"):
         setup.begin(SetupSource(index=address))
     assert not setup.folder.parent.exists()
 
@@ -174,7 +174,7 @@ def test_a_simulator_that_is_missing_or_damaged_in_the_module_is_reported(setup,
     with pytest.raises(InputError, match="is damaged: reinstall the extension RASTrainer"):
         setup.begin(source)
     (package.folder / f"{WHEEL}.sha256").unlink()
-    with pytest.raises(InputError, match=r"is missing in .*: install the extension"):
+    with pytest.raises(InputError, match=r"is missing in .*: reinstall the extension"):
         setup.begin(source)
     assert not setup.folder.parent.exists()
 

@@ -432,7 +432,7 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
         with pytest.raises(InputError, match="only with a reason"):
             start()
     enrolled.tell(phase="running", mode=step.mode, task=step.task)
-    assert "once there is a reason" in enrolled.logic.offProtocolSentence()
+    assert "once a reason is given" in enrolled.logic.offProtocolSentence()
     with pytest.raises(InputError, match="10 to 500"):
         enrolled.logic.explainRepeat("because")
     enrolled.logic.explainRepeat("the fire alarm went off")

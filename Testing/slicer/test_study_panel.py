@@ -94,22 +94,22 @@ def test_the_form_says_at_its_line_that_performance_runs_from_perfect_to_failure
 
 
 def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun):
-    begun.answer("Why is it left out?", "no sheets")
+    begun.answer("Why is it skipped?", "no sheets")
     begun.answer("only with a reason", "the sheets were missing")
     begun.press("skipStepButton")
     assert begun.messages[-1].details == "no sheets"
-    assert outcomes(begun)[:2] == ["left out: the sheets were missing", "next"]
+    assert outcomes(begun)[:2] == ["skipped: the sheets were missing", "next"]
     assert begun.text("stepTimeText") == "0:00 of 5 min are over."
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         begun.press("startStepButton")
     begun.press("createTraineeButton")
     begun.choose("traineeComboBox", "T001")
-    assert outcomes(begun)[:2] == ["left out: the sheets were missing", "next"]
+    assert outcomes(begun)[:2] == ["skipped: the sheets were missing", "next"]
 
 
 def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
     while begun.widget.logic.session.study.progress().next_step.kind is not StepKind.TRIAL:
-        begun.answer("Why is it left out?", "this is not what is tested")
+        begun.answer("Why is it skipped?", "this is not what is tested")
         begun.press("skipStepButton")
     step = begun.widget.logic.session.study.progress().next_step
     started = datetime.now(timezone.utc).isoformat()

@@ -81,7 +81,7 @@ class Story:
         host = self.host
         host.press("loadScenarioButton")
         asked = host.text("scenarioText")
-        assert "is asked to load" in asked
+        assert "was asked to load" in asked
         host.let_pass(0.3)
         assert host.text("stateText").startswith("Connected")
 

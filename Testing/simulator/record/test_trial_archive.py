@@ -109,7 +109,7 @@ def test_once_the_truth_of_an_older_trial_is_revealed_nobody_registers_it_again(
     for archive in (TrialArchive(tmp_path), TrialArchive(tmp_path)):
         data = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
         assert data["trueTreMm"] == pytest.approx(0.0, abs=1e-9)
-        with pytest.raises(InputError, match="registration of this trial is final"):
+        with pytest.raises(InputError, match="This registration is final"):
             archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION | {"freMm": 2.0}, NOW)
 
 

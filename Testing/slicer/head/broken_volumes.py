@@ -31,7 +31,7 @@ def noise():
 UNUSABLE = {
     "empty": (block(fill=0.0), "The volume is empty"),
     "2D": (block((200, 200, 1)), "needs a 3D volume"),
-    "NaN": (with_nan(), "no numbers"),
+    "NaN": (with_nan(), "not numbers"),
     "meters": (block(spacing=(0.0015,) * 3), "not in millimeters"),
     "micrometers": (block(spacing=(1500.0,) * 3), "not in millimeters"),
     "9 mm slices": (block(spacing=(1.0, 1.0, 9.0)), "9.0 mm apart"),

@@ -129,7 +129,7 @@ def test_a_segment_that_is_moved_moves_its_head(scene, node, found):
 
 
 def test_an_empty_segment_is_answered_with_a_sentence(node, found):
-    with pytest.raises(InputError, match="segment of the head is not there"):
+    with pytest.raises(InputError, match="segment of the head does not exist"):
         volumeOfSegment(readSegment(node, "Segment_1"))
     found.body[:] = False
     segment = showSegment(node, found)

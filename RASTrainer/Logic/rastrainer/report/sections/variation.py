@@ -171,7 +171,7 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
             f"{found.lapses.count} of {found.trials}",
             *("–" if one.lapse is None else _factor(one.lapse) for one in both),
         ],
-        ["Trials with a touch taken back (share)", trials, Cell(share_text(found.lapses), span=2)],
+        ["Trials with an undone touch (share)", trials, Cell(share_text(found.lapses), span=2)],
     ]
     return [table([HEADER], rows, "wide"), paragraph(_words(found), "small")]
 
