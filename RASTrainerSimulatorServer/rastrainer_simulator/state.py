@@ -118,7 +118,7 @@ class TrainingState:
     `revision` rises with every change that must not be lost (phase, touch, undo, score).
     `registration` is what a client has submitted, None before.
     `next_point` is the label of the fiducial to touch, None when there is none; `rejected` and
-    `undone` count the touches that were refused and taken back. `procedure` is None in a trial of
+    `undone` count the touches that were refused and undone. `procedure` is None in a trial of
     touches alone.
     """
 

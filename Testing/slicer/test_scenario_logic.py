@@ -9,6 +9,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.logic.scenario_logic import ScenarioLogic
+from rastrainer.slicer.program.own_process import OwnProcess
 from rastrainer.slicer.scene.registration_nodes import isApplied
 from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer_simulator.assets import asset_path
@@ -24,9 +25,8 @@ class Cache:
 
 @pytest.fixture
 def logic(scene, scenario):
-    return ScenarioLogic(
-        scene, Cache(scenario), asset_path("robots", "iiwa7"), Path(sys.executable)
-    )
+    run = OwnProcess(Path(sys.executable))
+    return ScenarioLogic(scene, Cache(scenario), asset_path("robots", "iiwa7"), run)
 
 
 def volume(scene, values, spacing):

@@ -217,7 +217,7 @@ class TrainingSession:
 
     @property
     def does_view_follow(self) -> bool:
-        """Whether the view goes to the best view of each next point by itself."""
+        """Whether the view goes automatically to the best view of each next point."""
         if (self.training if self.tutorial is None else self.tutorial).mode == Mode.HMD.value:
             # In a headset one looks around with the head.
             return False

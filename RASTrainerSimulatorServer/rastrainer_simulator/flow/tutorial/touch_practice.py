@@ -75,7 +75,7 @@ class TouchPractice:
         return self._handle(CommandName.CAPTURE, state)
 
     def undo(self, state: SimulationState) -> TrainingReply:
-        """Take the last touch back."""
+        """Undo the last touch."""
         return self._handle(CommandName.UNDO, state)
 
     def show_points(self) -> None:

@@ -1,4 +1,4 @@
-"""Every sentence that the simulator says, in English: the table that others translate."""
+"""All texts of the simulator in English; translations have the same keys."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "idle": "Choose a task to start.",
         "start": "{trainee}, touch point {point}.",
         "touched": "{trainee}, point {label} is recorded. Now touch point {point}.",
-        "undone": "{trainee}, point {label} is taken back. Touch it again.",
+        "undone": "{trainee}, point {label} was undone. Touch it again.",
         "complete": "{trainee}, all {count} points are touched. Register them now.",
         "paused": "{trainee}, the trial is paused. Resume when you are ready.",
         "resumed": "{trainee}, continue with point {point}.",
@@ -88,7 +88,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "is next.",
         # Commands in the wrong phase.
         "no trial": "No trial is running: begin one with StartTask.",
-        "trial is open": "{trainee} is still at {task}: Register or Abort it before StartTask.",
+        "trial is open": "{trainee} is still doing {task}: Register or Abort it before StartTask.",
         "procedure is open": "{trainee} is still at the procedure after {task}: finish or Abort it "
         "before StartTask.",
         "not at the procedure": "This comes after Register, in a trial that StartTask began with a "
@@ -107,16 +107,16 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "is paused": "The trial is paused: Resume it first.",
         "already paused": "The trial is paused already: Resume or Abort it.",
         "all touched": "All {count} points are touched: Register them, or Undo the last one.",
-        "is registered": "The trial is registered and kept: StartTask begins the next.",
+        "is registered": "The trial is registered and stored: StartTask begins the next one.",
         "nothing to undo": "No point is touched yet: Capture point {point} first.",
         "not registered": "The trial is not registered yet: Capture its {count} points and "
         "Register them first.",
         "no registration": "The trial has no registration yet: SubmitRegistration comes before "
         "TrialScored.",
-        "registration is final": "The registration of this trial is final: the truth was told in "
-        "return for it, so that another one is not taken.",
+        "registration is final": "This registration is final: the true error has been revealed, "
+        "so no other one is accepted.",
         "no such trial": "There is no trial {trial_id} here: GetTrial, SubmitRegistration and "
-        "TrialScored take the ID that StartTask answered.",
+        "TrialScored take the ID that StartTask returned.",
         "not a simulation command": "{command} is not a command of the simulation.",
         # When the record cannot be written.
         "not recorded": "The trial cannot be recorded ({reason}). What was not recorded does not "
@@ -148,15 +148,15 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "introduction.title.1": "What you train",
         "introduction.text.1": "Before a robot can help in brain surgery, it has to know where "
         "the head lies. You show it: with the robot's tool you touch fifteen numbered points on "
-        "the head, one after the other, as exactly as you can.",
+        "the head, one after the other, as accurately as you can.",
         "introduction.title.2": "How a task goes",
         "introduction.text.2": "Follow the numbers and the arrows on the skin from point 1 to "
-        "point 15. Within 20 mm of the head a tone sounds, and a ring about the tip closes "
-        "as you come nearer. It turns green where a touch counts: record the point there. Red "
-        "means that something is wrong. A slip can be taken back.",
+        "point 15. Within 20 mm of the head a tone sounds, and a ring around the tip closes as "
+        "you come nearer. It turns green where a touch counts: record the point there. Red means "
+        "that something is wrong. A slip can be undone.",
         "introduction.title.3": "What you get",
         "introduction.text.3": "After the last point you register: 3D Slicer matches your points "
-        "with the MRI and tells you the error and your score. Both count: exactness and time. You "
+        "with the MRI and shows you the error and your score. Accuracy and time both count. You "
         "begin with a tutorial of two minutes and five minutes of free practice, then come Tasks "
         "1 to 5.",
         "introduction.sheet": "Page {sheet} of {sheets}",
@@ -170,7 +170,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "controls.move_vertically": "Move up, down",
         "controls.fine": "Move slowly (hold)",
         "controls.touch": "Record a touch",
-        "controls.undo": "Take the last touch back",
+        "controls.undo": "Undo the last touch",
         "controls.camera": "View from the front: near or far",
         "controls.best_view": "Best view of the next point",
         "controls.turn_view": "View from the left, from the right",
@@ -184,7 +184,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "controls.back": "Back",
         "experiment.title": "Experiment",
         "experiment.trainee": "Your ID",
-        "experiment.trainee help": "Your instructor gives you this ID; it is written on your "
+        "experiment.trainee help": "Your instructor gives you this ID; it is stored with your "
         "trials.",
         "experiment.mode": "Mode",
         "mode.desktop": "Desktop",
@@ -201,8 +201,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "experiment.tutorial help": "Learn to move the robot, one control at a time.",
         "experiment.tutorial first": "The tutorial comes first, with the device that you use now: "
         "it takes two minutes.",
-        "experiment.study": "Not now. {step} Only your instructor can leave a step out, in "
-        "3D Slicer and with a reason.",
+        "experiment.study": "Not now. {step} Only your instructor can skip a step, in 3D Slicer "
+        "and with a reason.",
         # What a study that Slicer leads asks for next.
         "study.questionnaire": "Step {number} of {count}: answer the questionnaire "
         "{questionnaire}, here or where 3D Slicer runs.",
@@ -214,8 +214,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "study.break": "Step {number} of {count}: take a break of at least {minutes:g} minutes, "
         "{left} more. Then 3D Slicer will say what comes next.",
         "study.all-done": "All steps of the study are done. Thank you!",
-        "study.repeat": "Step {number} of {count}: {task} was aborted. The instructor says in 3D "
-        "Slicer why it is played again.",
+        "study.repeat": "Step {number} of {count}: {task} was aborted. The instructor must enter "
+        "a reason for repeating it in 3D Slicer.",
         "study.played": "{task} is done. 3D Slicer will say what comes next.",
         "study.desktop": "on the desktop screen",
         "study.hmd": "with the headset",
@@ -252,8 +252,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "keyboard.delete": "Delete",
         "keyboard.done": "Done",
         "trial.title": "{task}",
-        "trial.paused": "{trainee}, the trial is paused with {kept} points touched. Its time "
-        "stands still.",
+        "trial.paused": "{trainee}, the trial is paused with {kept} points touched. Its clock is "
+        "stopped.",
         "trial.complete": "{trainee}, all {kept} points are touched.",
         "trial.resume": "Resume",
         "trial.register": "Register",
@@ -265,7 +265,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "abort.text": "{trainee}, your {kept} touched points would not be registered.",
         "abort.keep": "Keep going",
         "abort.abort": "Abort",
-        "practice.title": "The time to practice is over",
+        "practice.title": "Practice time is over",
         "practice.text": "{trainee}, you can start Task 1 now, or keep practicing.",
         "practice.study": "{trainee}, end the trial run to continue the study, or keep practicing.",
         "practice.finish": "End the trial run",
@@ -274,12 +274,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "complete.text": "{trainee}, register your {count} points to have them scored. After that "
         "they cannot be changed.",
         "complete.register": "Register",
-        "complete.undo": "Take the last point back",
+        "complete.undo": "Undo the last touch",
         "complete.abort": "Abort the task",
         "waiting.title": "Registered",
         "waiting.slicer": "{trainee}, 3D Slicer is scoring your points.",
-        "waiting.nobody": "{trainee}, your points are kept. 3D Slicer is not connected: it scores "
-        "them as soon as it is.",
+        "waiting.nobody": "{trainee}, your points are saved. 3D Slicer is not connected; it will "
+        "score them as soon as it is.",
         "waiting.own": "{trainee}, 3D Slicer is not connected: the simulator is registering and "
         "scoring your points itself.",
         "waiting.problem": "The simulator cannot score them itself: {reason}",
@@ -289,8 +289,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "result.score": "Score",
         "result.fre": "Registration error (FRE)",
         "result.expected tre": "Expected error at the target (TRE)",
-        "result.interval note": "The expected error counts on touches that err independently, "
-        "without bias and alike. It cannot see an offset that all of them share.",
+        "result.interval note": "The expected error assumes independent, unbiased, equally large "
+        "touch errors. It cannot detect an offset that all touches share.",
         "result.true tre": "True error at the target (TRE)",
         "result.region tre": "True error in the brain (TRE)",
         "result.common bias": "Bias that all touches share",
@@ -374,26 +374,26 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         # Settings.
         "settings.title": "Settings",
         "settings.back": "Back",
-        "settings.waits": "This cannot change before the trial has ended.",
+        "settings.waits": "This cannot be changed until the trial has ended.",
         "settings.language": "Language",
-        "settings.language help": "Of everything that you read here.",
+        "settings.language help": "Language of all screens.",
         "settings.language.en": "English",
         "settings.language.de": "Deutsch",
         "settings.volume": "Volume",
-        "settings.volume help": "Of all sounds.",
+        "settings.volume help": "Volume of all sounds.",
         "settings.muted": "Mute",
-        "settings.muted help": "Whether there is no sound at all.",
+        "settings.muted help": "Turn all sounds off.",
         "settings.muted.yes": "Yes",
         "settings.muted.no": "No",
         "settings.order": "Order of the tasks",
-        "settings.order help": "Whether a task waits for the one before it. Instructors change "
+        "settings.order help": "Whether tasks must be done in their order. Instructors change "
         "this in the file {file}.",
         "settings.order.fixed": "One after the other",
         "settings.order.any": "Any",
         "settings.coarse": "Speed",
-        "settings.coarse help": "Of the tip while a stick is fully pushed.",
+        "settings.coarse help": "Speed of the tip while a stick is fully pushed.",
         "settings.fine": "Slow speed",
-        "settings.fine help": "The same while the control for slow motion is held.",
+        "settings.fine help": "Speed of the tip while the control for slow motion is held.",
         "settings.axes": "Directions",
         "settings.axes help": "Whether right, forward and up are those of the view or the robot's.",
         "settings.axes.camera": "As the view shows them",
@@ -404,11 +404,11 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.touch.on skin": "On the skin",
         "settings.touch.within radius": "Within 10 mm",
         "settings.view": "Best view of the next point",
-        "settings.view help": "Whether the view turns to each next point by itself, while the "
+        "settings.view help": "Whether the view turns to each next point automatically while the "
         "sticks are released. The record says so. The control for the best view always works.",
-        "settings.view.practice": "By itself, except in a study",
-        "settings.view.always": "By itself",
-        "settings.view.never": "By its control only",
+        "settings.view.practice": "Automatically, except in studies",
+        "settings.view.always": "Automatically",
+        "settings.view.never": "Only on request",
         "settings.guidance": "Guidance to the next point",
         "settings.guidance help": "Directions in words, an arrow, or neither. A study may set its "
         "own. The record says which.",
@@ -425,7 +425,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.direction": "Direction of the tool",
         "settings.direction help": "Who decides where the tool points: the arm, you or the skin.",
         "settings.direction.free": "Free (position only)",
-        "settings.direction.clear": "Free, clear of the head",
+        "settings.direction.clear": "Free, keeping clear of the head",
         "settings.direction.held": "Steered by you",
         "settings.direction.normal": "Straight onto the skin",
         "settings.direction.pose": "Steered by you, without roll",
@@ -439,7 +439,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "bindings.group.menus": "Menus",
         "bindings.defaults": "Restore the defaults",
         "bindings.back": "Back",
-        "bindings.are default": "All controls have their defaults again.",
+        "bindings.are default": "All controls are back to their defaults.",
         "bindings.changed": "{control} is now {input}.",
         "bindings.impossible": "These two cannot be exchanged: one of them would do two things at "
         "once.",
@@ -488,7 +488,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "control.left": "Left",
         "control.right": "Right",
         "control.taken": "The {source} has taken control.",
-        "control.held": "The {source} is in control. Somebody else can take over with {menu} after "
+        "control.held": "The {source} is in control. Someone else can take over with {menu} after "
         "{seconds:.0f} s without input.",
         "control.holder": "Control: {source}",
         "control.nobody": "Control: nobody",
@@ -585,12 +585,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "warning.settings": "{reason} The defaults are used.",
         # What the window says itself, because the simulator cannot.
         "window.title": "RASTrainer",
-        "window.connecting": "The window is joining the simulator.",
-        "window.lost": "The connection to the simulator is lost. It is joined again as soon as the "
-        "simulator answers.",
+        "window.connecting": "The window is connecting to the simulator.",
+        "window.lost": "The connection to the simulator was lost. It will be restored as soon as "
+        "the simulator answers.",
         "window.unknown": "The simulator does not know this window: close it and open one with the "
         "pairing code that the simulator shows now.",
-        "window.refused": "The simulator serves as many views as it can: close another one.",
+        "window.refused": "The maximum number of views is open: close one.",
         "window.pairing": "To pair a browser or a headset: code {code} at {addresses}",
         "status.points": "{kept} of {count} points",
         "status.left": "{time} left",
@@ -625,9 +625,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "replay.paused": "Paused",
         "replay.loading": "Your trial is being loaded",
         "replay.back": "Back to the result",
-        "replay.no worst": "Nobody can tell which touch of this trial was the worst.",
-        "replay.no journal": "The trial cannot be shown again: its journal is not in the folder of "
-        "the records any more.",
+        "replay.no worst": "The worst touch of this trial cannot be determined.",
+        "replay.no journal": "The trial cannot be replayed: its journal is no longer in the "
+        "records folder.",
         "decimal sign": ".",
     }
 )

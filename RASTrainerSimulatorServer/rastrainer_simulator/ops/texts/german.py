@@ -1,4 +1,4 @@
-"""The same sentences in German."""
+"""The same texts in German."""
 
 from __future__ import annotations
 
@@ -216,8 +216,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "Punkte und Register.",
         "no registration": "Der Versuch ist noch nicht registriert: Vor TrialScored kommt "
         "SubmitRegistration.",
-        "registration is final": "Die Registrierung dieses Versuchs steht fest: Auf sie hin wurde "
-        "die Wahrheit gesagt, deshalb gilt keine andere mehr.",
+        "registration is final": "Diese Registrierung ist endgültig: Der wahre Fehler wurde "
+        "bekanntgegeben, deshalb wird keine andere mehr angenommen.",
         "no such trial": "Es gibt hier keinen Versuch {trial_id}: GetTrial, SubmitRegistration und "
         "TrialScored nehmen die ID, mit der StartTask geantwortet hat.",
         "not a simulation command": "{command} ist kein Befehl der Simulation.",
@@ -259,10 +259,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "je näher du kommst. Wo eine Berührung zählt, wird er grün: Nimm den Punkt dort auf. Rot "
         "heißt, dass etwas nicht stimmt. Ein Ausrutscher lässt sich zurücknehmen.",
         "introduction.title.3": "Was daraus wird",
-        "introduction.text.3": "Nach dem letzten Punkt registrierst du: 3D Slicer bringt deine "
-        "Punkte mit der MRT zur Deckung und nennt dir den Fehler und deine Punktzahl. Beides "
-        "zählt: Genauigkeit und Zeit. Du beginnst mit einem Tutorial von zwei Minuten und fünf "
-        "Minuten freiem Üben, dann kommen die Aufgaben 1 bis 5.",
+        "introduction.text.3": "Nach dem letzten Punkt registrierst du: 3D Slicer gleicht deine "
+        "Punkte mit der MRT ab und zeigt dir den Fehler und deine Punktzahl. Genauigkeit und Zeit "
+        "zählen beide. Du beginnst mit einem Tutorial von zwei Minuten und fünf Minuten freiem "
+        "Üben, dann kommen die Aufgaben 1 bis 5.",
         "introduction.sheet": "Seite {sheet} von {sheets}",
         "introduction.next": "Weiter",
         "introduction.skip": "Gleich zur Steuerung",
@@ -487,25 +487,25 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.back": "Zurück",
         "settings.waits": "Das lässt sich erst nach dem Ende des Versuchs ändern.",
         "settings.language": "Sprache",
-        "settings.language help": "Von allem, was du hier liest.",
+        "settings.language help": "Sprache aller Bildschirme.",
         "settings.language.en": "English",
         "settings.language.de": "Deutsch",
         "settings.volume": "Lautstärke",
-        "settings.volume help": "Aller Töne.",
+        "settings.volume help": "Lautstärke aller Töne.",
         "settings.muted": "Stumm",
-        "settings.muted help": "Ob es gar keine Töne gibt.",
+        "settings.muted help": "Alle Töne ausschalten.",
         "settings.muted.yes": "Ja",
         "settings.muted.no": "Nein",
         "settings.order": "Reihenfolge der Aufgaben",
-        "settings.order help": "Ob eine Aufgabe auf die vorige wartet. Ausbildende ändern es in "
+        "settings.order help": "Ob die Aufgaben der Reihe nach kommen. Ausbildende ändern es in "
         "der Datei {file}.",
         "settings.order.fixed": "Eine nach der anderen",
         "settings.order.any": "Beliebig",
         "settings.coarse": "Geschwindigkeit",
-        "settings.coarse help": "Der Spitze, wenn ein Stick ganz ausgelenkt ist.",
+        "settings.coarse help": "Geschwindigkeit der Spitze, wenn ein Stick ganz ausgelenkt ist.",
         "settings.fine": "Langsame Geschwindigkeit",
-        "settings.fine help": "Dasselbe, solange die Steuerung für langsames Bewegen gehalten "
-        "wird.",
+        "settings.fine help": "Geschwindigkeit der Spitze, solange die Steuerung für langsames "
+        "Bewegen gehalten wird.",
         "settings.axes": "Richtungen",
         "settings.axes help": "Ob rechts, vorn und oben die der Ansicht oder des Roboters sind.",
         "settings.axes.camera": "Wie die Ansicht sie zeigt",
@@ -516,12 +516,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.touch.on skin": "Auf der Haut",
         "settings.touch.within radius": "Im Umkreis von 10 mm",
         "settings.view": "Beste Ansicht des nächsten Punkts",
-        "settings.view help": "Ob sich die Ansicht von selbst zum jeweils nächsten Punkt dreht, "
+        "settings.view help": "Ob sich die Ansicht automatisch zum jeweils nächsten Punkt dreht, "
         "solange die Sticks losgelassen sind. Der Datensatz hält es fest. Die Taste für die beste "
         "Ansicht geht immer.",
-        "settings.view.practice": "Von selbst, außer in einer Studie",
-        "settings.view.always": "Von selbst",
-        "settings.view.never": "Nur auf Tastendruck",
+        "settings.view.practice": "Automatisch, außer in Studien",
+        "settings.view.always": "Automatisch",
+        "settings.view.never": "Nur auf Wunsch",
         "settings.guidance": "Führung zum nächsten Punkt",
         "settings.guidance help": "Richtungen in Worten, ein Pfeil oder keins von beiden. Eine "
         "Studie kann es selbst festlegen. Der Datensatz hält es fest.",
@@ -553,7 +553,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "bindings.group.menus": "Menüs",
         "bindings.defaults": "Standard wiederherstellen",
         "bindings.back": "Zurück",
-        "bindings.are default": "Die ganze Steuerung ist wie am Anfang.",
+        "bindings.are default": "Die ganze Steuerung ist auf den Standard zurückgesetzt.",
         "bindings.changed": "{control} ist jetzt {input}.",
         "bindings.impossible": "Diese beiden lassen sich nicht tauschen: Eine von ihnen täte dann "
         "zweierlei.",
@@ -706,8 +706,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "sobald der Simulator antwortet.",
         "window.unknown": "Der Simulator kennt dieses Fenster nicht: Schließ es und öffne eines "
         "mit dem Kopplungscode, den der Simulator jetzt zeigt.",
-        "window.refused": "Der Simulator bedient so viele Ansichten, wie er kann: Schließ eine "
-        "andere.",
+        "window.refused": "Es sind so viele Ansichten offen wie möglich: Schließ eine.",
         "window.pairing": "Browser oder Headset koppeln: Code {code} auf {addresses}",
         "status.points": "{kept} von {count} Punkten",
         "status.left": "noch {time}",
@@ -742,10 +741,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "replay.paused": "Angehalten",
         "replay.loading": "Dein Versuch wird geladen",
         "replay.back": "Zum Ergebnis",
-        "replay.no worst": "Welche Berührung dieses Versuchs die schlechteste war, lässt sich "
-        "nicht sagen.",
-        "replay.no journal": "Der Versuch kann nicht noch einmal gezeigt werden: Sein Journal ist "
-        "nicht mehr im Ordner der Aufzeichnungen.",
+        "replay.no worst": "Die schlechteste Berührung dieses Versuchs lässt sich nicht bestimmen.",
+        "replay.no journal": "Der Versuch kann nicht wiedergegeben werden: Sein Journal ist nicht "
+        "mehr im Ordner der Aufzeichnungen.",
         "decimal sign": ",",
     }
 )
