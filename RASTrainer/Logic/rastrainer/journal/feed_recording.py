@@ -74,8 +74,11 @@ class FeedRecording:
         return found
 
     def _add_sample(self, sim_time: float, depth_mm: float) -> None:
-        if self._last is not None:
+        feeding = self._feedings[self._trajectory, self._tool]
+        if self._last is None:
+            # Another hole begins, or the same one after a pause: no way is reversed by that.
+            feeding.way = 0.0
+        else:
             time, depth = self._last
-            feeding = self._feedings[self._trajectory, self._tool]
             feeding.move(depth_mm, depth_mm - depth, sim_time - time)
         self._last = sim_time, depth_mm
