@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.json_checks import Argument, checked_keys
 from rastrainer.procedure.plan import DIAMETERS_MM, MAX_TRAJECTORIES, ProcedureKind
-from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM
+from rastrainer.protocol import FIDUCIAL_COUNT, PROCEDURE_PHASES, WORLD_LIMIT_MM, Phase
 from rastrainer.transforms import is_rigid
 
 MAX_ATTEMPTS = 100
@@ -327,7 +327,7 @@ def _instrument(value: Any) -> PlacedInstrument:
     )
 
 
-_PHASES = ("running", "verifying", "aligning", "drilling", "inserting")
+_PHASES = tuple(phase.value for phase in (Phase.RUNNING, *PROCEDURE_PHASES))
 _WORLD_POINT = Argument(json_checks.numbers(3, WORLD_LIMIT_MM, "mm"))
 _RAS_POINT = Argument(json_checks.numbers(3, RAS_LIMIT_MM, "mm"))
 _LENGTH = Argument(json_checks.number(0, 1e6, "mm"))
