@@ -14,7 +14,9 @@ from rastrainer.procedure.meshes import read_procedure_meshes
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.tasks import PlannedTarget
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring.make import copy_with_plan
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_check import (
     check_procedures,
@@ -115,3 +117,11 @@ def test_the_command_reports_what_is_wrong_with_a_procedure(copy, capsys):
     write_head_mesh(path, replace(mesh, triangles=mesh.triangles[1:]))
     assert main(["scenario", "check", str(copy)]) == 2
     assert "right-ventricle.ply is not closed: it has a hole." in capsys.readouterr().err
+
+
+def test_a_copy_with_another_plan_keeps_the_procedures(copy, tmp_path):
+    target = (PlannedTarget("Cyst", np.array([5.0, -10.0, 30.0])),)
+    made = copy_with_plan(copy, "Another plan", tmp_path / "made", target, None, print)
+    (procedure,) = made.procedures
+    (before,) = load_scenario(copy).procedures
+    assert procedure.sha256(made.skull_mesh) == before.sha256(copy / "skull.ply")
