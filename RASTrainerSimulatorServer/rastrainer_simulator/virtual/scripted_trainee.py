@@ -13,15 +13,19 @@ from typing import Any
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import SPEED_LIMIT_MM_S, CommandName, Phase
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.score_reference import fiducial_normals
+from rastrainer.trial.score_reference import computed_once, fiducial_normals
 
 LIFT_MM = 35.0
 """How far the tip is lifted off the skin before it travels to the next fiducial."""
 
 PRESS_MM = 1.5
 """How far below the skin the last aim is: the tip is to be felt touching it."""
+
+LOWEST_DIP = np.radians(5.0)
+"""By how much the way around the head's center may lead lower than both of its ends."""
 
 DECISION_PERIOD_S = 0.05
 JOG_DURATION_S = 0.1
@@ -87,6 +91,7 @@ class ScriptedTrainee:
         fiducials_mm: (n, 3) float, the fiducials as seen in the room, World, mm.
         normals: (n, 3) float, the skin's outward unit normals there, World.
         head_center_mm: (3,) float, around which the hand travels, World, mm.
+        vertex_mm: (3,) float, the highest point of the head, World, mm.
         skill: what the hands are like.
         seed: of the tremor and the aim.
     """
@@ -96,17 +101,20 @@ class ScriptedTrainee:
         fiducials_mm: np.ndarray,
         normals: np.ndarray,
         head_center_mm: np.ndarray,
+        vertex_mm: np.ndarray,
         skill: Skill,
         seed: int,
     ) -> None:
         self._fiducials = np.asarray(fiducials_mm, dtype=float)
         self._normals = np.asarray(normals, dtype=float)
         self._center = np.asarray(head_center_mm, dtype=float)
+        self._vertex = np.asarray(vertex_mm, dtype=float)
         self._skill = skill
         self._random = np.random.default_rng(seed)
         self._slip_at = self._skill.slip_at
         self._planned_for: int | None = None
         self._touched: int | None = None
+        self._is_refused = False
         self._takes_back = False
         self._path: list[np.ndarray] = []
         self._acts_from_s = 0.0
@@ -127,6 +135,7 @@ class ScriptedTrainee:
             transforms.apply(head_to_world, scenario.task(task_name).fiducials),
             fiducial_normals(scenario, task_name) @ head_to_world[:3, :3].T,
             transforms.apply(head_to_world, scenario.target_position[None])[0],
+            transforms.apply(head_to_world, computed_once(scenario, _highest))[0],
             seeded_skill(skill, seed),
             seed,
         )
@@ -150,8 +159,9 @@ class ScriptedTrainee:
         return self._approach(observation)
 
     def touch_refused(self) -> None:
-        """Note that the last touch was refused: the trainee approaches the point again."""
+        """Note that the last touch was refused: the trainee approaches the point from above."""
         self._touched = None
+        self._is_refused = True
         self._takes_back = False
 
     def _undo(self, observation: Observation) -> Action | None:
@@ -164,14 +174,19 @@ class ScriptedTrainee:
         return CommandName.UNDO, {}
 
     def _plan(self, observation: Observation, point: int) -> None:
-        """Lift off, travel around the head, come down along the skin's outward direction."""
+        """Lift off, travel around the head, come down along the skin's outward direction.
+
+        A refused touch means that not the tip but another part of the tool is at the head. From
+        above, the arm comes to the same point in another posture.
+        """
         fiducial = self._fiducials[point - 1]
         outward = self._normals[point - 1]
         aim = fiducial + self._tangential_error(outward, slips=point == self._slip_at)
         lifted = observation.tip_mm + LIFT_MM * self._outward(observation.tip_mm)
         above = fiducial + LIFT_MM * outward
         past = above + self._skill.overshoot * (above - lifted)
-        self._path = [*self._arc(lifted, past), above, aim]
+        self._path = [*self._way(lifted, past, self._is_refused), above, aim]
+        self._is_refused = False
         self._outward_at_aim = outward
         self._planned_for = point
         self._acts_from_s = observation.sim_time_s + self._skill.reaction_s
@@ -232,6 +247,15 @@ class ScriptedTrainee:
             error = error + 4.0 * self._random.choice([-1.0, 1.0], 3) / np.sqrt(3.0)
         return error - outward * float(error @ outward)
 
+    def _way(self, start: np.ndarray, end: np.ndarray, from_above: bool) -> list[np.ndarray]:
+        """Waypoints around the head; over its vertex if asked for, or instead of under the head."""
+        direct, up = self._arc(start, end), self._outward(self._vertex)
+        heights = [float(np.arcsin(np.clip(self._outward(one) @ up, -1.0, 1.0))) for one in direct]
+        if not from_above and min(heights) > min(heights[0], heights[-1]) - LOWEST_DIP:
+            return direct
+        top = self._vertex + LIFT_MM * up
+        return [*self._arc(start, top), *self._arc(top, end)[1:]]
+
     def _arc(self, start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
         """Waypoints from start to end around the head's center, every 15 degrees."""
         first, last = self._outward(start), self._outward(end)
@@ -245,6 +269,11 @@ class ScriptedTrainee:
         weights = np.linspace(0.0, 1.0, count + 1)[:, None]
         directions = np.sin((1 - weights) * angle) * first + np.sin(weights * angle) * last
         return list(self._center + radii[:, None] * directions / np.sin(angle))
+
+
+def _highest(head: HeadMesh) -> np.ndarray:
+    """Return the vertex of the head, (1, 3) float, RAS mm."""
+    return head.vertices[head.vertices[:, 2].argmax()][None].copy()
 
 
 def _jog(velocity: np.ndarray) -> Action:

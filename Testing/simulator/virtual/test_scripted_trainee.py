@@ -1,0 +1,36 @@
+"""The scripted trainee finds its way around heads of every shape."""
+
+import numpy as np
+import pytest
+
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.virtual.scripted_trainee import LIFT_MM, Skill
+from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
+from Testing.simulator.authoring.planned_heads import setup_of
+
+DT = 0.05
+
+
+@pytest.mark.parametrize(
+    ("head", "task"),
+    [
+        # From one side of the neck to the other: the direct way leads under the head.
+        ("small", "task-5"),
+        # Coming from below, the arm reaches a point with its shaft at the skin.
+        ("egg", "task-3"),
+    ],
+    ids=["way under the head", "shaft at the skin"],
+)
+def test_all_fiducials_are_reached_and_the_tip_never_gets_under_the_head(head, task, tmp_path):
+    setup, heights = setup_of(head, tmp_path), []
+
+    def note(_simulation, _before, _operator_input, result):
+        if result.state.training.touches:
+            heights.append(MM_PER_M * result.state.tool_tip_to_world[2, 3])
+
+    trial = play_virtual_trial(Simulation(setup, 1), task, 1, Skill(), DT, note)
+    fiducials = trial.fiducials_mm @ trial.head_to_world[:3, :3].T + trial.head_to_world[:3, 3]
+    assert len(trial.touches_mm) == 15
+    assert np.linalg.norm(trial.touches_mm - fiducials, axis=1).max() < 6.0
+    assert min(heights) > fiducials[:, 2].min() - 2 * LIFT_MM
