@@ -187,7 +187,7 @@ def test_a_learning_curve_over_two_versions_of_the_score_says_so(scene, logic, a
     logic.study.add_results(first.record.trial_id, score=first_score(60.0, 0.1))
     trials = logic.study.history(first.record.trainee)
     chart = showLearningCurve(scene, "T-001", trials)
-    assert chart.GetTitle().endswith("(scores of versions 1 and 3 do not compare)")
+    assert chart.GetTitle().endswith("(scores of versions 1 and 3 cannot be compared)")
     table = findNode(scene, "vtkMRMLTableNode", Role.HISTORY)
     column = table.GetColumnIndex("score version")
     assert [table.GetCellText(row, column) for row in range(2)] == ["1", "3"]

@@ -145,7 +145,7 @@ class TraineesPanel:
                 erased = self._deletion.run(self._logic.delete)
                 if erased is None:
                     return
-                text = _("{name} is deleted with {trials} trials and {journals} journals.").format(
+                text = _("{name} was deleted with {trials} trials and {journals} journals.").format(
                     name=name, trials=erased.trials, journals=erased.journals
                 )
                 self._showMessage("{text}", text=" ".join((text, *erased.warnings)))
@@ -170,7 +170,7 @@ class TraineesPanel:
             tip = _("Delete nothing; the study is still being opened.")
             setUsable(ui.deleteTraineeButton, not self._isErasing, tip, begun)
         else:
-            tip = _("Delete the trainee with all trials, for good.")
+            tip = _("Delete the trainee with all trials, permanently.")
             reason = _("Choose a trainee first.")
             setUsable(ui.deleteTraineeButton, self._hasTrainee, tip, reason)
 

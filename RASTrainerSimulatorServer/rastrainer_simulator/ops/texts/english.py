@@ -299,8 +299,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "miss its target. The true error in the brain is beyond the limit.",
         "result.not unbiased": "Not acceptable: all touches are off in the same direction, by more "
         "than the limit.",
-        "result.not safe": "Not acceptable: the tool lay on the head too long or was pressed in "
-        "too deep.",
+        "result.not safe": "Not acceptable: the tool rested on the head too long or was pressed "
+        "in too deeply.",
         "result.ctps": "CTPS",
         "result.of 100": "{score:.0f} / 100",
         "result.mm": "{error:.2f} mm",
