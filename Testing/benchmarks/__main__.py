@@ -3,7 +3,7 @@
 A benchmark is a file `bench_*.py` here with a function `rows(quick: bool) -> list[dict]`; each row
 has the keys of `COLUMNS`, with None where there is nothing to compare with. What takes minutes is
 in a function `long_rows() -> list[dict]`, which `--long` adds. Before each stands
-how fast the machine is.
+how busy and how fast the machine is.
 """
 
 import argparse
@@ -12,7 +12,7 @@ import json
 from itertools import chain
 from pathlib import Path
 
-from Testing.benchmarks.row import host_row
+from Testing.benchmarks.row import host_row, load_row
 
 COLUMNS = ("name", "median", "p99", "unit", "peer", "peer_median", "peer_p99", "success", "n")
 HERE = Path(__file__).parent
@@ -31,7 +31,10 @@ def main() -> None:
     print(_line(COLUMNS))
     for name in arguments.names or found:
         module = importlib.import_module(f"Testing.benchmarks.bench_{name}")
-        measures = [lambda n=name: [host_row(n)], lambda m=module: m.rows(arguments.quick)]
+        measures = [
+            lambda n=name: [load_row(n), host_row(n)],
+            lambda m=module: m.rows(arguments.quick),
+        ]
         if arguments.long and hasattr(module, "long_rows"):
             measures.append(module.long_rows)
         for row in chain.from_iterable(measure() for measure in measures):

@@ -35,7 +35,20 @@ TRIAL_S = 300.0
 EARLIER_TRIALS = 40
 OWN = "without waits for a CPU"
 """That other programs have: stalls can be compared by it where the machine is busy."""
-SECTIONS = ("trainees", "scenario", "newScenario", "training", "registration", "score", "simulator")
+JOURNALS_DELETED = 10
+LARGER_STUDY = 40, 10
+"""Trainees, and trials of each."""
+PROTOCOL = asset_path("studies", "published-protocol.json")
+SECTIONS = (
+    "trainees",
+    "scenario",
+    "newScenario",
+    "training",
+    "registration",
+    "score",
+    "simulator",
+    "study",
+)
 
 
 def rows(quick: bool) -> list[dict]:
@@ -74,6 +87,7 @@ class _Steps:
                 host.keeps_lock = True
                 self._play()
                 self._build()
+                self._manage()
             finally:
                 host.keeps_lock = False
                 host.close()
@@ -89,21 +103,8 @@ class _Steps:
             host.find(group).collapsed = False
         host.process_events()
         self._trial = self._record(1000)
-        write_recorded_trial(
-            Path.home() / "RASTrainer" / "trials",
-            self._trial["trialId"],
-            TRIAL_S,
-            TRAINEE,
-            touch_every_s=20,
-        )
-        with Study.open(host.find("studyPathLineEdit").currentPath) as study:
-            for number in range(EARLIER_TRIALS):
-                record = self._record(number)
-                analysis = analyze_trial(TrialRecord.from_json(record), self._colin)
-                study.add_trial(
-                    record, analysis.fits.values(), analysis.target_errors, analysis.score
-                )
-                study.set_truth(record["trialId"], 1.0, np.eye(4).ravel().tolist())
+        self._write_journal(self._trial["trialId"])
+        self._store(Path(host.find("studyPathLineEdit").currentPath), EARLIER_TRIALS)
         host.press("createTraineeButton")
         host.choose("traineeComboBox", TRAINEE)
         program = write_program(self._folder / "rastrainer", self._folder / "pid", [])
@@ -115,6 +116,8 @@ class _Steps:
     def _play(self) -> None:
         host = self._host
         self._watch("show_scenario", lambda: host.press("showScenarioButton"))
+        self._watch("show_robot", lambda: host.check("robotCheckBox"))
+        host.check("robotCheckBox", False)
         self._watch("trial", self._touch)
         self._watch("scoring", self._score)
         self._watch("replay", lambda: host.press("replayButton"))
@@ -149,6 +152,49 @@ class _Steps:
         host.choose("scanComboBox", node)
         self._watch("preview", lambda: host.press("previewHeadButton"))
         self._watch("building", lambda: host.press("makeScenarioButton"))
+
+    def _manage(self) -> None:
+        host = self._host
+        self._watch("close_scene", host.clear_scene)
+        for number in range(JOURNALS_DELETED - 1):
+            self._write_journal(str(uuid.UUID(int=number + 1)))
+        host.answer("cannot be undone", "Yes")
+        self._watch("delete_trainee", lambda: host.press("deleteTraineeButton"))
+        larger = self._folder / "larger.db"
+        trainees, trials = LARGER_STUDY
+        for number in range(trainees):
+            self._store(larger, trials, f"T-{number + 1:03d}", trials * number)
+        self._watch("larger_study", lambda: self._open_study(larger))
+        led = self._folder / "led.db"
+        self._store(led, 1)
+        host.type("studyPathLineEdit", str(led))
+        host.choose("traineeComboBox", TRAINEE)
+        host.type("protocolPathLineEdit", str(PROTOCOL))
+        host.answer("Begin the study", "Yes")
+        host.press("beginStudyButton")
+        self._watch("study_step", lambda: host.press("enrollButton"))
+
+    def _open_study(self, path: Path) -> None:
+        host = self._host
+        host.type("studyPathLineEdit", str(path))
+        host.choose("traineeComboBox", TRAINEE)
+        host.wait_until(
+            lambda: host.find("historyTable").rowCount == LARGER_STUDY[1], "it is shown"
+        )
+
+    def _store(self, path: Path, count: int, trainee: str = TRAINEE, first: int = 0) -> None:
+        """Store trials of a trainee in a study: one registration serves for all."""
+        with Study.open(path) as study:
+            analysis = analyze_trial(TrialRecord.from_json(self._record(0)), self._colin)
+            fits, errors = analysis.fits.values(), analysis.target_errors
+            for number in range(first, first + count):
+                record = {**self._record(number), "trainee": trainee}
+                study.add_trial(record, fits, errors, analysis.score)
+                study.set_truth(record["trialId"], 1.0, np.eye(4).ravel().tolist())
+
+    def _write_journal(self, trial_id: str) -> None:
+        folder = Path.home() / "RASTrainer" / "trials"
+        write_recorded_trial(folder, trial_id, TRIAL_S, TRAINEE, touch_every_s=20)
 
     def _volume(self) -> Path:
         """Return Colin's head as it came from the scanner, or a phantom where it is not here."""

@@ -78,6 +78,12 @@ def host_row(name: str) -> dict:
     return row(f"host.{name}", [1e3 * _sum_time() for _ in range(LOOPS)], "ms")
 
 
+def load_row(name: str) -> dict:
+    """Return the row `load.NAME`: how many processes want a processor, over the last minute."""
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
+    return row_of_figures(f"load.{name}", (load, load), f"of {os.cpu_count()}", n=1)
+
+
 def _sum_time() -> float:
     begin = time.perf_counter()
     total = 0

@@ -23,6 +23,7 @@ from rastrainer.slicer.program.child_process import NotStartedError, runChild
 Run = Callable[..., Any]
 """Runs a function: `run(function, progress, *arguments, **named)`; see `OwnProcess`."""
 
+PROTOCOL = pickle.HIGHEST_PROTOCOL
 TASK, OUTCOME = "task.pickle", "outcome.pickle"
 PROGRAM = """
 import sys
@@ -57,8 +58,7 @@ class OwnProcess:
         """
         with tempfile.TemporaryDirectory(prefix="RASTrainer-") as temporary:
             folder = Path(temporary)
-            with (folder / TASK).open("wb") as file:
-                pickle.dump((function, arguments, named), file, pickle.HIGHEST_PROTOCOL)
+            _write(folder / TASK, (function, arguments, named))
             try:
                 ended = runChild((self._python, "-c", PROGRAM, LOGIC, folder), progress)
             except NotStartedError as error:
@@ -68,7 +68,7 @@ class OwnProcess:
             if not outcome.is_file():
                 reason = ended.lastLine or "it wrote nothing"
                 raise InputError(f"A process of Slicer's Python ended before it was done: {reason}")
-            kind, value = pickle.loads(outcome.read_bytes())
+            kind, value = _read(outcome)
         if kind == "refused":
             raise InputError(value)
         if kind == "missing":
@@ -86,8 +86,7 @@ def main(folder: str) -> None:
     """Do the task in a folder, and leave its outcome there."""
     path = Path(folder)
     try:
-        with (path / TASK).open("rb") as file:
-            function, arguments, named = pickle.load(file)
+        function, arguments, named = _read(path / TASK)
         outcome = "done", runHere(function, print_progress, *arguments, **named)
     except InputError as error:
         outcome = "refused", str(error)
@@ -97,9 +96,28 @@ def main(folder: str) -> None:
         traceback.print_exc()
         sys.exit(1)
     partial = path / f"{OUTCOME}.partial"
-    with partial.open("wb") as written:
-        pickle.dump(outcome, written, pickle.HIGHEST_PROTOCOL)
+    _write(partial, outcome)
     partial.replace(path / OUTCOME)
+
+
+def _write(path: Path, value: Any) -> None:
+    """Write a value; arrays go to the file as they are, which leaves Python's lock to others."""
+    buffers: list[pickle.PickleBuffer] = []
+    head = pickle.dumps(value, PROTOCOL, buffer_callback=buffers.append)
+    with path.open("wb") as file:
+        views = [memoryview(head), *(buffer.raw() for buffer in buffers)]
+        pickle.dump([view.nbytes for view in views], file, PROTOCOL)
+        for view in views:
+            file.write(view)
+
+
+def _read(path: Path) -> Any:
+    """Return the value that `_write` has written."""
+    with path.open("rb") as file:
+        head, *buffers = [bytearray(size) for size in pickle.load(file)]
+        for buffer in (head, *buffers):
+            file.readinto(buffer)
+    return pickle.loads(head, buffers=buffers)
 
 
 def _find(function: str) -> Callable[..., Any]:
