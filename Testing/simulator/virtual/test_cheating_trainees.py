@@ -9,6 +9,7 @@ from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import TouchRule
 from rastrainer.trial.scoring import PASS_MARK, passes
 from Testing.error_rates.played import score_of
+from Testing.simulator.authoring import planned_heads
 from Testing.simulator.virtual.cheating_trainees import (
     BIAS_MM,
     CHEATS,
@@ -109,3 +110,13 @@ def test_honest_play_is_acceptable_and_worth_far_more(setup, honest):
     score = score_of(setup, honest)
     assert score.acceptable
     assert score.score > 50.0
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("way", CHEATS)
+@pytest.mark.parametrize("head", planned_heads.HEADS)
+def test_no_cheat_has_more_than_40_points_or_passes_on_another_head(head, way, tmp_path):
+    other = planned_heads.setup_of(head, tmp_path)
+    score = score_of(other, CHEATS[way](other, "task-1", SEED))
+    assert score.score <= 40.0
+    assert not passes(score.score, score.acceptable, PASS_MARK)
