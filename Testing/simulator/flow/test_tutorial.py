@@ -12,10 +12,12 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
+from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW
 from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+from rastrainer_simulator.state import TOUCH_ERRORS
 from Testing.tutorial_player import TutorialPlayer
 
 FIRST = "The tutorial comes first, with the device that you use now: it takes two minutes."
@@ -166,10 +168,10 @@ def test_a_step_counts_only_the_movement_it_asks_for(learner):
 
 def test_what_has_not_been_learned_yet_does_nothing(learner):
     learner.tap("touch", "undo", "best_view")
-    learner.step(10)
+    learner.step(100)
     assert status(learner)[1] == "Step 1 of 14"
     assert learner.presenter.shown.latest.training.next_point is None
-    assert not session_of(learner).view.control.is_moved
+    assert session_of(learner).view.control.orbit == TUTORIAL_VIEW
     assert "error" not in learner.watcher.kinds
 
 
@@ -186,9 +188,9 @@ def test_the_view_goes_nowhere_by_itself_before_the_guided_touches(learner):
     control = session_of(learner).view.control
     go_to_step(learner, TutorialStep.LOWER)
     learner.step(200)
-    assert not control.is_moved
+    assert control.orbit == TUTORIAL_VIEW
     go_to_step(learner, TutorialStep.GUIDED)
-    learner.until(lambda: control.is_moved, "the best view")
+    learner.until(lambda: control.orbit != TUTORIAL_VIEW, "the best view")
 
 
 def test_a_guided_touch_shows_its_error_on_the_head(learner):
@@ -202,6 +204,16 @@ def test_a_guided_touch_shows_its_error_on_the_head(learner):
     learner.tap("undo")
     learner.until(lambda: learner.presenter.screen.errors == (), "the undo")
     assert learner.watcher.kinds[-1] == "undo"
+
+
+def test_the_tip_that_rests_on_the_first_point_is_no_error_of_the_guided_touches(learner):
+    player = FlowLearner(learner)
+    go_to_step(learner, TutorialStep.LOWER)
+    player.lower()
+    go_to_step(learner, TutorialStep.GUIDED)
+    assert learner.presenter.shown.latest.proximity == "contact"
+    assert learner.presenter.shown.latest.touch not in TOUCH_ERRORS
+    assert learner.presenter.screen.warnings == ()
 
 
 def test_its_menu_lets_it_wait_begin_again_or_be_left(learner):
@@ -365,3 +377,15 @@ def test_a_tutorial_that_cannot_be_written_counts_until_the_simulator_ends(learn
     learner.until_menu("tutorial-done")
     assert "cannot be made" in learner.presenter.screen.warnings[0].text
     assert learner.item("trial-run").is_enabled
+
+
+def test_the_tip_is_in_the_picture_from_the_first_step_on(learner):
+    learner.step(100)
+    view = learner.presenter.pictures(learner.state).main
+    eye, middle, up = (np.array(each) for each in (view.position, view.focal_point, view.view_up))
+    ahead = (middle - eye) / np.linalg.norm(middle - eye)
+    up = up - (up @ ahead) * ahead
+    # Upward it moves by 30 mm, and the upper tenth of the picture is the instruction's.
+    away = np.add(learner.tip, (0.0, 0.0, 0.03)) - eye
+    height = np.degrees(np.arctan2(away @ (up / np.linalg.norm(up)), away @ ahead))
+    assert abs(height) < 0.4 * view.angle_deg

@@ -45,10 +45,13 @@ from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState
 from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.viewpoint.orbit import Orbit
 
 NOTICE_S = 5.0
 SET_UP_AFTER_S = 1.0
 """A simulation takes a second to make: who steps through the options shall not wait for each."""
+TUTORIAL_VIEW = Orbit(zoom=1.7)
+"""From farther away than a trial: the tip is seen where it starts, above the head."""
 _OWN_LABELS = {SourceKind.XR: "headset", SourceKind.TOUCH_SCREEN: "touch screen"}
 """Whose inputs have other names than those of a gamepad, and how the keys of their texts begin."""
 
@@ -272,6 +275,7 @@ class TrainingSession:
         self.tutorial = Tutorial(self.setup, self.state, arguments, self.texts)
         practice = self.tutorial.practice
         self.view.begin(self.setup, practice.truth, practice.shown(self.state))
+        self.view.control.go(TUTORIAL_VIEW)
         self.pages.show(None)
 
     def end_tutorial(self) -> TutorialOutcome | None:

@@ -19,7 +19,7 @@ from rastrainer_simulator.training.rules import TouchMoment
 from rastrainer_simulator.training.touch_stage import touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import Vector, distance, vector
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
 
@@ -42,6 +42,7 @@ class TouchPractice:
         arguments: dict[str, str],
         points: slice,
         texts: Texts,
+        rest: Vector | None = None,
     ) -> None:
         """Begin; the head stays where it is.
 
@@ -51,7 +52,9 @@ class TouchPractice:
             arguments: checked ones of StartTask, with `trialId`.
             points: which are touched.
             texts: the sentences.
+            rest: where the tip may still be on the skin from a touch before, World, m.
         """
+        self._rest = rest
         self._settings = setup.settings.training
         scenario = _short_scenario(setup.scenario, state.head_to_world, points)
         self._training = Training(scenario, 0, self._settings, texts)
@@ -64,6 +67,11 @@ class TouchPractice:
     def truth(self) -> Truth:
         """Where the head and the points are."""
         return self._training.truth
+
+    @property
+    def goal(self) -> Vector | None:
+        """Where the next point is, World, m; None without one."""
+        return self._training.goal
 
     @property
     def state(self) -> TrainingState:
@@ -96,7 +104,13 @@ class TouchPractice:
         stage = touch_stage(
             _moment(state), state.proximity, obstacle, training, goal, self._settings
         )
+        if stage is TouchStage.ELSEWHERE and self._is_at_rest(state):
+            stage = TouchStage.NEAR
         return replace(state, training=training, touch=stage)
+
+    def _is_at_rest(self, state: SimulationState) -> bool:
+        radius = self._settings.acceptance_radius
+        return self._rest is not None and distance(_tip(state), self._rest) <= radius
 
     def _handle(self, command: str, state: SimulationState) -> TrainingReply:
         reply = self._training.handle(OperatorCommand(command), _moment(state))
@@ -123,5 +137,8 @@ def _first_task(scenario: Scenario) -> Task:
 
 
 def _moment(state: SimulationState) -> TouchMoment:
-    tip = vector(state.tool_tip_to_world[:3, 3].tolist())
-    return TouchMoment(state.sim_time, tip, state.tip_clearance, state.depth)
+    return TouchMoment(state.sim_time, _tip(state), state.tip_clearance, state.depth)
+
+
+def _tip(state: SimulationState) -> Vector:
+    return vector(state.tool_tip_to_world[:3, 3].tolist())

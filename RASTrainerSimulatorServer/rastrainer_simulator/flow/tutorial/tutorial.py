@@ -51,7 +51,8 @@ class Tutorial:
         self.setup = setup
         trial = {**arguments, "trialId": str(uuid.uuid4())}
         self._first = TouchPractice(setup, state, trial, slice(1), texts)
-        self._guided = TouchPractice(setup, state, trial, slice(1, 1 + GUIDED_TOUCHES), texts)
+        guided, rest = slice(1, 1 + GUIDED_TOUCHES), self._first.goal
+        self._guided = TouchPractice(setup, state, trial, guided, texts, rest)
         self._guided.show_points()
         self.praised: TutorialStep | None = None
         self._praise_s = 0.0

@@ -324,13 +324,13 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "tutorial.done points": "{done} of {goal} points",
         "tutorial.homing": "The robot moves to where you begin.",
         "tutorial.right": "Move the tool 30 mm to the right: {control}.",
-        "tutorial.left": "Now 30 mm to the left: {control}.",
-        "tutorial.forward": "Now 30 mm forward, away from you: {control}.",
-        "tutorial.forward.robot": "Now 30 mm forward, as the robot stands: {control}.",
-        "tutorial.back": "Now 30 mm back, toward you: {control}.",
-        "tutorial.back.robot": "Now 30 mm back, as the robot stands: {control}.",
-        "tutorial.up": "Now 30 mm up: {control}.",
-        "tutorial.down": "Now 30 mm down: {control}.",
+        "tutorial.left": "30 mm to the left: {control}.",
+        "tutorial.forward": "30 mm forward, away from you: {control}.",
+        "tutorial.forward.robot": "30 mm forward, as the robot stands: {control}.",
+        "tutorial.back": "30 mm back, toward you: {control}.",
+        "tutorial.back.robot": "30 mm back, as the robot stands: {control}.",
+        "tutorial.up": "30 mm up: {control}.",
+        "tutorial.down": "30 mm down: {control}.",
         "tutorial.slow": "Hold {control} and move the tool 10 mm: near the skin it should be slow.",
         "tutorial.slow.touch screen": "Press {control} and move the tool 10 mm: near the skin it "
         "should be slow. Press again to be fast.",
@@ -340,7 +340,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "tutorial.turn view.touch screen": "Turn the view by 20°: drag a finger over the picture.",
         "tutorial.look around": "Turn your head to the side, and push the left stick: its "
         "directions turn with you.",
-        "tutorial.best view": "See point {point} from where it is seen best: {control}.",
+        "tutorial.best view": "Best view of point {point}: {control}.",
         "tutorial.lower": "Lower the tip onto point {point}: the ring closes, and turns green on "
         "the skin.",
         "tutorial.touch": "Record the touch: {control}. Only touches within 10 mm of the point "

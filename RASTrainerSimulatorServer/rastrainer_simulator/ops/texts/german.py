@@ -434,13 +434,13 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "tutorial.done points": "{done} von {goal} Punkten",
         "tutorial.homing": "Der Roboter fährt dorthin, wo du beginnst.",
         "tutorial.right": "Bewege das Werkzeug 30 mm nach rechts: {control}.",
-        "tutorial.left": "Jetzt 30 mm nach links: {control}.",
-        "tutorial.forward": "Jetzt 30 mm nach vorn, von dir weg: {control}.",
-        "tutorial.forward.robot": "Jetzt 30 mm nach vorn, wie der Roboter steht: {control}.",
-        "tutorial.back": "Jetzt 30 mm nach hinten, zu dir hin: {control}.",
-        "tutorial.back.robot": "Jetzt 30 mm nach hinten, wie der Roboter steht: {control}.",
-        "tutorial.up": "Jetzt 30 mm nach oben: {control}.",
-        "tutorial.down": "Jetzt 30 mm nach unten: {control}.",
+        "tutorial.left": "30 mm nach links: {control}.",
+        "tutorial.forward": "30 mm nach vorn, von dir weg: {control}.",
+        "tutorial.forward.robot": "30 mm nach vorn, wie der Roboter steht: {control}.",
+        "tutorial.back": "30 mm nach hinten, zu dir hin: {control}.",
+        "tutorial.back.robot": "30 mm nach hinten, wie der Roboter steht: {control}.",
+        "tutorial.up": "30 mm nach oben: {control}.",
+        "tutorial.down": "30 mm nach unten: {control}.",
         "tutorial.slow": "Halte {control} und bewege das Werkzeug 10 mm: Nah an der Haut soll es "
         "langsam sein.",
         "tutorial.slow.touch screen": "Drücke {control} und bewege das Werkzeug 10 mm: Nah an der "
@@ -452,7 +452,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "das Bild.",
         "tutorial.look around": "Dreh den Kopf zur Seite und drück den linken Stick: Seine "
         "Richtungen drehen sich mit dir.",
-        "tutorial.best view": "Sieh Punkt {point} von dort, wo man ihn am besten sieht: {control}.",
+        "tutorial.best view": "Beste Ansicht von Punkt {point}: {control}.",
         "tutorial.lower": "Senke die Spitze auf Punkt {point}: Der Ring schließt sich und wird auf "
         "der Haut grün.",
         "tutorial.touch": "Nimm die Berührung auf: {control}. Nur Berührungen bis 10 mm vom Punkt "
