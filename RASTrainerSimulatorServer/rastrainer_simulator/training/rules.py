@@ -188,9 +188,7 @@ def refused_touch(
             return texts.say(
                 "wrong point", point=next_point, label=label, nearest=MM_PER_M * nearest
             )
-        return texts.say(
-            "too far", point=next_point, distance=MM_PER_M * away, radius=MM_PER_M * radius
-        )
+        return texts.say("too far", point=next_point, radius=MM_PER_M * radius)
     is_above = now.tip_clearance > settings.skin_tolerance
     if settings.touch_rule is TouchRule.ON_SKIN and is_above:
         return texts.say("above the skin", point=next_point, height=MM_PER_M * now.tip_clearance)

@@ -43,9 +43,9 @@ def test_every_key_that_the_code_makes_of_a_name_has_its_sentence():
 
 def test_a_sentence_of_the_simulation_is_said_again_in_another_language():
     english, german = Texts(), Texts(LANGUAGES["de"])
-    said = english.say("too far", point="5", distance=12.34, radius=10.0)
-    assert said == "Too far from point 5: 12.3 mm; a touch counts within 10 mm."
-    assert german.again(said).startswith("Zu weit von Punkt 5: 12,3 mm")
+    said = english.say("above the skin", point="5", height=12.34)
+    assert said == "12.3 mm above the skin: lower the tip onto point 5."
+    assert german.again(said) == "12,3 mm über der Haut: Senke die Spitze auf Punkt 5."
     assert german.again("what others say") == "what others say"
 
 

@@ -81,8 +81,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "still in the guide": "The instrument is still in the guide: Feed it before "
         "ReleaseInstrument.",
         # Touches that do not count.
-        "too far": "Too far from point {point}: {distance:.1f} mm; a touch counts within "
-        "{radius:g} mm.",
+        # How far is not said: pressing Touch again and again would replace looking.
+        "too far": "Too far from point {point}: a touch counts within {radius:g} mm.",
         "above the skin": "{height:.1f} mm above the skin: lower the tip onto point {point}.",
         "wrong point": "Wrong point: that is point {label}, {nearest:.1f} mm away; point {point} "
         "is next.",

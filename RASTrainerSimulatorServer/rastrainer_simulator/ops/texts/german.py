@@ -182,8 +182,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "still in the guide": "Das Instrument ist noch in der Führung: Vor ReleaseInstrument kommt "
         "Feed.",
         # Touches that do not count.
-        "too far": "Zu weit von Punkt {point}: {distance:.1f} mm; eine Berührung zählt bis "
-        "{radius:g} mm.",
+        "too far": "Zu weit von Punkt {point}: Eine Berührung zählt bis {radius:g} mm.",
         "above the skin": "{height:.1f} mm über der Haut: Senke die Spitze auf Punkt {point}.",
         "wrong point": "Falscher Punkt: Das ist Punkt {label}, {nearest:.1f} mm entfernt; Punkt "
         "{point} ist an der Reihe.",
