@@ -30,6 +30,7 @@ LOWEST_DIP = np.radians(5.0)
 DECISION_PERIOD_S = 0.05
 JOG_DURATION_S = 0.1
 STUCK_AFTER_S = 12.0
+"""Of aiming at a fiducial: after that, the trainee touches where the tip is."""
 
 Action = tuple[str, dict[str, Any]]
 
@@ -190,12 +191,15 @@ class ScriptedTrainee:
         self._outward_at_aim = outward
         self._planned_for = point
         self._acts_from_s = observation.sim_time_s + self._skill.reaction_s
-        self._gives_up_at_s = observation.sim_time_s + STUCK_AFTER_S
+        self._gives_up_at_s = np.inf
 
     def _approach(self, observation: Observation) -> Action | None:
         if not self._path:
             return self._touch()
         is_aim = len(self._path) == 1
+        if is_aim and np.isinf(self._gives_up_at_s):
+            # However far the way was.
+            self._gives_up_at_s = observation.sim_time_s + STUCK_AFTER_S
         remaining = self._path[0] - observation.tip_mm
         gave_up = is_aim and observation.sim_time_s > self._gives_up_at_s
         if is_aim:

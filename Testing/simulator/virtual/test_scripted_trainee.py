@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.virtual.scripted_trainee import LIFT_MM, Skill
 from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
@@ -34,3 +35,18 @@ def test_all_fiducials_are_reached_and_the_tip_never_gets_under_the_head(head, t
     assert len(trial.touches_mm) == 15
     assert np.linalg.norm(trial.touches_mm - fiducials, axis=1).max() < 6.0
     assert min(heights) > fiducials[:, 2].min() - 2 * LIFT_MM
+
+
+def test_hands_that_travel_slowly_touch_only_where_they_arrive():
+    """The way over the head takes them longer than they would aim."""
+    skill = Skill(speed_mm_s=54.0, gain_per_s=1.35, slip_at=None)
+    refused = []
+
+    def note(_simulation, _before, operator_input, result):
+        for command, answer in zip(operator_input.commands, result.answers, strict=True):
+            if command.name == "Capture" and not answer.ok:
+                refused.append(answer.message)
+
+    trial = play_virtual_trial(Simulation(load_setup(), 1), "task-5", 1, skill, DT, note)
+    assert len(trial.touches_mm) == 15
+    assert refused == []
