@@ -115,7 +115,7 @@ def test_five_clicks_start_training_on_a_loaded_volume_with_placed_fiducials(hos
     clicks.tick("handPlacedCheckBox")
     clicks.press("makeScenarioButton")
     assert host.messages == []
-    assert "is made" in host.text("newScenarioText")
+    assert "was made" in host.text("newScenarioText")
     unfold(host, "scenarioCollapsibleButton")
     assert host.find("scenarioPicture").visible
     clicks.start_trial_on("Ms X")

@@ -18,6 +18,7 @@ from rastrainer.study.trial_review import review, store_delivered, with_progress
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.submission import registration_arguments, score_arguments
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_alone, score_alone
@@ -139,7 +140,7 @@ def test_slicer_that_connects_later_stores_the_trial_and_its_score_replaces_the_
             del told["details"]["feedback"]
         assert without_its_mark(own) == slicers
     with Study.open(tmp_path / "study.db") as study:
-        assert {study.trial(trial).score.version for trial in alone.trials} == {"2"}
+        assert {study.trial(trial).score.version for trial in alone.trials} == {SCORE_VERSION}
 
 
 def test_a_view_of_the_real_simulator_shows_its_own_score_until_slicer_scores_the_trial(

@@ -48,7 +48,7 @@ def test_a_head_is_pictured_before_anything_is_made_of_it(volume, tmp_path, caps
 def test_a_head_that_is_not_there_has_no_picture(volume, tmp_path, capsys):
     words = ["scenario", "preview", str(volume), str(tmp_path / "head.png"), "--cut=500"]
     assert main(words) == 2
-    assert "its base must be there, not at 500 mm" in capsys.readouterr().err
+    assert "its base must be in this range, not at 500 mm" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == [volume.name]
 
 

@@ -12,26 +12,37 @@ from rastrainer.igtl.wire import crc64
 from Testing.security.hostile_content import HOSTILE_JSON
 
 TRIAL = "6b8f2f1e-6a60-4c0e-9a37-111111111111"
+_REGISTRATION = {
+    "trialId": TRIAL,
+    "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+    "freMm": 1.0,
+    "expectedTreMm": 1.5,
+}
 COMMANDS = {
     "Hello": {"protocolVersion": 1, "client": "somebody", "toolTipHz": 60, "linksHz": 30},
     "ListTasks": {},
     "LoadScenario": {"folder": "nowhere"},
+    "StartTutorial": {"trainee": "P01", "mode": "desktop"},
     "StartTask": {"task": "task-1", "trainee": "P01", "mode": "desktop", "seed": 4},
     "Jog": {"velocityMmS": [10, -20, 30], "frame": "world", "durationS": 0.1},
     "MoveTipTo": {"positionMm": [500, 0, 400], "speedMmS": 100},
     "Capture": {},
     "Undo": {},
     "Register": {},
+    "UseRegistration": _REGISTRATION,
+    "AcceptRegistration": {},
+    "RegisterAgain": {},
+    "AlignGuide": {"standOffMm": 30},
+    "LockGuide": {},
+    "Feed": {"velocityMmS": 2.5, "durationS": 0.1},
+    "RetractDrill": {},
+    "StartInsertion": {},
+    "ReleaseInstrument": {},
     "Abort": {},
     "Pause": {},
     "Resume": {},
     "SetCamera": {"camera": "far"},
-    "SubmitRegistration": {
-        "trialId": TRIAL,
-        "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
-        "freMm": 1.0,
-        "expectedTreMm": 1.5,
-    },
+    "SubmitRegistration": _REGISTRATION,
     "TrialScored": {"trialId": TRIAL, "score": 70, "details": {"version": "2"}},
     "PlanTarget": {"positionMm": [500, 0, 300], "entryMm": [500, 0, 400], "name": "target"},
     "StudyStep": {"trainee": "P01", "kind": "trial", "number": 2, "count": 9, "task": "task-1"},

@@ -55,7 +55,7 @@ def test_the_main_thread_erases_nothing(panel, journal, monkeypatch):
     monkeypatch.setattr(Study, "delete_trainee", delete)
     panel.answer("cannot be undone", "Yes")
     panel.press("deleteTraineeButton")
-    assert "is deleted with 0 trials and 1 journals" in panel.text("traineeText")
+    assert "was deleted with 0 trials and 1 journals" in panel.text("traineeText")
     assert not journal.exists()
     assert len(threads) == 2
     assert threading.get_ident() not in threads

@@ -74,7 +74,8 @@ def test_nothing_is_imported_that_slicer_does_not_bring(path):
 def test_the_module_file_holds_definitions_only():
     allowed = (ast.Import, ast.ImportFrom, ast.ClassDef, ast.FunctionDef)
     body = ast.parse((MODULE / "RASTrainer.py").read_text()).body
-    assert all(isinstance(node, allowed) for node in body)
+    others = [node for node in body if not isinstance(node, allowed)]
+    assert all(isinstance(n, ast.If) and ast.unparse(n.test) == "TYPE_CHECKING" for n in others)
 
 
 def test_the_module_does_not_vanish_without_the_connector():

@@ -185,7 +185,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
     host.type("programPathLineEdit", sys.executable)
     host.press("makeScenarioButton")
-    assert "is made" in host.text("newScenarioText")
+    assert "was made" in host.text("newScenarioText")
     assert [bool(node.GetDisplayVisibility()) for node in draft] == [False, False]
     assert not rendering.GetVisibility()
     host.press("previewHeadButton")

@@ -174,7 +174,9 @@ def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(pla
         assert menu.get_by_role("button", name=item.label, exact=True).count() == 1
     trainee.choose("settings")
     shown(page, trainee)
-    choice = [item for item in trainee.menu.items if item.kind == "choice"][-1]
+    # The tutorial is skipped here, which is the last of its values: nothing is to its right.
+    choices = [item for item in trainee.menu.items if item.kind == "choice"]
+    choice = next(item for item in reversed(choices) if item.name != "tutorial")
     trainee.focus(choice.name)
     before = trainee.value(choice.name)
     trainee.press("right", lambda: trainee.value(choice.name) != before, "another value")

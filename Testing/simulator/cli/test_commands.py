@@ -263,7 +263,7 @@ def test_scores_of_two_versions_give_no_mark(study, capsys):
     with Study.open(study) as opened:
         add(opened, "N3", 20, 270.0, score=first_score)
     assert main(words(study)) == 2
-    assert "scores of the versions 1 and 3, which do not compare" in capsys.readouterr().err
+    assert "scores of the versions 1 and 3, which cannot be compared" in capsys.readouterr().err
 
 
 def test_a_mark_of_earlier_scores_is_reported_and_is_written_into_no_protocol(

@@ -295,7 +295,7 @@ def test_slicer_has_the_tutorial_opened_before_the_trial_run(trainee):
     trainee.start("task-1")
     trainee.until(lambda: instruction(trainee) == "P07, touch point 1.", "the trial")
     refused = presenter.start_tutorial("P08", "desktop")
-    assert "P07 is still at Task 1" in refused.message
+    assert "P07 is still doing Task 1" in refused.message
 
 
 def test_a_trial_that_slicer_starts_ends_it(learner):

@@ -251,7 +251,7 @@ def test_an_interrupted_trial_can_be_aborted_and_another_started(simulation, tmp
         server.start()
     with Server(simulation, tmp_path) as server:
         refused = server.do(CommandName.START_TASK, task="task-2", trainee="P02")
-        assert "P01 is still at task-1" in refused.message
+        assert "P01 is still doing task-1" in refused.message
         assert server.do(CommandName.ABORT).ok
         assert read_journal(server.path).integrity is Integrity.INTACT
         assert server.do(CommandName.START_TASK, task="task-2", trainee="P02").ok

@@ -247,7 +247,7 @@ def test_a_mesh_in_millimeters_or_without_numbers_is_refused(tmp_path, visuals, 
     mesh = whole(visuals["iiwa_link_3"])
     mesh.vertices *= scale
     mesh.export(tmp_path / "link_3.stl")
-    with pytest.raises(InputError, match="in metres"):
+    with pytest.raises(InputError, match="in meters"):
         load_meshes(load_robot(mesh_folder=tmp_path))
 
 

@@ -76,7 +76,8 @@ def test_no_trainee_is_held_up_at_a_fiducial(played):
     with Study.open(played / DATABASE) as study:
         records = [trial.record for i in (1, 2) for trial in study.history(f"V000{i}")]
     waits = [np.diff([point.sim_time_s for point in record.points]) for record in records]
-    assert np.max(waits) < 0.5 * STUCK_AFTER_S
+    # Whoever is held up waits at least this long, after the way to the fiducial.
+    assert np.max(waits) < STUCK_AFTER_S
 
 
 def test_the_truth_is_stored_beside_the_study(played):

@@ -135,7 +135,7 @@ def delete_trainee_and_stop(tour: Tour) -> str:
     hands.choose("traineeComboBox", TRAINEE)
     tour.dialogs.answer("cannot be undone", "Yes")
     hands.click("deleteTraineeButton")
-    hands.wait_until(lambda: "is deleted" in hands.text("traineeText"), "it is told")
+    hands.wait_until(lambda: "was deleted" in hands.text("traineeText"), "the trainee is deleted")
     told = hands.text("traineeText")
     hands.click("stopSimulatorButton")
     hands.wait_until(lambda: hands.text("nextStepButton") == "Start and connect", "it ends")

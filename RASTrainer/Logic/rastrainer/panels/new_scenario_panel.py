@@ -24,8 +24,8 @@ _USUAL = SetUp()
 _MOVED = _USUAL.perturbation
 _PLACE, _EXTENT = (-WORLD_LIMIT_MM, WORLD_LIMIT_MM), (1.0, WORLD_LIMIT_MM)
 _ROWS = (
-    (_("Center of the head, mm:"), "head", _PLACE, _USUAL.head_center),
-    (_("Rotation of the head, °:"), "yaw", (-180.0, 180.0), (_USUAL.head_yaw_deg,)),
+    (_("Head center, mm:"), "head", _PLACE, _USUAL.head_center),
+    (_("Head rotation, °:"), "yaw", (-180.0, 180.0), (_USUAL.head_yaw_deg,)),
     (
         _("Shift in a trial, ± mm:"),
         "shift",
@@ -34,10 +34,10 @@ _ROWS = (
     ),
     (_("Rotation in a trial, ± °:"), "turn", (0.0, MAX_PERTURBATION.yaw_deg), (_MOVED.yaw_deg,)),
     (_("Tilt in a trial, ± °:"), "tilt", (0.0, MAX_PERTURBATION.tilt_deg), (_MOVED.tilt_deg,)),
-    (_("Center of the table, mm:"), "table", _PLACE, _USUAL.table_center),
-    (_("Size of the table, mm:"), "size", _EXTENT, _USUAL.table_size),
-    (_("Diameter of the stand, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand_diameter,)),
-    (_("Base of the robot, mm:"), "base", _PLACE, _USUAL.robot_base),
+    (_("Table center, mm:"), "table", _PLACE, _USUAL.table_center),
+    (_("Table size, mm:"), "size", _EXTENT, _USUAL.table_size),
+    (_("Stand diameter, mm:"), "stand", STAND_DIAMETERS_MM, (_USUAL.stand_diameter,)),
+    (_("Robot base, mm:"), "base", _PLACE, _USUAL.robot_base),
 )
 """Label, name, lowest and highest, usual values; places are in the table's frame."""
 

@@ -25,6 +25,7 @@ REGISTRATION = {
 ARGUMENTS = {
     "Hello": HELLO,
     "LoadScenario": {"folder": "scenarios/colin27"},
+    "StartTutorial": {"trainee": "anna"},
     "StartTask": {"task": "task-1", "trainee": "anna", "seed": None},
     "Jog": {"velocityMmS": [1, 2, 3]},
     "MoveTipTo": {"positionMm": [500, 0, 300], "direction": None},
