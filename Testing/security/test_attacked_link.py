@@ -74,8 +74,8 @@ def test_a_million_mutated_messages_harm_nobody_else(tmp_path, capsys):
 
 def test_the_same_seed_gives_the_same_attack_and_every_valid_message_is_in_it():
     first, second = MutatedMessages(3), MutatedMessages(3)
-    drawn = [first.next() for _ in range(3_000)]
-    assert drawn == [second.next() for _ in range(3_000)]
+    drawn = [first.next() for _ in range(6_000)]
+    assert drawn == [second.next() for _ in range(6_000)]
     assert set(valid_messages()) <= set(drawn)
 
 
