@@ -8,12 +8,11 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 
 def obstacle(session: TrainingSession, task: str) -> str:
     """Return why the trainee cannot begin a task; "" where nothing is in the way."""
+    unready = _unready(session)
+    if unready:
+        return unready
     say = session.texts.say
     trainee = session.trainee.strip()
-    if not trainee:
-        return say("experiment.no trainee")
-    if session.is_being_set_up:
-        return say("experiment.being set up")
     step = session.study.step_of(trainee)
     if step is not None:
         is_asked = step.is_played and (step.task, step.mode) == (task, session.mode)
@@ -39,12 +38,11 @@ def tutorial_obstacle(session: TrainingSession) -> str:
 
     In a study it is practice, and comes where the study has it: before a trial run, once.
     """
+    unready = _unready(session)
+    if unready:
+        return unready
     say = session.texts.say
     trainee = session.trainee.strip()
-    if not trainee:
-        return say("experiment.no trainee")
-    if session.is_being_set_up:
-        return say("experiment.being set up")
     step = session.study.step_of(trainee)
     if step is None:
         return ""
@@ -53,6 +51,13 @@ def tutorial_obstacle(session: TrainingSession) -> str:
     if is_asked and not has_done:
         return ""
     return say("experiment.study", step=session.step_sentence(step))
+
+
+def _unready(session: TrainingSession) -> str:
+    """Return why nothing can begin yet; "" where trainee and robot are ready."""
+    if not session.trainee.strip():
+        return session.texts.say("experiment.no trainee")
+    return session.texts.say("experiment.being set up") if session.is_being_set_up else ""
 
 
 def tutorial_rule(session: TrainingSession) -> TutorialRule:
