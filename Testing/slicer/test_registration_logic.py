@@ -15,7 +15,7 @@ from rastrainer.registration.target_error import target_error
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.control_points import setPoints, worldPoints
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_input import Choices
@@ -397,3 +397,20 @@ def test_what_is_done_again_between_two_turns_is_shown_once(table, logic_in_turn
     assert shown == [{"4"}]
     work.process()
     assert shown == [{"4"}]
+
+
+def test_a_list_that_changes_back_after_another_reason_registered_it_is_registered_again(
+    table, logic_in_turns, work
+):
+    logic = logic_in_turns
+    setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
+    logic.process()
+    in_turns(work)
+    fixed = worldPoints(table.fixed)
+    setPoints(table.fixed, (), np.empty((0, 3)))
+    logic.chooseKind(RIGID)
+    assert logic.comparison is None
+    setPoints(table.fixed, LABELS, fixed)
+    logic.process()
+    in_turns(work)
+    assert logic.comparison is not None

@@ -185,19 +185,19 @@ class RegistrationLogic:
 
     def process(self) -> None:
         """Register again if a list or the target has changed."""
-        moving, fixed, target = self.moving(), self.fixed(), self.target()
-        tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
-        seen = snapshot(moving, localPoints), snapshot(fixed), snapshot(target), *tasks
-        if seen == self._seen:
+        if self._snapshot() == self._seen:
             return
-        if moving is None or moving.GetNumberOfControlPoints() == 0:
-            self._forgetChoices()
-        self._seen = seen
         work = self._work
         if work is None:
             self._compute()
             return
+        self._seen = self._snapshot()
         work.later(lambda: self._registerNow(work))
+
+    def _snapshot(self) -> tuple:
+        moving, fixed = self.moving(), self.fixed()
+        tasks = [node and node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed)]
+        return snapshot(moving, localPoints), snapshot(fixed), snapshot(self.target()), *tasks
 
     def _compute(self) -> None:
         self._register()
@@ -205,9 +205,14 @@ class RegistrationLogic:
 
     def _register(self) -> None:
         self.comparison, self.problem, self.leaveOneOut = None, "", None
+        moving, fixed = self.moving(), self.fixed()
+        if moving is None or moving.GetNumberOfControlPoints() == 0:
+            self._forgetChoices()
+        # Of what is registered now, whatever the reason: lists that change back are news again.
+        self._seen = self._snapshot()
         try:
-            checkSameTask(self.moving(), self.fixed())
-            pairs = readPairs(self.moving(), self.fixed(), self.choices)
+            checkSameTask(moving, fixed)
+            pairs = readPairs(moving, fixed, self.choices)
             self.comparison = self._compare(pairs)
         except InputError as error:
             self.problem = str(error)
