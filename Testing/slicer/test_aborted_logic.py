@@ -90,6 +90,21 @@ def test_what_cannot_be_kept_is_reported_once_and_not_acknowledged(lab):
     assert lab.acknowledged() == [TRIAL]
 
 
+def test_all_are_in_the_study_before_what_arrives_after_them(lab):
+    """A repeat that was stored earlier would count without a reason."""
+    for number in (1, 2, 3):
+        lab.link.trialAborted.emit(make_aborted(number))
+
+    def stored():
+        with Study.open(lab.path) as study:
+            return len(AbortedTrials(study).of("T-001"))
+
+    found = []
+    lab.work.do(stored, found.append)
+    lab.run_until(lambda: found)
+    assert found == [3]
+
+
 @pytest.mark.parametrize(
     "hostile",
     [

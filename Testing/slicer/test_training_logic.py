@@ -123,6 +123,7 @@ def test_a_trial_is_paused_resumed_and_aborted(room):
     room.run_until(lambda: room.sent("Resume"))
     room.logic.abort(TRIAL)
     room.run_until(lambda: room.sent("Abort"))
+    assert room.sent("Abort") == [{"trialId": TRIAL}]
 
 
 def test_a_trial_that_started_during_the_question_about_another_is_not_aborted(room):

@@ -258,7 +258,8 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
     CommandName.ABORT: {
         "reason": Argument(
             one_of(*(reason.value for reason in COMMANDED_ABORTS)), AbortReason.CLIENT.value
-        )
+        ),
+        "trialId": Argument(trial_id, None),
     },
     CommandName.PAUSE: {},
     CommandName.RESUME: {},

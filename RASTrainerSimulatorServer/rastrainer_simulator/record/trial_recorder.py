@@ -191,7 +191,10 @@ class TrialRecorder:
         operator_input: OperatorInput,
         result: StepResult,
     ) -> Written:
-        """Keep the record of the aborted trial unless nothing was done in it."""
+        """Keep the record of the aborted trial unless nothing was done in it.
+
+        It is offered even if it cannot be written: the journal writes it with the next entry.
+        """
         times = stamp(result.state.tick, result.state.sim_time)
         given = [c for c in operator_input.commands if c.name == CommandName.ABORT]
         reason = given[-1].arguments.get("reason") if given else None
@@ -202,8 +205,10 @@ class TrialRecorder:
         journal, entries = trial.journal, trial.entries.taken()
 
         def write() -> None:
-            journal.write(entries, sync=True)
-            self._archive.add_aborted(record, journal)
+            try:
+                journal.write(entries, sync=True)
+            finally:
+                self._archive.add_aborted(record, journal)
 
         written = Written(self._writer.submit(write), is_awaited=False)
         self._close(trial)

@@ -107,14 +107,17 @@ NAMING_A_TRIAL = (*ENDING_A_TRIAL, CommandName.USE_REGISTRATION, CommandName.GET
 def refusal(command: OperatorCommand, state: TrainingState, texts: Texts) -> str | None:
     """Return the sentence that refuses a command in the trial's phase, None if it is allowed.
 
-    A command that names a trial is right for the present trial only.
+    A command that names a trial is right for the present trial only: an Abort may arrive late.
     """
     if command.name not in REFUSALS:
         return texts.say("not a simulation command", command=command.name)
-    named = command.arguments.get("trialId", state.trial_id)
-    if command.name in NAMING_A_TRIAL and named != state.trial_id:
+    named = command.arguments.get("trialId")
+    is_other = named not in (None, state.trial_id)
+    if command.name in NAMING_A_TRIAL and is_other:
         return texts.say("no such trial", trial_id=named)
     key = REFUSALS[command.name].get(state.phase)
+    if key is None and command.name == CommandName.ABORT and is_other:
+        key = "another trial is open"
     if key is None:
         return None
     return texts.say(

@@ -1,6 +1,7 @@
 """An aborted trial is kept and offered until somebody has it: no touch disappears."""
 
 import json
+import os
 import random
 import shutil
 
@@ -17,7 +18,12 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.aborted_archive import interrupted_attempt
 from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
 from rastrainer_simulator.replay.resimulation import replay
-from Testing.simulator.record.test_interrupted_trial import Server, cut
+from Testing.simulator.record.test_interrupted_trial import (
+    TIMEOUT_S,
+    Server,
+    cut,
+    on_full_disk,
+)
 
 
 class Restarted(Server):
@@ -150,6 +156,48 @@ def test_a_finished_trial_after_it_is_offered_beside_it(simulation, tmp_path):
         (AbortedTrial, aborted),
         (TrialRecord, finished),
     ]
+
+
+def test_one_that_a_full_disk_did_not_take_is_offered_and_written_later(
+    simulation, anywhere, tmp_path, monkeypatch
+):
+    with Server(simulation, tmp_path) as server:
+        trial_id = server.start()
+        touch(server, 2)
+        with monkeypatch.context() as patch:
+            patch.setattr(os, "write", on_full_disk)
+            server.do(CommandName.ABORT)
+            (record,) = wait_for_offer(server)
+            refused = server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id)
+            assert "No space left" in refused.message
+        assert server.loop.unacknowledged() == (record,)
+        path = server.path
+        server.start()
+        assert server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id).ok
+    assert (record.trial_id, len(record.points)) == (trial_id, 2)
+    reading = read_journal(path)
+    assert reading.integrity is Integrity.INTACT
+    assert len(reading.of_kind("attempt")) == 1
+    assert find_unacknowledged(tmp_path) == []
+    assert replay(reading, anywhere).difference is None
+
+
+def test_one_of_two_commands_that_end_a_trial_at_once_does(simulation, tmp_path):
+    """A trainee registers while somebody else aborts: there is one record, of what came first."""
+    kinds = []
+    with Server(simulation, tmp_path) as server:
+        for commands in (
+            (CommandName.REGISTER, CommandName.ABORT, CommandName.ABORT),
+            (CommandName.ABORT, CommandName.REGISTER, CommandName.ABORT),
+        ):
+            trial_id = server.start()
+            touch(server, 15)
+            arguments = {CommandName.ABORT: {"trialId": trial_id}}
+            sent = [server.loop.submit(name, arguments.get(name)) for name in commands]
+            assert [one.result(TIMEOUT_S).ok for one in sent] == [True, False, False]
+            found = [one for one in wait_for_offer(server) if one.trial_id == trial_id]
+            kinds += [type(one) for one in found]
+    assert kinds == [TrialRecord, AbortedTrial]
 
 
 def test_the_truth_about_it_is_revealed_to_nobody(simulation, tmp_path):

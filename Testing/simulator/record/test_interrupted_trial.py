@@ -73,6 +73,11 @@ class Server:
         assert self.do(CommandName.REGISTER).ok
 
 
+def on_full_disk(*_arguments):
+    """Stand in for `os.write`."""
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
 def cut(path, size):
     """Make of a journal what a kill leaves behind."""
     with path.open("r+b") as file:
@@ -276,12 +281,9 @@ def test_a_full_disk_when_the_trial_is_resumed_pauses_it_again(
         server.start()
         server.do(CommandName.CAPTURE)
 
-    def full(*_arguments):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
     with Server(simulation, tmp_path) as server:
         with monkeypatch.context() as patch:
-            patch.setattr(os, "write", full)
+            patch.setattr(os, "write", on_full_disk)
             refused = server.do(CommandName.RESUME)
         assert not refused.ok
         assert "No space left" in refused.message

@@ -303,6 +303,19 @@ def test_a_score_for_another_trial_is_refused(scenario):
     assert "no trial" in trial.do(CommandName.TRIAL_SCORED, trialId=other, **SCORE).message
 
 
+def test_an_abort_that_arrives_late_does_not_end_the_next_trial(scenario):
+    trial = Trial(scenario)
+    trial.start()
+    over = trial.state.trial_id
+    assert trial.do(CommandName.ABORT, trialId=over).ok
+    assert "No trial is running" in trial.do(CommandName.ABORT, trialId=over).message
+    trial.start()
+    trial.touch(1)
+    assert "That trial is over" in trial.do(CommandName.ABORT, trialId=over).message
+    assert (trial.state.phase, len(trial.state.touches)) == (Phase.RUNNING, 1)
+    assert trial.do(CommandName.ABORT, trialId=trial.state.trial_id).ok
+
+
 def test_an_unknown_task_is_refused_with_the_tasks_there_are(scenario):
     reply = Trial(scenario).start(task="task-9")
     assert not reply.ok

@@ -180,8 +180,13 @@ class TrialOffers:
         self._start = 0
 
     def offer_newest(self) -> None:
-        """Offer the trial that was registered last, or the one aborted last where none was."""
-        self._offer(self._unacknowledged()[-1:])
+        """Offer the trial that was registered last, after the aborted ones.
+
+        In a study, a client counts a repeat only if it knows which trials were aborted before.
+        """
+        records = self._unacknowledged()
+        aborted = [record for record in records[:-1] if isinstance(record, AbortedTrial)]
+        self._offer((*aborted[-OFFERS_AT_ONCE:], *records[-1:]))
 
     def repeat(self) -> None:
         """Offer some again, others in the next round, so that none holds up the rest."""

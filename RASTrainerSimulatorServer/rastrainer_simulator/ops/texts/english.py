@@ -88,6 +88,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "is next.",
         # Commands in the wrong phase.
         "no trial": "No trial is running: begin one with StartTask.",
+        "another trial is open": "That trial is over. The one that is open now, {task} of "
+        "{trainee}, was not aborted.",
         "trial is open": "{trainee} is still doing {task}: Register or Abort it before StartTask.",
         "procedure is open": "{trainee} is still at the procedure after {task}: finish or Abort it "
         "before StartTask.",

@@ -188,6 +188,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "{point} ist an der Reihe.",
         # Commands in the wrong phase.
         "no trial": "Es läuft kein Versuch: Beginne einen mit StartTask.",
+        "another trial is open": "Dieser Versuch ist vorbei. Der jetzt offene, {task} von "
+        "{trainee}, wurde nicht abgebrochen.",
         "trial is open": "{trainee} ist noch bei {task}: Register oder Abort vor StartTask.",
         "procedure is open": "{trainee} ist noch bei der Prozedur nach {task}: Beende sie, oder "
         "Abort, vor StartTask.",

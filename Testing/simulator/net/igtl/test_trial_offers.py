@@ -21,16 +21,16 @@ def record(name: str):
 class Collector(Client):
     """A client that keeps the offers it gets."""
 
-    def __init__(self, server: LinkServer, name: str = "TrialCompleted"):
+    def __init__(self, server: LinkServer, *names: str):
         self.offers = []
-        self.name = name
+        self.names = names or ("TrialCompleted",)
         self.server = server
         super().__init__(port=server.port, on_message=self._keep)
         self._say_hello()
 
     def _keep(self, message):
         if message.device == "command":
-            assert message.content.name == self.name
+            assert message.content.name in self.names
             self.offers.append(message.content)
 
     def _say_hello(self):
@@ -57,6 +57,16 @@ def test_trial_is_offered_the_moment_it_is_registered(collector, link_server):
     registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="new"))
     assert collector.after(lambda: link_server.link.publish(registered)) == ["new"]
     assert collector.after(lambda: link_server.link.publish(registered)) == []
+
+
+def test_aborted_trials_are_offered_before_one_that_was_finished_later(link_server):
+    """A client that has just connected would otherwise count a repeat before it knows of both."""
+    aborted = AbortedTrial.from_json(make_aborted())
+    link_server.simulated.unacknowledged = (aborted, record("old"), record("repeat"))
+    registered = at_rest(training=TrainingState(1, Phase.REGISTERED, trial_id="repeat"))
+    with Collector(link_server, "TrialAborted", "TrialCompleted") as collector:
+        offered = collector.after(lambda: link_server.link.publish(registered))
+    assert offered == [aborted.trial_id, "repeat"]
 
 
 def test_trial_is_offered_again_until_it_is_acknowledged(collector, link_server):

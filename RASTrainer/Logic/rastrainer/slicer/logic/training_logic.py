@@ -156,7 +156,7 @@ class TrainingLogic:
         """
         if self.progress.trialId != trialId:
             raise InputError(_("This trial is over. The trial that is open now was not aborted."))
-        self._send(CommandName.ABORT)
+        self._send(CommandName.ABORT, {"trialId": trialId})
 
     def loadScenario(self, folder: str) -> None:
         """Load another scenario into the simulator, between two trials."""

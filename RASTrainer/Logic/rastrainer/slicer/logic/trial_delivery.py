@@ -44,6 +44,7 @@ class DeliveryQueue(Generic[T]):
         accept: Callable[[T], None],
         refusal: str,
         tooMany: str = "",
+        inTurn: bool = True,
     ) -> None:
         """Receive what is delivered from now on.
 
@@ -55,6 +56,8 @@ class DeliveryQueue(Generic[T]):
             accept: is given what that has returned, after the trial was acknowledged.
             refusal: sentence about a trial that was not stored, with a place for its `{error}`.
             tooMany: sentence where too many trials wait; without it nothing is said.
+            inTurn: whether one is stored only after the one before was accepted; otherwise all are
+                stored before whatever is received after them.
         """
         self.problemFound = Signal()
         self._link = link
@@ -64,8 +67,9 @@ class DeliveryQueue(Generic[T]):
         self._accept = accept
         self._refusal = refusal
         self._tooMany = tooMany
+        self._inTurn = inTurn
         self._waiting: deque[Delivery] = deque()
-        self._isStoring = False
+        self._underWay: list[Delivery] = []
         self._lastProblem = ""
         delivered.connect(self._receive)
 
@@ -88,19 +92,20 @@ class DeliveryQueue(Generic[T]):
     def _receive(self, delivery: Delivery) -> None:
         """Queue a delivered trial; what is dropped is offered again."""
         trialId = delivery.get("trialId")
-        if any(waiting.get("trialId") == trialId for waiting in self._waiting):
+        known = (*self._underWay, *self._waiting)
+        if any(each.get("trialId") == trialId for each in known):
             return
-        if len(self._waiting) >= MOST_WAITING:
+        if len(known) >= MOST_WAITING:
             self.report(self._tooMany)
             return
         self._waiting.append(delivery)
         self._storeNext()
 
     def _storeNext(self) -> None:
-        if self._isStoring or not self._waiting:
+        if not self._waiting or (self._underWay and self._inTurn):
             return
-        self._isStoring = True
-        delivery = self._waiting[0]
+        delivery = self._waiting.popleft()
+        self._underWay.append(delivery)
         self._work.do(
             self._store(delivery),
             lambda stored: self._finish(delivery, lambda: self._take(delivery, stored)),
@@ -108,9 +113,7 @@ class DeliveryQueue(Generic[T]):
         )
 
     def _finish(self, delivery: Delivery, conclude: Callable[[], None]) -> None:
-        self._isStoring = False
-        if self._waiting and self._waiting[0] is delivery:
-            self._waiting.popleft()
+        self._underWay = [each for each in self._underWay if each is not delivery]
         try:
             conclude()
         finally:
@@ -134,6 +137,9 @@ class DeliveryQueue(Generic[T]):
 class AbortedTrialsLogic:
     """Stores the aborted trials of a link.
 
+    After a break in the connection, an aborted trial arrives before its repeat. It must be stored
+    before it, too: a repeat counts in a study only once a reason was given for it.
+
     Attributes:
         kept: emits each received `AbortedTrial` when it is in the study.
         problemFound: emits a sentence about one that could not be kept.
@@ -156,6 +162,7 @@ class AbortedTrialsLogic:
             lambda delivery: lambda: self._keep(delivery),
             self.kept.emit,
             _("An aborted trial could not be stored: {error}"),
+            inTurn=False,
         )
         self.problemFound = self._queue.problemFound
 
