@@ -44,7 +44,6 @@ class ServerConnection:
         self._stream: aiohttp.ClientWebSocketResponse | None = None
         self._outgoing: asyncio.Queue[Mapping[str, Any]] = asyncio.Queue()
         self._last_event = 0
-        self._scene_url = ""
 
     def send(self, message: str, /, **members: Any) -> None:
         """Send a message of that type; without a connection what was pressed does not count."""

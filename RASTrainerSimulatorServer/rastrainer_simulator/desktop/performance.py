@@ -40,9 +40,6 @@ class Quality(str, Enum):
         return Quality.MEDIUM if self is Quality.HIGH else Quality.LOW
 
 
-AUTOMATIC = "auto"
-
-
 def first_quality(renderer_name: str) -> Quality:
     """Return what to begin with, by OpenGL's name of the renderer."""
     name = renderer_name.lower()

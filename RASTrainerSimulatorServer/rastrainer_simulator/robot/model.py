@@ -45,11 +45,6 @@ class RobotModel:
     meshes: tuple[MeshPart, ...]
 
     @property
-    def joint_names(self) -> tuple[str, ...]:
-        """The seven joints, from the base to the flange."""
-        return tuple(joint.name for joint in self.joints)
-
-    @property
     def link_names(self) -> tuple[str, ...]:
         """Every link, parents before children."""
         return tuple(link.name for link in self.links)

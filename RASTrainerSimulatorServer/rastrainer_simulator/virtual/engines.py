@@ -17,7 +17,7 @@ from rastrainer_simulator.virtual.worker_pool import (
 Job = TypeVar("Job")
 Result = TypeVar("Result")
 
-PROCESSES, DASK = ENGINES = ("processes", "dask")
+PROCESSES, DASK = "processes", "dask"
 _AS_MANY_ATTEMPTS = {"distributed.scheduler.allowed-failures": ATTEMPTS - 1}
 
 
