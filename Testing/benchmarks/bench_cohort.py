@@ -5,7 +5,7 @@ import os
 import time
 
 from rastrainer.study.protocol.study_protocol import StudyProtocol
-from rastrainer_simulator.virtual.engines import run_jobs
+from rastrainer_simulator.virtual.cohort import run_jobs
 from rastrainer_simulator.virtual.play import PlayedTrial, PlaySettings, play_job
 from rastrainer_simulator.virtual.population import Population, trial_jobs
 from Testing.benchmarks.row import row

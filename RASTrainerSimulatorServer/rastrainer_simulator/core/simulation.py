@@ -41,8 +41,7 @@ from rastrainer_simulator.teleoperation.commanded_motion import (
 )
 from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
 from rastrainer_simulator.training.replies import TrainingReply
-from rastrainer_simulator.training.rules import TouchMoment, refusal
-from rastrainer_simulator.training.touch_stage import touch_stage
+from rastrainer_simulator.training.rules import TouchMoment, refusal, touch_stage
 from rastrainer_simulator.training.training import Training
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, subtract, vector

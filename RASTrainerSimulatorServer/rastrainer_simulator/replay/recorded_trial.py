@@ -33,8 +33,7 @@ from rastrainer_simulator.state import (
     SimulationState,
     TrainingState,
 )
-from rastrainer_simulator.training.rules import TouchMoment
-from rastrainer_simulator.training.touch_stage import touch_stage
+from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.vectors import Vector
 
 AFTER_S = 0.25

@@ -5,8 +5,7 @@ import pytest
 from rastrainer.protocol import Phase, Proximity
 from rastrainer_simulator.registration_state import TouchState
 from rastrainer_simulator.state import TouchStage, TrainingState
-from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
-from rastrainer_simulator.training.touch_stage import touch_stage
+from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings, touch_stage
 
 RUNNING = TrainingState(phase=Phase.RUNNING, next_point="2")
 TOUCHED = TrainingState(

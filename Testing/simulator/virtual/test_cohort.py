@@ -14,8 +14,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, TRUTH, simulate_cohort
-from rastrainer_simulator.virtual.engines import run_jobs
+from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, TRUTH, run_jobs, simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.population import trial_jobs
 from rastrainer_simulator.virtual.scripted_trainee import STUCK_AFTER_S

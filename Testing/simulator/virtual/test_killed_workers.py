@@ -17,8 +17,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.virtual import cohort
-from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, simulate_cohort
-from rastrainer_simulator.virtual.engines import run_jobs
+from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, run_jobs, simulate_cohort
 from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.worker_pool import ATTEMPTS, WorkerDiedError
 from Testing.running_process import runs, started_by

@@ -15,8 +15,7 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import SimulationState, TouchStage, TrainingState
-from rastrainer_simulator.training.rules import TouchMoment
-from rastrainer_simulator.training.touch_stage import touch_stage
+from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, distance, vector
