@@ -183,6 +183,8 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     def onSceneStartClose(self, caller=None, event=None) -> None:
         self.setParameterNode(None)
+        if self.logic is not None:
+            self.logic.session.sceneIsToBeCleared()
 
     def onSceneEndClose(self, caller=None, event=None) -> None:
         if self.logic is not None:

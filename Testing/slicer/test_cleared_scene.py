@@ -9,15 +9,19 @@ import slicer
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.journal.replay_track import find_track
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.logic import head_preview
+from rastrainer.slicer.logic.replay_logic import SLICES_A_TURN
 from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.trial_replay import STATES_A_SLICE, showReplay
+from rastrainer.slicer.scene.urdf import readArmChain
 from rastrainer_simulator.assets import asset_path
-from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
+from Testing.slicer.recorded_trial import URDF, store_trial_on_colin, write_recorded_trial
 
 OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
@@ -92,6 +96,23 @@ def test_a_replay_in_the_next_scene_does_not_stop_where_the_former_was_to(
     browser.SetPlaybackActive(True)
     session.replay.process()
     assert browser.GetPlaybackActive()
+
+
+def test_a_long_replay_in_a_closed_scene_is_let_go_little_by_little(host, session, tmp_path):
+    trial_id = str(uuid.UUID(int=1))
+    write_recorded_trial(tmp_path, trial_id, 60.0)
+    showReplay(host.scene, "T", find_track(tmp_path, trial_id), readArmChain(URDF), np.eye(4))
+    tool = host.scene.GetFirstNodeByName("T: tool sequence")
+    count = tool.GetNumberOfDataNodes()
+    a_turn = SLICES_A_TURN * STATES_A_SLICE
+    assert count > a_turn
+    host.scene.Clear(0)
+    assert tool.GetNumberOfDataNodes() == count
+    session.replay.process()
+    assert 0 < count - tool.GetNumberOfDataNodes() <= a_turn
+    for _turn in range(3 * count // a_turn):
+        session.replay.process()
+    assert tool.GetNumberOfDataNodes() == 0
 
 
 def test_a_head_found_in_a_volume_of_a_closed_scene_is_not_taken_for_that_of_the_next(

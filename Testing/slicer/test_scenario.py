@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import write_head_mesh
@@ -74,6 +75,28 @@ def test_what_another_scenario_has_not_goes(scene, planned, scenario):
     assert findNode(scene, MODEL, Role.SKULL) is None
     assert labelsOf(findNode(scene, FIDUCIALS, Role.TARGET)) == ("center",)
     assert findNode(scene, MODEL, Role.HEAD_MODEL).GetDisplayNode().GetOpacity() == 1.0
+
+
+def test_a_surface_is_shown_as_it_is_to_look_so_that_no_view_draws_it_again(scene, planned):
+    looks = []
+
+    def note(display, _event):
+        if display.GetInputPolyData() is not None:
+            thickness = display.GetSliceIntersectionThickness()
+            looks.append((display.GetID(), display.GetOpacity(), thickness, display.GetColor()))
+
+    @vtk.calldata_type(vtk.VTK_OBJECT)
+    def watch(_scene, _event, node):
+        if node.IsA("vtkMRMLModelDisplayNode"):
+            node.AddObserver(vtk.vtkCommand.ModifiedEvent, note)
+
+    tag = scene.AddObserver(scene.NodeAddedEvent, watch)
+    showScenario(scene, planned)
+    scene.RemoveObserver(tag)
+    head, skull = (findNode(scene, MODEL, role) for role in (Role.HEAD_MODEL, Role.SKULL))
+    assert {look[0] for look in looks} == {head.GetDisplayNodeID(), skull.GetDisplayNodeID()}
+    assert len(set(looks)) == 2
+    assert head.GetDisplayNode().GetVisibility2D()
 
 
 def test_showing_a_scenario_again_adds_no_node(scene, planned):

@@ -231,6 +231,10 @@ class ModuleSession:
             self.work.process()
         return self.work.isBusy
 
+    def sceneIsToBeCleared(self) -> None:
+        """Keep what would take the scene too long to delete at once."""
+        self.replay.keepStates()
+
     def sceneWasCleared(self) -> None:
         """Forget what pointed into the old scene; a trial that runs is shown again."""
         self.layout.forgetScene()

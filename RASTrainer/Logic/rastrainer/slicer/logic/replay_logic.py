@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from rastrainer.slicer.scene.robot_scene import URDF
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.trial_replay import (
     TRIAL_ATTRIBUTE,
+    emptyReplay,
     findReplay,
     goTo,
     isReplayOf,
@@ -35,6 +37,9 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.trial_review import with_progress
 from rastrainer.trial.trial_feedback import TrialFeedback
+
+SLICES_A_TURN = 4
+"""Of the states of a closed scene's replay, which are let go little by little."""
 
 
 class ReplayLogic:
@@ -85,6 +90,7 @@ class ReplayLogic:
         self._known: tuple[str, TrialFeedback | Exception] | None = None
         self._requestedId = ""
         self._until: float | None = None
+        self._outdated: Iterator[None] = iter(())
 
     def feedback(self, trial: StoredTrial) -> TrialFeedback | None:
         """Return the feedback on a trial; None while it is being prepared.
@@ -118,6 +124,10 @@ class ReplayLogic:
         """Forget why there was no feedback: the study or the scenarios may have changed."""
         if self._known is not None and isinstance(self._known[1], Exception):
             self._known = None
+
+    def keepStates(self) -> None:
+        """Keep the states of the replay for now: the scene is about to be cleared."""
+        self._outdated = itertools.chain(self._outdated, emptyReplay(self._scene))
 
     def forgetScene(self) -> None:
         """Forget where the replay is to stop: the scene was cleared."""
@@ -164,6 +174,8 @@ class ReplayLogic:
 
     def process(self) -> None:
         """Stop where the worst touch was made; have feedback asked for that no score has given."""
+        for _slice in itertools.islice(self._outdated, SLICES_A_TURN):
+            pass
         if self._awaitedId and not self._isBeingScored(self._awaitedId):
             self._awaitedId = ""
             self.feedbackFound.emit()

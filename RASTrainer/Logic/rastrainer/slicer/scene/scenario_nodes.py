@@ -42,10 +42,8 @@ def trianglesPolyData(vertices: np.ndarray, triangles: np.ndarray) -> vtk.vtkPol
     surface = vtk.vtkPolyData()
     surface.SetPoints(points)
     surface.SetPolys(cells)
-    normals = vtk.vtkPolyDataNormals()
+    normals = vtk.vtkTriangleMeshPointNormals()
     normals.SetInputData(surface)
-    normals.SplittingOff()
-    normals.ConsistencyOff()
     normals.Update()
     return normals.GetOutput()
 
@@ -110,9 +108,8 @@ def _fillFiducials(node: Any, task: Task) -> None:
 
 def _showHead(scene: Any, scenario: Scenario) -> None:
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL, "Head")
-    if _fill(node, scenario, scenario.head_mesh, SKIN_COLOR):
-        opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
-        node.GetDisplayNode().SetOpacity(opacity)
+    opacity = 1.0 if scenario.skull_mesh is None else SKIN_OPACITY_OVER_SKULL
+    _fill(node, scenario, scenario.head_mesh, SKIN_COLOR, opacity)
 
 
 def _showSkull(scene: Any, scenario: Scenario) -> None:
@@ -120,23 +117,34 @@ def _showSkull(scene: Any, scenario: Scenario) -> None:
         removeNode(scene, "vtkMRMLModelNode", Role.SKULL)
         return
     node = findOrAddNode(scene, "vtkMRMLModelNode", Role.SKULL, "Skull")
-    if _fill(node, scenario, scenario.skull_mesh, SKULL_COLOR):
+    if _fill(node, scenario, scenario.skull_mesh, SKULL_COLOR, 1.0):
         node.SetName("Skull (approximation)" if scenario.is_skull_approximate else "Skull")
 
 
-def _fill(node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float]) -> bool:
+def _fill(
+    node: Any,
+    scenario: Scenario,
+    path: Path,
+    color: tuple[float, float, float],
+    opacity: float,
+) -> bool:
     """Show a mesh of a scenario; return whether it was not shown before."""
     # Called before every trial: the file is read only if it is not shown yet.
     stamp = stampOf(path)
     if isShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp):
         return False
     mesh = read_head_mesh(path)
-    node.SetAndObservePolyData(trianglesPolyData(mesh.vertices, mesh.triangles))
-    noteShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
-    display = node.GetDisplayNode()
+    surface, display = trianglesPolyData(mesh.vertices, mesh.triangles), node.GetDisplayNode()
+    # All at once: at each change every view would cut or draw the surface anew.
+    wasNodeModifying, wasDisplayModifying = node.StartModify(), display.StartModify()
     display.SetColor(color)
+    display.SetOpacity(opacity)
     display.SetVisibility2D(True)
     display.SetSliceIntersectionThickness(OUTLINE_PIXELS)
+    node.SetAndObservePolyData(surface)
+    display.EndModify(wasDisplayModifying)
+    node.EndModify(wasNodeModifying)
+    noteShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
     return True
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,13 @@ from rastrainer.errors import InputError
 from rastrainer.journal.replay_track import ReplayTrack
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
-from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role, findNode, findOrAddNode
+from rastrainer.slicer.scene.scene import (
+    ROLE_ATTRIBUTE,
+    Role,
+    findNode,
+    findOrAddNode,
+    nodesOfClass,
+)
 from rastrainer.slicer.scene.urdf import ArmChain
 
 SAMPLE_HZ = 10.0
@@ -201,16 +208,27 @@ def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None
             scene.RemoveNode(node.GetDisplayNode())
         scene.RemoveNode(node)
         if node.IsA("vtkMRMLSequenceNode"):
-            _empty(node, rest)
+            for _slice in _slicesOf(node):
+                rest(0.0)
 
 
-def _empty(sequence: Any, rest: Callable[[float], None]) -> None:
+def emptyReplay(scene: Any) -> Iterator[None]:
+    """Keep the states of the replay that is in the scene, and let them go in slices, one a step.
+
+    To be called before the scene is closed, which would delete thousands of them at once.
+    """
+    nodes = nodesOfClass(scene, "vtkMRMLSequenceNode")
+    ours = [n for n in nodes if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(_role(""))]
+    return itertools.chain.from_iterable(map(_slicesOf, ours))
+
+
+def _slicesOf(sequence: Any) -> Iterator[None]:
     """Take the states out of a sequence in slices: thousands at once would take too long."""
     count = sequence.GetNumberOfDataNodes()
     for index in reversed(range(count)):
         sequence.RemoveDataNodeAtValue(sequence.GetNthIndexValue(index))
         if index % STATES_A_SLICE == 0:
-            rest(0.0)
+            yield
 
 
 def _rows(times: np.ndarray) -> np.ndarray:
