@@ -55,14 +55,24 @@ def test_the_module_as_it_is_starts_its_timer(host_with):
     assert (host.errors, widget._timer.isActive()) == ([], True)
 
 
-def test_without_the_connector_connecting_says_what_to_install(tmp_path):
+def test_without_the_connector_it_is_said_what_to_install_before_anything_is_downloaded(tmp_path):
     host = Host(tmp_path, connector=False)
     try:
-        host.open()
+        session = host.open().logic.session
+        host.process_events()
+        first, needs_setup = host.text("nextStepText"), session.simulator.needsSetup
+        with pytest.raises(AssertionError, match="nextStepButton is disabled"):
+            host.press("nextStepButton")
+        is_set_up = session.simulator.setup.isRunning
         host.press("connectButton")
         told = host.text("stateText") + host.text("remedyText")
     finally:
         host.close()
+    assert (needs_setup, is_set_up) == (True, False)
+    assert first == (
+        "The extension SlicerOpenIGTLink is not installed. Install it in the Extensions Manager "
+        "and restart Slicer."
+    )
     assert "SlicerOpenIGTLink" in told
     assert host.errors == []
 

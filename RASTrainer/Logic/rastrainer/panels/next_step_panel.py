@@ -19,7 +19,7 @@ from rastrainer.panels.widgets import (
     setUsable,
 )
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.heartbeat import LinkState, notInstalled
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
 from rastrainer.slicer.translation import _
@@ -134,7 +134,8 @@ class NextStepPanel:
         session, ui = self._session, self._ui
         simulator, trial, study = session.simulator, session.training.progress, self._studyStep
         return WorkflowState(
-            link=session.link.status,
+            # It is said at once, before a simulator is downloaded that could not be connected to.
+            link=session.link.status if session.link.isInstalled else notInstalled(),
             program=simulator.program.state,
             programSentence=simulator.program.sentence,
             needsSetup=self._needsSetup and not ui.programPathLineEdit.currentPath,

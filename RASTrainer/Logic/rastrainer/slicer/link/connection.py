@@ -93,6 +93,11 @@ class SlicerConnection:
         self._heartbeatTime: int | None = None
 
     @property
+    def isInstalled(self) -> bool:
+        """Whether there is what makes a connector, whoever wants to connect."""
+        return self._findKit() is not None
+
+    @property
     def status(self) -> LinkStatus:
         """How the connection is, in words."""
         if self._address is not None and self.kit is None:

@@ -107,6 +107,11 @@ class Link:
         return self._status
 
     @property
+    def isInstalled(self) -> bool:
+        """Whether the extension is installed that brings the connector."""
+        return self._connection.isInstalled
+
+    @property
     def isOpen(self) -> bool:
         """Whether there is a connection."""
         return self._connection.isOpen
