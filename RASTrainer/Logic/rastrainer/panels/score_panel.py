@@ -51,6 +51,7 @@ class ScorePanel:
         self._work = CancelableWork(self._showMessage, self._showProgress, self._showUsable)
         self._newTrial = ""
         self._worst = ""
+        self._named: str | None = None
         ui.trialComboBox.connect("activated(int)", self._showTrial)
         ui.showTablesButton.connect("clicked()", self.showTables)
         ui.exportScoresButton.connect("clicked()", self.exportScores)
@@ -151,6 +152,7 @@ class ScorePanel:
         try:
             history = self._trainees.history()
         except InputError as error:
+            self._named = None
             self._showMessage(str(error))
             return
         entries = [(_entry(n, t), t.record.trial_id) for n, t in enumerate(history, start=1)]
@@ -172,6 +174,7 @@ class ScorePanel:
             trial = self._trial()
             beside = [] if trial is None else self._standings(trial)
         except InputError as error:
+            self._named = None
             self._showMessage(str(error))
             return
         scores = [] if trial is None else scoreRows(trial)
@@ -190,6 +193,15 @@ class ScorePanel:
             ((row.title, row.text) for row in motion),
             [row.note for row in motion],
         )
+        self._nameTrial(trial)
+        self._showFeedback()
+
+    def _nameTrial(self, trial: StoredTrial | None) -> None:
+        """Say which trial is shown, once: what is said of an export or a report stays."""
+        named = "" if trial is None else trial.record.trial_id
+        if named == self._named:
+            return
+        self._named = named
         self._showMessage(
             _("Choose a trainee with a scored trial.")
             if trial is None
@@ -197,7 +209,6 @@ class ScorePanel:
                 trainee=trial.record.trainee, task=trial.record.task, mode=trial.record.mode
             )
         )
-        self._showFeedback()
 
     def _showFeedback(self) -> None:
         """Show the feedback on the trial when it is known."""
