@@ -61,6 +61,7 @@ def state_text(**changes):
         "tick": 1,
         "time": 0.0,
         "poses": poses,
+        "ghost": None,
         "touch": "far",
         "clearanceMm": 50.0,
         "camera": "close-up",
@@ -103,7 +104,7 @@ def glb() -> bytes:
     return make_glb()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def gl_window():
     from rastrainer_simulator.desktop.gl_window import GlWindow
 
