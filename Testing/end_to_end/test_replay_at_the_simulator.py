@@ -1,7 +1,11 @@
-"""A trial that was played and scored over OpenIGTLink, shown again by the simulator's process."""
+"""A trial that was played and scored over OpenIGTLink, shown again by the simulator's process.
+
+First by itself, then as the ghost beside the arm in the next trial.
+"""
 
 from __future__ import annotations
 
+import math
 import secrets
 
 import numpy as np
@@ -9,6 +13,7 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
+from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
@@ -24,7 +29,8 @@ REGISTRATION = {
     "freMm": 1.25,
     "expectedTreMm": 1.5,
 }
-SCORE = {"score": 81.0}
+DETAILS = {"isAccurate": True, "isUnbiased": True, "isSafe": True, "scoreVersion": SCORE_VERSION}
+SCORE = {"score": 81.0, "details": DETAILS}
 
 
 @pytest.fixture
@@ -34,6 +40,9 @@ def key():
 
 @pytest.fixture
 def simulator(tmp_path, key):
+    config = tmp_path / "records-config"
+    config.mkdir()
+    (config / "preferences.json").write_text('{"order": "any", "ghost": "own best"}')
     with ViewedSimulator(tmp_path / "records", *SPEED, key=key) as simulator:
         yield simulator
 
@@ -66,8 +75,12 @@ def shown(view):
     return view.screen.menu and view.screen.menu.name
 
 
-@pytest.mark.usefixtures("slicer")
-def test_all_views_see_the_trial_again_and_then_the_arm_and_the_journal_stays(tmp_path, views):
+def ghost_tip(view):
+    """Return where the tip of the ghost is, World, m."""
+    return view.state["ghost"]["tool"][:3]
+
+
+def test_all_views_see_the_trial_again_then_the_arm_and_then_its_ghost(tmp_path, views, slicer):
     (journal,) = (tmp_path / "records").glob("*.journal")
     before = journal.read_bytes()
     (client, first), (_, second) = views
@@ -81,4 +94,15 @@ def test_all_views_see_the_trial_again_and_then_the_arm_and_the_journal_stays(tm
     for view in (first, second):
         wait_until(lambda view=view: shown(view) == "result", "the result again")
         wait_until(lambda view=view: view.state["phase"] == "scored", "the arm")
+    task = {"task": "task-1", "trainee": "P07", "mode": "desktop"}
+    assert slicer.send_command("StartTask", task, timeout=20).ok
+    for view in (first, second):
+        wait_until(lambda view=view: view.state["ghost"] is not None, "the ghost")
+        assert view.state["ghost"].keys() == {"link_7", "tool"}
+        begin = ghost_tip(view)
+        wait_until(
+            lambda view=view, begin=begin: math.dist(ghost_tip(view), begin) > 0.02, "its way"
+        )
+    assert slicer.send_command("Abort", timeout=20).ok
+    wait_until(lambda: first.state["ghost"] is None, "its end")
     assert journal.read_bytes() == before

@@ -1,4 +1,4 @@
-"""How a touch is going, as the page draws it: red is kept for what is wrong."""
+"""What the page draws of a state: how a touch is going, and the ghost beside the arm."""
 
 from __future__ import annotations
 
@@ -16,12 +16,14 @@ DRAW = """
 (changes) => {
   const state = { ...page.state, ...changes };
   page.isDue = true;
+  page.ghost.put(state.time, state.ghost, 1);
   page.drawFlat(page.flat, 1, page.stage.model, state);
   return {
     ring: page.ring.mesh.visible ? page.ring.mesh.scale.x : 0,
     color: page.ring.material.color.getHex(),
     tip: page.stage.model.tip.color.getHex(),
     isFramed: !document.getElementById("contact").hidden,
+    ghost: page.ghost.doubles.map((double) => double.position.toArray()),
   };
 }
 """
@@ -53,3 +55,10 @@ def test_tip_ring_and_frame_are_red_only_where_a_touch_goes_wrong(draw):
 def test_the_ring_closes_as_the_tip_comes_nearer(draw):
     radii = [draw(touch="near", clearanceMm=clearance)["ring"] for clearance in (20.0, 10.0, 0.0)]
     assert radii == pytest.approx([0.025, 0.015, 0.005])
+
+
+def test_a_ghost_is_where_the_stream_says_and_goes_when_it_ends(draw):
+    assert draw()["ghost"] == []
+    poses = {"link_7": [0.4, 0.1, 0.7, 0, 0, 0, 1], "tool": [0.4, 0.1, 0.5, 0, 0, 0, 1]}
+    assert draw(ghost=poses)["ghost"] == [pytest.approx(pose[:3]) for pose in poses.values()]
+    assert draw()["ghost"] == []

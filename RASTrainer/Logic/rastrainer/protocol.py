@@ -124,6 +124,18 @@ class Guidance(str, Enum):
     NONE = "none"
 
 
+class GhostRule(str, Enum):
+    """Which earlier trial of the same task is shown beside the arm.
+
+    `OWN`: the trainee's own best acceptable one. `EXPERT`: that of the expert whom the simulator's
+    settings name.
+    """
+
+    OFF = "off"
+    OWN = "own best"
+    EXPERT = "expert"
+
+
 class TutorialRule(str, Enum):
     """Whether the tutorial comes before the trial run.
 
@@ -286,6 +298,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "minutes": Argument(number(0, 43_200, "min"), 0.0),
         "over": Argument(number(0, 43_200, "min"), 0.0),
         "guidance": Argument(one_of(*(choice.value for choice in Guidance)), ""),
+        "ghost": Argument(one_of(*(rule.value for rule in GhostRule)), ""),
         "procedure": Argument(text(40, 0), ""),
         "tutorial": Argument(one_of(*(rule.value for rule in TutorialRule)), ""),
     },

@@ -17,6 +17,7 @@ from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
 from rastrainer_simulator.net.views.screen import Screen
 
 STATE_MEMBERS = (
+    "ghost",
     "tick",
     "phase",
     "touch",

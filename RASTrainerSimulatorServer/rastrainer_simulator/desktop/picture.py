@@ -141,6 +141,7 @@ class Picture:
             return
         if _differs(state, self._drawn_state):
             self._scene.place(state["poses"])
+            self._scene.place_ghost(state["ghost"])
             self._must_draw = True
         self._drawn_state = state
         self._choose_camera(state, now)
@@ -216,5 +217,5 @@ class Picture:
 
 def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
     """Return whether two states look different."""
-    names = ("poses", "touch", "next", "touched", "camera", "view", "inset")
+    names = ("poses", "ghost", "touch", "next", "touched", "camera", "view", "inset")
     return other is None or any(state[name] != other[name] for name in names)

@@ -13,6 +13,8 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
 from rastrainer_simulator.desktop.glb_parts import Finish, Part
 from rastrainer_simulator.desktop.plain_light import AMBIENT, DIFFUSE, lit_colors
 from rastrainer_simulator.scene.nodes import (
+    GHOST,
+    GHOST_OPACITY,
     NEXT,
     TIP_ERROR,
     TIP_FREE,
@@ -94,9 +96,12 @@ class ShownScene:
         self.poses: dict[str, np.ndarray] = {}
         self._still: dict[str, list[tuple[vtkActor, Part]]] = {body: [] for body in STILL_BODIES}
         self._is_physical = is_physical
+        self._ghost = _Ghost()
         for part in parts:
             actor = self._actor(part)
             self.actors.append(actor)
+            if part.body and part.body not in STILL_BODIES:
+                self.actors.append(self._ghost.add(part.body, actor))
             self._finishes[actor] = part.finish
             if part.body in STILL_BODIES and not part.finish.is_glowing:
                 self._still[part.body].append((actor, part))
@@ -128,6 +133,10 @@ class ShownScene:
             self._matrices[body].DeepCopy(matrix.ravel().tolist())
             if is_turned:
                 self._light_still(body)
+
+    def place_ghost(self, poses: Mapping[str, Sequence[float]] | None) -> None:
+        """Show a ghost of some bodies, their poses as of `place`; None for none."""
+        self._ghost.place(poses or {})
 
     def _light_still(self, body: str) -> None:
         """Compute the plain light of a body that does not move once, not for each pixel.
@@ -187,6 +196,39 @@ class ShownScene:
         if part.body:
             actor.SetUserMatrix(self._matrices[part.body])
         return actor
+
+
+class _Ghost:
+    """Translucent doubles of what moves, hidden until they are placed."""
+
+    def __init__(self) -> None:
+        self._actors: dict[str, list[vtkActor]] = defaultdict(list)
+        self._matrices: dict[str, vtkMatrix4x4] = defaultdict(vtkMatrix4x4)
+
+    def add(self, body: str, real: vtkActor) -> vtkActor:
+        """Return the double of an actor of a body."""
+        double = vtkActor()
+        double.SetMapper(real.GetMapper())
+        double.SetUserMatrix(self._matrices[body])
+        double.VisibilityOff()
+        target = double.GetProperty()
+        target.BackfaceCullingOn()
+        target.SetInterpolationToPhong()
+        target.SetColor(*GHOST.color)
+        target.SetAmbient(AMBIENT)
+        target.SetDiffuse(DIFFUSE)
+        target.SetOpacity(GHOST_OPACITY)
+        self._actors[body].append(double)
+        return double
+
+    def place(self, poses: Mapping[str, Sequence[float]]) -> None:
+        """Show the bodies that have a pose, and only those."""
+        for body, actors in self._actors.items():
+            pose = poses.get(body)
+            if pose is not None:
+                self._matrices[body].DeepCopy(pose_matrix(pose).ravel().tolist())
+            for actor in actors:
+                actor.SetVisibility(pose is not None)
 
 
 def pose_matrix(pose: Sequence[float]) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, Phase
+from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Phase
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.replay import ReplayPage
@@ -22,7 +22,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import feedback_event, touch_feedback
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LocalizedText
-from rastrainer_simulator.record.view_report import GuidanceReport
+from rastrainer_simulator.record.view_report import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 
@@ -97,6 +97,8 @@ class Flow:
         if training.result is not self._seen_result:
             self._seen_result = training.result
             session.history.changed(training.trainee, training.trial_id)
+        if session.ghost.has_just_loaded():
+            self._note_ghost()
         if session.pages.top is not None:
             session.pages.advance(dt)
         elif session.tutorial is not None:
@@ -248,10 +250,19 @@ class Flow:
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
             session.view.begin(session.setup, truth, session.state)
+            session.begin_ghost(truth.head_to_world)
             session.trainee = training.trainee
             session.mode = training.mode
         if training.phase is Phase.COMPLETE and training.task == TRIAL_RUN:
             session.note_done()
+
+    def _note_ghost(self) -> None:
+        """Have the journal say that a ghost is shown from now on, or the trainee that none is."""
+        session = self._session
+        if session.ghost.rule is GhostRule.OFF:
+            session.notice(session.texts.say("ghost.none"))
+        elif session.has_open_trial:
+            self._control_loop.note_display(GhostReport(session.ghost.rule.value))
 
     def _link_warnings(self) -> tuple[ScreenMessage, ...]:
         """Warn that the connection to Slicer was lost, once there was one."""

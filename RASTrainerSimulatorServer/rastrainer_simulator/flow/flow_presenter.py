@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 
+import numpy as np
+
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.operated_view import OperatedView
@@ -87,6 +89,7 @@ class FlowPresenter:
         self._unsubscribe()
         self._flow.close()
         self._session.view.close()
+        self._session.ghost.close()
         self.shown.close()
         self._control_loop.hold_sticks(HANDS_OFF)
 
@@ -106,6 +109,10 @@ class FlowPresenter:
     def pictures(self, now: SimulationState) -> Pictures:
         """Return where the pictures of a state are looked from."""
         return self._view.pictures(now)
+
+    def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
+        """Return where the ghost beside the arm is; None where none is shown."""
+        return None if self._flow.playback is not None else self._session.ghost.poses(now)
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control."""

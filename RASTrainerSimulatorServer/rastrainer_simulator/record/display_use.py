@@ -1,4 +1,4 @@
-"""The display that the trainee used during a trial, and how smooth it was."""
+"""What the trainee saw during a trial: the display, how smooth it was, and the aids on it."""
 
 from __future__ import annotations
 
@@ -43,10 +43,11 @@ class DisplayUse:
 
     Attributes:
         guidance: how the trainee is guided to the next point; "" where no screen shows it.
+        ghost: which earlier trial was shown beside the arm; "" for none.
     """
 
     def __init__(self) -> None:
-        self.guidance = ""
+        self.guidance = self.ghost = ""
         self._last: DisplayReport | None = None
         self._shown = 0
         self._dropped = 0
@@ -58,15 +59,16 @@ class DisplayUse:
         self._dropped += report.dropped
 
     def summary(self) -> dict[str, str | float]:
-        """Return `display` of the trial's record: the last view, all frames, and the guidance."""
-        guidance = {"guidance": self.guidance} if self.guidance else {}
+        """Return `display` of the trial's record: the last view, all frames, and the aids."""
+        aids = {"guidance": self.guidance, "ghost": self.ghost}
+        shown = {name: aid for name, aid in aids.items() if aid}
         if self._last is None:
-            return {**guidance}
+            return {**shown}
         device = {"device": self._last.device} if self._last.device else {}
         return {
             "kind": self._last.view,
             **device,
-            **guidance,
+            **shown,
             "refreshHz": self._last.refresh_hz,
             "shownFrames": self._shown,
             "droppedFrames": self._dropped,

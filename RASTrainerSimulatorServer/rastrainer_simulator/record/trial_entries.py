@@ -24,7 +24,7 @@ from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
 from rastrainer_simulator.record.procedure_entries import procedure_record
 from rastrainer_simulator.record.recorded_setup import versions
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
-from rastrainer_simulator.record.view_report import GuidanceReport, NotedReport
+from rastrainer_simulator.record.view_report import GhostReport, GuidanceReport, NotedReport
 from rastrainer_simulator.state import (
     Event,
     EventKind,
@@ -140,6 +140,8 @@ class TrialEntries:
                 entries._display.add(DisplayReport.of(entry))
             elif entry["kind"] == "guidance":
                 entries._display.guidance = entry["guidance"]
+            elif entry["kind"] == "ghost":
+                entries._display.ghost = entry["ghost"]
         entries._append(
             {
                 "kind": "continued",
@@ -196,6 +198,8 @@ class TrialEntries:
             self._display.add(report)
         elif isinstance(report, GuidanceReport):
             self._display.guidance = report.guidance
+        elif isinstance(report, GhostReport):
+            self._display.ghost = report.ghost
         self._append(report.entry() | stamp(state.tick, state.sim_time))
 
     def _append(self, entry: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""What a trial's journal notes of its view, its guidance, and the tutorial before it."""
+"""What a trial's journal notes of its view, its aids, and the tutorial before it."""
 
 from __future__ import annotations
 
@@ -52,5 +52,19 @@ class GuidanceReport:
         return {"kind": "guidance", "guidance": self.guidance}
 
 
-NotedReport = DisplayReport | ViewReport | GuidanceReport | TutorialOutcome
+@dataclass(frozen=True)
+class GhostReport:
+    """Which earlier trial is shown beside the arm in this trial: "own best" or "expert".
+
+    Not by its UUID: a trainee who is deleted leaves no trace in others' journals.
+    """
+
+    ghost: str
+
+    def entry(self) -> dict[str, Any]:
+        """Return what goes into the journal, without its times."""
+        return {"kind": "ghost", "ghost": self.ghost}
+
+
+NotedReport = DisplayReport | ViewReport | GuidanceReport | GhostReport | TutorialOutcome
 """What is noted of how a trial is seen and prepared; the simulation does not depend on it."""

@@ -15,6 +15,7 @@ from vtkmodules.vtkRenderingOpenGL2 import (
     vtkSequencePass,
     vtkShadowMapPass,
     vtkSSAOPass,
+    vtkTranslucentPass,
 )
 
 AMBIENT = 0.55
@@ -111,6 +112,7 @@ def _passes(shadows: Shadows) -> vtkRenderPass:
     steps = vtkRenderPassCollection()
     steps.AddItem(cast.GetShadowMapBakerPass())
     steps.AddItem(cast)
+    steps.AddItem(vtkTranslucentPass())
     sequence = vtkSequencePass()
     sequence.SetPasses(steps)
     camera = vtkCameraPass()

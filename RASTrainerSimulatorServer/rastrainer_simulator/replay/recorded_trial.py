@@ -8,8 +8,6 @@ from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.replay_track import RecordedEvent, ReplayTrack, read_track
@@ -115,22 +113,14 @@ class RecordedTrial:
 
     def state_at(self, time_s: float) -> SimulationState:
         """Return the state at a time."""
-        trajectory = self._track.trajectory
-        times = trajectory.times_s
-        after = min(max(1, int(np.searchsorted(times, time_s, side="right"))), len(times) - 1)
-        begin, end = times[after - 1 : after + 1]
-        share = float(np.clip((time_s - begin) / (end - begin), 0.0, 1.0))
-
-        def between(rows: np.ndarray) -> np.ndarray:
-            return (1.0 - share) * rows[after - 1] + share * rows[after]
-
-        q = tuple(between(self._track.q).tolist())
+        track, trajectory = self._track, self._track.trajectory
+        q = tuple(track.at(time_s, track.q).tolist())
         poses = self._kinematics.links(q)
         depth = trajectory.depth_mm
         # What happened in the first tick is seen from the beginning.
         now = self._situations[max(0, bisect.bisect_right(self._event_times, time_s) - 1)]
-        clearance = float(between(trajectory.clearance_mm)) / MM_PER_M
-        depth_m = 0.0 if depth is None else float(between(depth)) / MM_PER_M
+        clearance = float(track.at(time_s, trajectory.clearance_mm)) / MM_PER_M
+        depth_m = 0.0 if depth is None else float(track.at(time_s, depth)) / MM_PER_M
         tip = tuple(poses[self._tip][:3, 3].tolist())
         return SimulationState(
             tick=self._start_tick + round(time_s / self._tick_s),
@@ -149,7 +139,7 @@ class RecordedTrial:
             camera=now.camera,
             planned_target=now.planned_target,
             depth=depth_m,
-            feed=self._feed(now.training, float(between(self._track.feed_mm)) / MM_PER_M),
+            feed=self._feed(now.training, float(track.at(time_s, track.feed_mm)) / MM_PER_M),
             # The journal has one clearance for the whole tool: a contact counts as the tip's.
             touch=touch_stage(
                 TouchMoment(time_s, tip, clearance, depth_m),

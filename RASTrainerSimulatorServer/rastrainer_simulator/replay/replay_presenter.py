@@ -177,6 +177,9 @@ class ReplayPresenter:
         self._view.use(now.camera)
         return Pictures(self._view.pose(self._playback.setup.scenario.cameras[now.camera]))
 
+    def ghost(self, now: SimulationState) -> None:
+        """A recorded trial has none beside it."""
+
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:  # noqa: ARG002
         """Turn the view."""
         camera = self._playback.setup.scenario.cameras[self._playback.latest.camera]

@@ -28,6 +28,7 @@ _NOT_SIMULATED = frozenset(
         "display",
         "view",
         "guidance",
+        "ghost",
         "tutorial",
         "stopped",
         "attempt",

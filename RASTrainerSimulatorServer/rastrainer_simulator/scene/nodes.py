@@ -58,6 +58,9 @@ MARK_RIM = Material("rim", (0.97, 0.97, 0.97), glowing=True)
 NUMBER = Material("number", (0.07, 0.09, 0.16), glowing=True)
 ARROW = Material("arrow", (0.16, 0.22, 0.38), glowing=True)
 
+GHOST = Material("ghost", (0.50, 0.34, 0.90))
+GHOST_OPACITY = 0.45
+
 
 def painted(color: Sequence[float]) -> Material:
     """Return the coating of a robot part: the color its URDF names, a little glossy."""

@@ -6,6 +6,7 @@ import { EnterButton } from "./enter_button";
 import { ErrorArrows } from "./error_arrows";
 import { FlatView } from "./flat_view";
 import { FrameCount } from "./frame_count";
+import { Ghost } from "./ghost";
 import { Gamepads } from "./gamepads";
 import { Keyboard } from "./keyboard";
 import { isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "./messages";
@@ -42,6 +43,7 @@ export class Page {
   private readonly arrow = new TargetArrow();
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
   private readonly errors = new ErrorArrows();
+  private readonly ghost = new Ghost();
   private readonly loading = new Loading();
   private readonly enter = new EnterButton((session) => void this.enterHeadset(session));
   private headset: Headset | null = null;
@@ -163,7 +165,9 @@ export class Page {
   }
 
   private takeState(state: StateNews): void {
-    this.poses.put(state.time, state.poses, performance.now() / 1000);
+    const now = performance.now() / 1000;
+    this.poses.put(state.time, state.poses, now);
+    this.ghost.put(state.time, state.ghost, now);
     this.state = state;
     this.isDue = true;
   }
@@ -214,7 +218,7 @@ export class Page {
     if (this.errors.show(this.screen?.errors ?? [], model.root)) this.isDue = true;
     if (this.headset !== null) {
       if (frame === undefined) return;
-      this.poses.place(model.bodies, performance.now() / 1000);
+      this.place(model);
       model.mark(state);
       model.pulse(now);
       this.ring?.show(model, state, stage.renderer.xr.getCamera(), this.screen?.menu == null);
@@ -225,13 +229,19 @@ export class Page {
     }
   }
 
+  private place(model: SceneModel): void {
+    const now = performance.now() / 1000;
+    this.poses.place(model.bodies, now);
+    this.ghost.show(model, now);
+  }
+
   private drawFlat(flat: FlatView, now: number, model: SceneModel, state: StateNews): void {
     if (this.screen?.menu == null) this.mouse.tell();
     flat.choose(state, now);
     const hasMoved = flat.fit() || flat.advance(now) || this.isDue;
     if (!model.pulse(now) && !hasMoved) return;
     this.isDue = false;
-    this.poses.place(model.bodies, performance.now() / 1000);
+    this.place(model);
     model.mark(state);
     const isWorking = this.screen?.menu == null;
     const inset = isWorking ? flat.insetName : "";

@@ -107,6 +107,8 @@ export interface StateNews {
   readonly tick: number;
   readonly time: number;
   readonly poses: readonly (readonly number[])[];
+  /** Poses by body of an earlier trial that moves beside the arm; null without one. */
+  readonly ghost: Readonly<Record<string, readonly number[]>> | null;
   readonly clearanceMm: number;
   readonly touch: TouchStage;
   readonly camera: string;

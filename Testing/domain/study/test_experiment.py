@@ -189,20 +189,24 @@ def test_a_protocol_may_set_the_pass_mark():
         protocol(scoring=shipped["scoring"] | {"passMark": 0})
 
 
-def test_a_protocol_may_set_the_guidance_to_the_next_point(study):
-    assert "guidance" not in protocol().to_json()
-    own = protocol(guidance="arrow")
+def test_a_protocol_may_set_the_guidance_to_the_next_point_and_a_ghost(study):
+    assert not {"guidance", "ghost"} & protocol().to_json().keys()
+    own = protocol(guidance="arrow", ghost="own best")
     assert study_protocol_from_json(json.loads(protocol_text(own))) == own
     progress = StudyProgress(study)
     progress.set_protocol(own)
     progress.enroll("T001")
     progress.skip("T001", "hmd/before/ssq", "questionnaire sheets were missing")
     step = StudyStep.of("T001", progress.progress("T001"), datetime.now(timezone.utc))
-    assert (step.kind, step.guidance) == ("trial-run", "arrow")
+    assert (step.kind, step.guidance, step.ghost) == ("trial-run", "arrow", "")
+    ghosts = {step.ghost for step in steps_for(own, 0) if step.kind is StepKind.TRIAL}
+    assert ghosts == {"own best"}
     arguments = check_arguments(CommandName.STUDY_STEP, step.arguments())
     assert StudyStep.from_arguments(arguments) == step
     with pytest.raises(InputError, match="guidance must be one of fading, words, arrow, none"):
         protocol(guidance="loud")
+    with pytest.raises(InputError, match="ghost must be one of off, own best, expert"):
+        protocol(ghost="all")
 
 
 def test_a_protocol_may_require_the_tutorial_before_each_trial_run_or_skip_it():

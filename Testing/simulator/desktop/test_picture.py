@@ -14,6 +14,7 @@ from rastrainer_simulator.desktop.performance import Quality, first_quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.read_png import read_png
 from Testing.simulator.desktop.conftest import (
@@ -29,6 +30,7 @@ from Testing.simulator.desktop.conftest import (
 
 BLUE, RED = ((0, 40, 200), (60, 120, 255)), ((220, 0, 0), (255, 70, 70))
 WHITE, ON_SKIN = ((245, 245, 245), (255, 255, 255)), ((55, 200, 120), (65, 207, 132))
+VIOLET = (95, 60, 150), (190, 160, 255)
 GREEN, YELLOW = ((10, 130, 40), (70, 190, 100)), ((220, 170, 0), (255, 255, 215))
 
 
@@ -120,6 +122,29 @@ def test_the_tool_is_where_the_stream_says(show):
     assert after[1] - before[1] == pytest.approx(0.05 * pixels_a_meter, rel=0.1)
 
 
+GHOST = {"tool": (0.12, -0.15, -0.05, 0, 0, 0, 1)}
+
+
+def changed_by_ghost(before, after):
+    """Return where two pictures differ, and the mean of the second there."""
+    places = np.argwhere(np.abs(main_view(after) - main_view(before)).max(axis=2) > 8)
+    return places, main_view(after)[tuple(places.T)].mean(axis=0)
+
+
+def test_a_ghost_is_seen_through_beside_the_tool_and_goes_when_it_ends(show):
+    alone, both, after = (show(ghost=ghost, next=None) for ghost in (None, GHOST, None))
+    places, (red, green, blue) = changed_by_ghost(alone, both)
+    pixels_a_meter = SIZE[1] / (2 * 0.65 * np.tan(np.radians(15)))
+    beside = found(main_view(both), BLUE).mean(axis=0) + pixels_a_meter * np.array([0.1, 0.12])
+    np.testing.assert_allclose(places.mean(axis=0), beside, atol=4)
+    assert blue > red > green
+    behind = main_view(alone)[tuple(places.T)].mean(axis=0)
+    solid = 255 * np.array(nodes.GHOST.color)
+    share = np.linalg.norm([red, green, blue] - behind) / np.linalg.norm(solid - behind)
+    assert share == pytest.approx(nodes.GHOST_OPACITY, abs=0.2)
+    np.testing.assert_array_equal(after, alone)
+
+
 def test_only_an_error_frames_the_whole_picture_in_red(show):
     edges = {"top": (1, 480), "bottom": (-2, 300), "left": (270, 1), "right": (300, -2)}
     calm, alarmed = show(touch="on skin"), show(touch="too deep")
@@ -200,13 +225,15 @@ def test_a_lost_connection_is_told(show, picture, gl_window, inbox):
 
 
 def test_a_kept_picture_shows_the_same_in_the_best_light(show, inbox, tmp_path):
-    plain = show()
+    plain = show(ghost=GHOST)
     path = tmp_path / "pictures" / "kept.png"
     asyncio.run(save_screenshot(Screenshot.of(inbox, path, SIZE, Quality.HIGH)))
     best = read_png(path).astype(int)
     assert np.abs(best - plain).mean() > 3
     tips = [found(main_view(pixels), BLUE).mean(axis=0) for pixels in (plain, best)]
     assert np.abs(tips[0] - tips[1]).max() < 2
+    ghosts = [found(pixels[280:380, 620:720], VIOLET).mean(axis=0) for pixels in (plain, best)]
+    assert np.abs(ghosts[0] - ghosts[1]).max() < 8
 
 
 def test_a_picture_that_cannot_be_kept_is_told_in_one_sentence(show, inbox, tmp_path):

@@ -20,11 +20,11 @@ TRAINEE = "P07"
 SCORES = (38.0, 52.4, 47.0, 66.6, 71.0, 69.0, 88.0)
 
 
-def write_scored(folder, number, *scores, version=SCORE_VERSION, **changes) -> Path:
+def write_scored(folder, number, *scores, version=SCORE_VERSION, is_safe=True, **changes) -> Path:
     """Write the journal of a trial that was scored as often as there are scores."""
     trial_id = str(uuid.UUID(int=number))
     record = TrialRecord.from_json(make_record(trialId=trial_id, trainee=TRAINEE, **changes))
-    details = {"isAccurate": True, "isUnbiased": True, "isSafe": True}
+    details = {"isAccurate": True, "isUnbiased": True, "isSafe": is_safe}
     details |= {"scoreVersion": version} if version else {}
     told = [{"trialId": trial_id, "score": score, "details": details} for score in scores]
     registered = {"kind": "registered", "record": record.to_json()}

@@ -30,6 +30,15 @@ def test_stepping_goes_through_every_option_and_each_is_saved(tmp_path, name):
     assert preferences.stepped(name, 1).stepped(name, -1) == preferences
 
 
+def test_the_experts_id_is_read_and_kept(tmp_path):
+    path = tmp_path / "preferences.json"
+    path.write_text('{"expert": "E01", "ghost": "expert"}')
+    preferences = read_preferences(path)
+    assert (preferences.expert, preferences.ghost) == ("E01", "expert")
+    write_preferences(path, preferences.stepped("language", 1))
+    assert read_preferences(path).expert == "E01"
+
+
 def test_the_defaults_leave_the_simulation_as_it_is():
     assert Preferences().applied_to(SimulationSettings()) == SimulationSettings()
 
@@ -54,6 +63,7 @@ def test_every_way_to_steer_the_tool_can_be_chosen():
         ('{"muted": 1}', "muted must be one of false, true"),
         ('{"language": ["de"]}', 'language must be one of "en", "de"'),
         ("{", "is not JSON"),
+        ('{"expert": 7}', "expert must be printable text of 0 to 64 characters"),
     ],
 )
 def test_what_is_no_option_is_refused_with_a_sentence(tmp_path, content, sentence):

@@ -38,6 +38,16 @@ def test_only_scores_of_the_mode_and_of_the_present_version_are_compared(tmp_pat
     assert history.trend("P08", "desktop") == ()
 
 
+def test_the_best_acceptable_trials_of_a_task_come_first(tmp_path, history_of):
+    second = write_scored(tmp_path, 1, 60.0)
+    best = write_scored(tmp_path, 2, 50.0, 75.0, mode="hmd")
+    write_scored(tmp_path, 3, 90.0, task="task-2")
+    write_scored(tmp_path, 4, 95.0, version="2")
+    write_scored(tmp_path, 5, 80.0, is_safe=False)
+    assert history_of().best(TRAINEE, "task-1") == (best, second)
+    assert history_of().best("P08", "task-1") == ()
+
+
 def test_a_failure_by_aborting_counts_for_the_competence_though_it_has_no_score(
     tmp_path, history_of
 ):

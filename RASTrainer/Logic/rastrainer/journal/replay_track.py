@@ -57,6 +57,14 @@ class ReplayTrack:
     feed_mm: np.ndarray
     events: tuple[RecordedEvent, ...]
 
+    def at(self, time_s: float, rows: np.ndarray) -> np.ndarray:
+        """Return what rows (n, ...) float, one per sample, are at a trial time, linearly."""
+        times = self.trajectory.times_s
+        after = min(max(1, int(np.searchsorted(times, time_s, side="right"))), len(times) - 1)
+        begin, end = times[after - 1 : after + 1]
+        share = float(np.clip((time_s - begin) / (end - begin), 0.0, 1.0))
+        return (1.0 - share) * rows[after - 1] + share * rows[after]
+
 
 def find_track(records: Path, trial_id: str) -> ReplayTrack:
     """Return the track of a trial from a folder of journals.

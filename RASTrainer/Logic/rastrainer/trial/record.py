@@ -84,7 +84,8 @@ class TrialRecord:
         touch_rule: Which touches counted, a `TouchRule`; in older records the paper's.
         motion: Motion metrics by name (`rastrainer.motion.definitions`); empty in older records.
         display: What the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
-            `droppedFrames`, and the `guidance` to the next point; empty where no view reported it.
+            `droppedFrames`, the `guidance` to the next point, and the `ghost` that was shown (a
+            `GhostRule`); empty where no view reported it.
         procedure: What was done after the touches; None in a trial of touches alone. The points
             are those of the accepted registration.
     """

@@ -11,7 +11,8 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
-from rastrainer.protocol import TRIAL_RUN, Guidance, TouchRule, TutorialRule
+from rastrainer.json_checks import accepted, text
+from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, TouchRule, TutorialRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
@@ -26,7 +27,7 @@ _ARROW_TASKS = 2
 
 @dataclasses.dataclass(frozen=True)
 class Preferences:
-    """Each is one of its `OPTIONS`.
+    """Each but the expert is one of its `OPTIONS`.
 
     Attributes:
         language: of everything the trainee reads.
@@ -40,6 +41,8 @@ class Preferences:
         touch: whether a touch has to be on the skin.
         view: when the view goes to each next point automatically: "practice" is outside of a study.
         guidance: how the trainee is guided to the next point, unless a study says otherwise.
+        ghost: which earlier trial is shown beside the arm, outside of studies.
+        expert: ID of the trainee whose best acceptable trials are the ghost "expert"; any text.
         tutorial: whether it comes before the trial run, unless a study says otherwise.
     """
 
@@ -54,6 +57,8 @@ class Preferences:
     touch: str = TouchRule.ON_SKIN.value
     view: str = "practice"
     guidance: str = Guidance.FADING.value
+    ghost: str = GhostRule.OFF.value
+    expert: str = ""
     tutorial: str = TutorialRule.REQUIRED.value
 
     def stepped(self, name: str, direction: int) -> Preferences:
@@ -92,13 +97,15 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
     "touch": tuple(rule.value for rule in TouchRule),
     "view": ("practice", "always", "never"),
     "guidance": tuple(choice.value for choice in Guidance),
+    "ghost": tuple(rule.value for rule in GhostRule),
     "tutorial": tuple(rule.value for rule in TutorialRule),
 }
 
+EXPERT = "expert"
 OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch")
 OF_INSTRUCTORS = ("order", "tutorial")
 """Preferences that are changed in the file: who trains does not decide what they may leave out."""
-OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance")
+OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance", "ghost")
 """Preferences that a running trial must not change: they are in its record."""
 
 
@@ -109,14 +116,16 @@ def read_preferences(path: Path) -> Preferences:
         InputError: the file cannot be read, or holds what is no option.
     """
     values = read_json(path, MOST_BYTES)
-    if not isinstance(values, dict) or not values.keys() <= OPTIONS.keys():
-        raise InputError(f"{path} must be a JSON object with any of {', '.join(OPTIONS)}.")
+    if not isinstance(values, dict) or not values.keys() <= {*OPTIONS, EXPERT}:
+        known = ", ".join((*OPTIONS, EXPERT))
+        raise InputError(f"{path} must be a JSON object with any of {known}.")
+    expert = accepted(text(64, 0), values.pop(EXPERT, ""), f"{path}: {EXPERT}")
     for name, value in values.items():
         options = OPTIONS[name]
         if not any(type(value) is type(option) and value == option for option in options):
             listed = ", ".join(json.dumps(option) for option in options)
             raise InputError(f"{path}: {name} must be one of {listed}.")
-    return Preferences(**values)
+    return Preferences(**values, expert=expert)
 
 
 def write_preferences(path: Path, preferences: Preferences) -> None:

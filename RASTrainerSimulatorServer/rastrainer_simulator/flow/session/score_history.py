@@ -48,6 +48,21 @@ class ScoreHistory:
         found = (self._past[path] for path in paths)
         return tuple(trial for trial in found if trial is not None)
 
+    def best(self, trainee: str, task: str) -> tuple[Path, ...]:
+        """Return the journals of a trainee's acceptable trials of a task, the best score first.
+
+        Scores of other versions are left out.
+        """
+        self.of(trainee)
+        found = []
+        for path in self._journals.get(trainee, ()):
+            trial = self._past[path]
+            if trial is None or trial.task != task or not trial.acceptable:
+                continue
+            if trial.score_version == SCORE_VERSION:
+                found.append((trial.score, path))
+        return tuple(path for _score, path in sorted(found, key=lambda each: -each[0]))
+
     def trend(self, trainee: str, mode: str) -> tuple[float, ...]:
         """Return the newest scores of a trainee in a mode, all of the present version."""
         scores = [

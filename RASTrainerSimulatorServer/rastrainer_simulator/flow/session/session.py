@@ -8,9 +8,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Guidance, Mode, check_arguments
+from rastrainer.protocol import (
+    OPEN_PHASES,
+    TRIAL_RUN,
+    CommandName,
+    GhostRule,
+    Guidance,
+    Mode,
+    check_arguments,
+)
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.study_step import StudyStep
@@ -29,6 +39,7 @@ from rastrainer_simulator.flow.session.preferences import (
 from rastrainer_simulator.flow.session.progress import DoneTasks
 from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
+from rastrainer_simulator.flow.session.trial_ghost import TrialGhost
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
@@ -103,6 +114,7 @@ class TrainingSession:
         quit: ends the simulator.
         study: knows what a study asks of each trainee next.
         view: where the pictures of the trial are looked from.
+        ghost: an earlier trial that moves beside the arm.
         tutorial: the one that is open; else None.
         tutorials: who has finished one, and with which device.
     """
@@ -135,6 +147,7 @@ class TrainingSession:
         self.happened = happened
         self.pages = OpenPages(happened)
         self.view = TrialView()
+        self.ghost = TrialGhost()
         self.tutorial: Tutorial | None = None
         self.tutorials = FinishedTutorials(services.records)
         self.list_scenarios = services.list_scenarios
@@ -334,6 +347,20 @@ class TrainingSession:
         choice = step.guidance if step is not None and step.guidance else self.preferences.guidance
         order = [task.name for task in self.scenario.tasks]
         return faded_guidance(choice, training.task, order)
+
+    def begin_ghost(self, head_to_world: np.ndarray) -> None:
+        """Begin to load the ghost of the present trial; in a study only where its protocol has one.
+
+        HeadToWorld is that of the trial, (4, 4) float, mm.
+        """
+        training, step = self.training, self.study.step_of(self.training.trainee)
+        choice = self.preferences.ghost if step is None else step.ghost
+        # Trial runs are not scored: there is no best one.
+        is_none = not choice or training.task == TRIAL_RUN
+        rule = GhostRule.OFF if is_none else GhostRule(choice)
+        who = training.trainee if rule is GhostRule.OWN else self.preferences.expert
+        journals = () if rule is GhostRule.OFF else self.history.best(who, training.task)
+        self.ghost.begin(rule, journals, training.trial_id, self.setup, head_to_world)
 
     def note_done(self) -> None:
         """Count the present trial's task as done."""

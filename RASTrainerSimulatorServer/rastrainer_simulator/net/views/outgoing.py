@@ -28,6 +28,9 @@ CONTROL = "control"
 PAIRING = "pairing"
 
 BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand")
+GHOST_LINKS = (7,)
+"""The links of the arm that are shown of a ghost, by the number of joints before each."""
+GHOST_BODIES = (*(f"link_{joint}" for joint in GHOST_LINKS), "tool")
 # A micrometre, and less than that at the reach of the arm.
 DECIMALS = 6
 
@@ -49,8 +52,16 @@ def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
     return _text(SCENE, url=url, task=task, sticks=axes.value, cameras=cameras, fiducials=fiducials)
 
 
-def state(now: SimulationState, delayed: int, pictures: Pictures) -> str:
-    """Return what moves; `delayed` counts the control loop's late and skipped ticks."""
+def state(
+    now: SimulationState,
+    delayed: int,
+    pictures: Pictures,
+    ghost: Sequence[np.ndarray] | None = None,
+) -> str:
+    """Return what moves; `delayed` counts the control loop's late and skipped ticks.
+
+    `ghost` has the poses of `GHOST_BODIES`, (4, 4) float, to World, m; None without a ghost.
+    """
     training, planned = now.training, now.planned_target
     matrices = (
         *now.link_to_world,
@@ -63,6 +74,7 @@ def state(now: SimulationState, delayed: int, pictures: Pictures) -> str:
         tick=now.tick,
         time=round(now.sim_time, DECIMALS),
         poses=[_pose(matrix) for matrix in matrices],
+        ghost=None if ghost is None else dict(zip(GHOST_BODIES, map(_pose, ghost), strict=True)),
         clearanceMm=round(now.clearance * MM_PER_M, 3),
         proximity=now.proximity.value,
         touch=now.touch.value,

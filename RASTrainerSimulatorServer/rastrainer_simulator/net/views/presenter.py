@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
+import numpy as np
+
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.view_control import Pictures
@@ -91,6 +93,12 @@ class Presenter(Protocol):
 
     def pictures(self, now: SimulationState) -> Pictures:
         """Return where the pictures of a state are looked from."""
+
+    def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
+        """Return the poses of the ghost beside the arm in a state, in the order of `GHOST_BODIES`.
+
+        Each is (4, 4) float, to World, m; None where none is shown.
+        """
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control.

@@ -117,7 +117,8 @@ class Views:
     def _state_text(self, now: SimulationState) -> str:
         statistics = self._source.statistics
         delayed = statistics.late + statistics.skipped
-        return outgoing.state(now, delayed, self._presenter.pictures(now))
+        presenter = self._presenter
+        return outgoing.state(now, delayed, presenter.pictures(now), presenter.ghost(now))
 
     def _send_update(self, update: ViewUpdate) -> None:
         if isinstance(update, Screen):

@@ -418,6 +418,14 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.guidance.words": "Words and arrow",
         "settings.guidance.arrow": "Arrow",
         "settings.guidance.none": "None",
+        "settings.ghost": "Ghost beside the arm",
+        "settings.ghost help": "Shows the tool of an earlier trial of the same task, by the time "
+        "since the start. None in studies, unless their protocol has one. The record says so. The "
+        "expert's ID is in the file {file}.",
+        "settings.ghost.off": "None",
+        "settings.ghost.own best": "Your own best trial",
+        "settings.ghost.expert": "The expert's best trial",
+        "ghost.none": "No ghost: there is no acceptable trial of this task to show yet.",
         "settings.tutorial": "Tutorial",
         "settings.tutorial help": "Whether the trial run waits for it. A study may set its own. "
         "Instructors change this in the file {file}.",

@@ -530,6 +530,14 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.guidance.words": "Worte und Pfeil",
         "settings.guidance.arrow": "Pfeil",
         "settings.guidance.none": "Keine",
+        "settings.ghost": "Geist neben dem Arm",
+        "settings.ghost help": "Zeigt das Werkzeug eines früheren Versuchs derselben Aufgabe, "
+        "nach der Zeit seit dem Beginn. In Studien nur, wenn das Protokoll es vorsieht. Der "
+        "Datensatz hält es fest. Die ID der Expertin oder des Experten steht in der Datei {file}.",
+        "settings.ghost.off": "Keiner",
+        "settings.ghost.own best": "Dein bester Versuch",
+        "settings.ghost.expert": "Bester Versuch der Expertin, des Experten",
+        "ghost.none": "Kein Geist: Es gibt noch keinen akzeptablen Versuch dieser Aufgabe.",
         "settings.tutorial": "Tutorial",
         "settings.tutorial help": "Ob der Probelauf auf das Tutorial wartet. Eine Studie kann das "
         "selbst festlegen. Die Kursleitung ändert das in der Datei {file}.",

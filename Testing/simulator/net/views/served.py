@@ -40,6 +40,9 @@ class RecordingPresenter:
         """Look through a camera that no scenario has, with nothing beside it."""
         return Pictures(LOOKED_FROM)
 
+    def ghost(self, _now):
+        """Show none beside the arm."""
+
     def tell(self, *news):
         for one in news:
             for listener in tuple(self._listeners):

@@ -33,6 +33,7 @@ class Step:
         questionnaire: To be answered; "" if none.
         minutes: Duration of a trial run, or minimum of a break; 0 if unlimited.
         guidance: A `Guidance` to the next point; "" for the simulator's setting.
+        ghost: A `GhostRule` for a trial; "" for none.
         tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
     """
 
@@ -44,6 +45,7 @@ class Step:
     questionnaire: str = ""
     minutes: float = 0.0
     guidance: str = ""
+    ghost: str = ""
     tutorial: str = ""
 
     @property
@@ -118,7 +120,15 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
                 minutes = protocol.break_between_tasks_min
                 yield Step(f"{name}/break", StepKind.BREAK, mode, minutes=minutes)
             is_first = False
-            yield Step(name, StepKind.TRIAL, mode, task, round_ + 1, guidance=protocol.guidance)
+            yield Step(
+                name,
+                StepKind.TRIAL,
+                mode,
+                task,
+                round_ + 1,
+                guidance=protocol.guidance,
+                ghost=protocol.ghost,
+            )
             yield from _questions(protocol, AFTER_TASK, mode, name)
     yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")
 

@@ -11,7 +11,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.json_checks import is_identifier
-from rastrainer.protocol import TRIAL_RUN, Guidance, Mode, TutorialRule
+from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, Mode, TutorialRule
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
 
@@ -29,7 +29,8 @@ READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, "2", SCORE_VERSION)
 """A study started with an earlier one continues with the present; each score holds its own."""
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
-    *("repetitions", "trialRun", "breaks", "questionnaires", "scoring", "guidance", "tutorial"),
+    *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
+    *("guidance", "ghost", "tutorial"),
 )
 
 
@@ -61,6 +62,7 @@ class StudyProtocol:
         score_version: Version of the score that the study was planned with.
         pass_mark: Score that passes; None where the protocol sets none and the default holds.
         guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
+        ghost: A `GhostRule` for the trials; "" for none, whatever the simulator's setting.
         tutorial: A `TutorialRule`; "" leaves it to the simulator's setting.
     """
 
@@ -79,13 +81,13 @@ class StudyProtocol:
     score_version: str = SCORE_VERSION
     pass_mark: float | None = None
     guidance: str = ""
+    ghost: str = ""
     tutorial: str = ""
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
         mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
-        guidance = {"guidance": self.guidance} if self.guidance else {}
-        tutorial = {"tutorial": self.tutorial} if self.tutorial else {}
+        chosen = {"guidance": self.guidance, "ghost": self.ghost, "tutorial": self.tutorial}
         return {
             "formatVersion": FORMAT_VERSION,
             "name": self.name,
@@ -93,8 +95,7 @@ class StudyProtocol:
             "modes": list(self.modes),
             "modeOrder": self.mode_order,
             "tasks": list(self.tasks),
-            **guidance,
-            **tutorial,
+            **{name: value for name, value in chosen.items() if value},
             "taskOrder": self.task_order,
             "repetitions": self.repetitions,
             "trialRun": {"minutes": self.trial_run_min},
@@ -186,6 +187,9 @@ def _protocol(fields: Fields) -> StudyProtocol:
         pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
         guidance=fields.one_of("guidance", tuple(choice.value for choice in Guidance))
         if "guidance" in fields.names()
+        else "",
+        ghost=fields.one_of("ghost", tuple(rule.value for rule in GhostRule))
+        if "ghost" in fields.names()
         else "",
         tutorial=fields.one_of("tutorial", tuple(rule.value for rule in TutorialRule))
         if "tutorial" in fields.names()

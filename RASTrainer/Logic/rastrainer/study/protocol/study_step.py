@@ -30,6 +30,7 @@ class StudyStep:
         minutes: Duration; 0 if unlimited.
         over: Minutes elapsed when sent; not compared, since a step is the same whenever it is sent.
         guidance: A `Guidance` to the next point; "" for the simulator's setting.
+        ghost: A `GhostRule`; "" for none.
         procedure: To be carried out after the registration; "" for the touches alone.
         tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
     """
@@ -44,6 +45,7 @@ class StudyStep:
     minutes: float = 0.0
     over: float = field(default=0.0, compare=False)
     guidance: str = ""
+    ghost: str = ""
     procedure: str = ""
     tutorial: str = ""
 
@@ -64,6 +66,7 @@ class StudyStep:
             minutes=step.minutes,
             over=min(progress.minutes_over(now), step.minutes),
             guidance=step.guidance,
+            ghost=step.ghost,
             tutorial=step.tutorial,
         )
 

@@ -1,0 +1,110 @@
+"""An earlier trial of the same task as a ghost: where its tool was, as the head stands now."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from concurrent.futures import Future
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.journal.replay_track import ReplayTrack, read_track
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.arm import moving_links
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.loop.precise_clock import raise_thread_priority
+from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
+from rastrainer_simulator.robot.kinematics import make_kinematics
+
+AFTER_S = 0.5
+"""How long after its last touch a ghost stays."""
+
+
+class Ghost:
+    """The last link and the tool of a recorded trial.
+
+    The head stands differently in each trial, and what counts is the way of the tip on the head:
+    all poses are moved as the head is. The base of the arm does not move with the head, so the
+    links before the last are left out.
+
+    Attributes:
+        duration_s: the trial's time at which it ends.
+    """
+
+    def __init__(self, track: ReplayTrack, setup: SimulationSetup, head_to_world: np.ndarray):
+        """Prepare; HeadToWorld is that of the present trial, (4, 4) float, mm.
+
+        Raises:
+            InputError: the trial was recorded with another scenario or robot, or has no touch.
+        """
+        header, touches = track.header, track.trajectory.touches
+        is_same = header["robot"] == setup.robot.name and setup.is_of(header["scenario"]["sha256"])
+        if not is_same or not touches:
+            raise InputError("The trial cannot be a ghost: it has another head, or no touch.")
+        then = setup.scenario.perturbed_head_to_world(header["seed"])
+        self._moved = head_to_world @ np.linalg.inv(then)
+        self._moved[:3, 3] /= MM_PER_M
+        self._track = track
+        self._kinematics = make_kinematics(setup.robot)
+        self._links = tuple(moving_links(setup.robot)[joint] for joint in GHOST_LINKS)
+        self._tip = setup.robot.tip.name
+        self.duration_s = touches[-1].time_s + AFTER_S
+
+    def poses(self, time_s: float) -> tuple[np.ndarray, ...] | None:
+        """Return the last link and the tool at a time since the start; None after the end.
+
+        Each is (4, 4) float, to World, m.
+        """
+        if time_s > self.duration_s:
+            return None
+        placed = self._kinematics.links(tuple(self._track.at(time_s, self._track.q).tolist()))
+        return tuple(self._moved @ placed[name] for name in (*self._links, self._tip))
+
+
+class GhostLoading:
+    """Loads the first usable one of some journals in a thread, beside the control loop.
+
+    Attributes:
+        ghost: None where no journal is usable.
+    """
+
+    def __init__(
+        self, journals: Sequence[Path], setup: SimulationSetup, head_to_world: np.ndarray
+    ) -> None:
+        """Start loading; HeadToWorld as of a `Ghost`."""
+        self.ghost: Future[Ghost | None] = Future()
+        self._is_canceled = False
+        threading.Thread(
+            target=self._load, args=(journals, setup, head_to_world), name="ghost", daemon=True
+        ).start()
+
+    def cancel(self) -> None:
+        """Stop loading, unless it is done."""
+        self._is_canceled = True
+
+    def _load(
+        self, journals: Sequence[Path], setup: SimulationSetup, head_to_world: np.ndarray
+    ) -> None:
+        # Set aside while it holds the interpreter, it would make the control loop wait.
+        raise_thread_priority()
+        try:
+            self.ghost.set_result(self._first(journals, setup, head_to_world))
+        except Exception as error:
+            self.ghost.set_exception(error)
+
+    def _first(
+        self, journals: Sequence[Path], setup: SimulationSetup, head_to_world: np.ndarray
+    ) -> Ghost | None:
+        for journal in journals:
+            try:
+                return Ghost(read_track(journal, self._check), setup, head_to_world)
+            except (InputError, KeyError, TypeError, ValueError, AttributeError, IndexError):
+                # Of another head, damaged, or deleted meanwhile: the next best is one, too.
+                continue
+        return None
+
+    def _check(self) -> None:
+        if self._is_canceled:
+            raise InputError("Loading the ghost was canceled.")
