@@ -12,6 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
 from rastrainer.procedure.meshes import read_all_no_go
+from rastrainer.procedure.plan import Procedure
 from rastrainer.progress import Progress, Warn
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
@@ -19,6 +20,7 @@ from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.tasks import PlannedTarget, PlannedTrajectory, Task
 from rastrainer.scenario.writer import HeadDraft, new_folder, scenario_name, write_scenario
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.procedure_plan import measure_procedures, with_procedure
 from rastrainer_simulator.authoring.scenario_check import check_plan, start_clearance_mm
 from rastrainer_simulator.authoring.task_check import check_tasks, read_placed_tasks
 from rastrainer_simulator.authoring.task_set import TaskSetProposer
@@ -182,6 +184,7 @@ def copy_with_plan(
     targets: tuple[PlannedTarget, ...],
     trajectory: PlannedTrajectory | None,
     warn: Callable[[str], None],
+    procedure: Procedure | None = None,
 ) -> Scenario:
     """Write a copy of a scenario with another plan and return it.
 
@@ -193,6 +196,7 @@ def copy_with_plan(
             the targets are kept.
         trajectory: RAS mm, replacing the other one; None keeps it.
         warn: called if the first target is too deep for trials to start above it.
+        procedure: replacing the one of the same name, or added; None keeps all as they are.
 
     Raises:
         InputError: the scenario cannot be used, or the plan cannot be carried out. Nothing is
@@ -207,15 +211,21 @@ def copy_with_plan(
     )
     if targets:
         scenario = with_main_target(replace(scenario, targets=targets), head, warn)
+    no_go = read_all_no_go(scenario.procedures)
+    wrong: list[str] = []
+    if procedure is not None:
+        scenario, no_go = with_procedure(scenario, procedure)
+        (measured,) = measure_procedures(folder, procedure)
+        wrong += measured.wrong
     planning = PlanningSetup(scenario, head)
-    wrong = check_plan(planning)
+    wrong += check_plan(planning)
     # Trials start above the target and turn the head about it, so that touching depends on it.
     if not np.array_equal(scenario.target_position, before.target_position):
         wrong += check_tasks(planning, scenario.tasks)
     if wrong:
         raise InputError(" ".join(wrong))
     with new_folder(copy) as made:
-        write_scenario(made, scenario, head, skull, volume, read_all_no_go(scenario.procedures))
+        write_scenario(made, scenario, head, skull, volume, no_go)
         draw_preview(made / PREVIEW_NAME, scenario, head)
         load_scenario(made)
     return load_scenario(copy)

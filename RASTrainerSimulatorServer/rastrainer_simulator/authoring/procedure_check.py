@@ -85,15 +85,35 @@ def require_usable_procedures(setup: SimulationSetup) -> None:
 
 
 def _check(planning: PlanningSetup, procedure: Procedure) -> list[str]:
+    wrong = check_procedure_on_head(planning, procedure)
+    return wrong or unreachable_lines(planning, procedure, range(POSES_TRIED))
+
+
+def check_procedure_on_head(planning: PlanningSetup, procedure: Procedure) -> list[str]:
+    """Return a sentence for each error of a plan on the scenario's head, apart from the reach.
+
+    Raises:
+        InputError: a mesh is unusable.
+    """
     skull = planning.scenario.skull_mesh
     assert skull is not None, "a scenario with procedures has a skull"
-    wrong = check_procedure(procedure, planning.mesh, read_procedure_meshes(procedure, skull))
-    return wrong or unreachable_lines(planning, procedure, range(POSES_TRIED))
+    return check_procedure(procedure, planning.mesh, read_procedure_meshes(procedure, skull))
 
 
 def unreachable_lines(planning: PlanningSetup, procedure: Procedure, seeds: range) -> list[str]:
     """Return a sentence for each line of a procedure on which the guide cannot be held."""
-    reach, wrong = GuideReach(planning), []
+    return _lines_held(planning, procedure, seeds)[1]
+
+
+def lines_held(planning: PlanningSetup, procedure: Procedure) -> tuple[list[bool], list[str]]:
+    """Return whether the guide can be held on each line, and a sentence for each on which not."""
+    return _lines_held(planning, procedure, range(POSES_TRIED))
+
+
+def _lines_held(
+    planning: PlanningSetup, procedure: Procedure, seeds: range
+) -> tuple[list[bool], list[str]]:
+    reach, held, wrong = GuideReach(planning), [], []
     nominal, *others = planning.poses(seeds)
     for trajectory in procedure.trajectories:
         where = ""
@@ -101,9 +121,10 @@ def unreachable_lines(planning: PlanningSetup, procedure: Procedure, seeds: rang
             where = "where the head is"
         elif not reach.is_held(trajectory, others):
             where = "in every trial"
+        held.append(not where)
         if where:
             wrong.append(
                 f"{procedure.title}: the robot cannot hold the guide on the line of "
                 f"{trajectory.name} {where}; choose another entry, or move the head."
             )
-    return wrong
+    return held, wrong

@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.files.writing import write_json
+from rastrainer.procedure.plan import Procedure, read_procedure
 from rastrainer.progress import print_progress, print_warning
 from rastrainer.scenario.library import list_scenarios, user_library
 from rastrainer.scenario.package import unpack
@@ -47,7 +49,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     plan.add_argument("folder", type=Path, metavar="DIR")
     _add_output(plan)
     _add_plan(plan)
+    _add_procedure(plan, "added, or in the place of the one of the same name")
     plan.set_defaults(run=_plan)
+    lines = parts.add_parser(
+        "lines", help="measure the planned lines of procedures; status 1 if any is wrong"
+    )
+    lines.add_argument("folder", type=Path, metavar="DIR")
+    _add_procedure(lines, "measured in the place of the scenario's own")
+    lines.add_argument("--json", type=Path, metavar="FILE", help="write everything there, too")
+    lines.set_defaults(run=_lines)
     packing = parts.add_parser(
         "pack", help="write a scenario as one zip file, without face, title and source"
     )
@@ -85,6 +95,15 @@ def _add_library(parser: argparse.ArgumentParser) -> None:
 def _add_output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="a new one")
     parser.add_argument("--title", help="default: the name of the new folder")
+
+
+def _add_procedure(parser: argparse.ArgumentParser, what: str) -> None:
+    parser.add_argument(
+        "--procedure",
+        type=Path,
+        metavar="JSON",
+        help=f"a procedure as in scenario.json, its meshes in the folder no-go beside it: {what}",
+    )
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -196,6 +215,21 @@ def _check(arguments: argparse.Namespace) -> int:
     return 1 if wrong else 0
 
 
+def _lines(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.authoring.procedure_plan import measure_procedures
+    from rastrainer_simulator.cli.line_table import line_table
+
+    measured = measure_procedures(arguments.folder, _procedure_of(arguments))
+    print("\n".join(line_table(measured)))
+    if arguments.json is not None:
+        write_json(arguments.json, [each.to_json() for each in measured])
+    return 1 if any(each.wrong for each in measured) else 0
+
+
+def _procedure_of(arguments: argparse.Namespace) -> Procedure | None:
+    return None if arguments.procedure is None else read_procedure(arguments.procedure)
+
+
 def _plan(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.make import copy_with_plan
     from rastrainer_simulator.authoring.scenario_options import targets_of, title_of, trajectory_of
@@ -207,6 +241,7 @@ def _plan(arguments: argparse.Namespace) -> int:
         targets_of(arguments),
         trajectory_of(arguments),
         print_warning,
+        _procedure_of(arguments),
     )
     print(f"{scenario.title} is in {arguments.output}.")
     return 0

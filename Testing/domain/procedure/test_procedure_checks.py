@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.procedure.checks import check_procedure, distances_to_no_go, planned_bone
+from rastrainer.procedure.checks import check_procedure
+from rastrainer.procedure.line_measures import distances_to_no_go, measure_lines, planned_bone
 from rastrainer.procedure.meshes import ProcedureMeshes
 from rastrainer.procedure.plan import Checkpoint
 from Testing.domain.procedure.made_up_procedure import (
@@ -121,3 +122,19 @@ def test_the_distance_to_a_structure_is_that_of_the_surfaces():
 def test_planned_bone_is_measured_from_the_entry_wherever_that_is(height):
     bone = planned_bone(trajectory(entry=(0, 0, height)), shell())
     assert bone == pytest.approx((height - 83.0, height - 76.0))
+
+
+def test_the_measures_of_a_line_are_length_angle_and_the_nearest_of_everything():
+    one = trajectory("One", (0, 0, 90), (0, 0, 20), diameter=2.0)
+    other = trajectory("Other", (40, 0, 80.6), (2.5, 0, 20), diameter=3.0)
+    outside = trajectory("Outside", (0, 0, 200), (0, 0, 150))
+    procedure = made_up_procedure(one, other, outside)
+    measured = {each.name: each for each in measure_lines(procedure, made_up_meshes())}
+    assert measured["One"].length_mm == pytest.approx(70.0)
+    assert measured["One"].skull_angle_deg == pytest.approx(0.0, abs=3.0)
+    assert measured["One"].nearest_no_go == "Vessel"
+    assert measured["One"].nearest_line == "Other"
+    assert measured["One"].nearest_line_mm == pytest.approx(2.5 - 2.5, abs=0.1)
+    assert measured["Outside"].skull_angle_deg is None
+    (alone,) = measure_lines(made_up_procedure(one), made_up_meshes())
+    assert (alone.nearest_line, alone.nearest_line_mm) == ("", None)

@@ -9,9 +9,9 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh, write_head_mesh
-from rastrainer.procedure.checks import distances_to_no_go
+from rastrainer.procedure.line_measures import distances_to_no_go
 from rastrainer.procedure.meshes import read_procedure_meshes
-from rastrainer.procedure.plan import ProcedureKind
+from rastrainer.procedure.plan import ProcedureKind, read_procedure
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import PlannedTarget
@@ -22,6 +22,7 @@ from rastrainer_simulator.authoring.procedure_check import (
     check_procedures,
     require_usable_procedures,
 )
+from rastrainer_simulator.authoring.procedure_plan import with_procedure
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.setup import load_setup
 
@@ -125,3 +126,76 @@ def test_a_copy_with_another_plan_keeps_the_procedures(copy, tmp_path):
     (procedure,) = made.procedures
     (before,) = load_scenario(copy).procedures
     assert procedure.sha256(made.skull_mesh) == before.sha256(copy / "skull.ply")
+
+
+@pytest.fixture
+def own_procedure(copy, tmp_path):
+    """A procedure in a file of its own, whose structure has the file name of another one."""
+    folder = tmp_path / "plan"
+    (folder / "no-go").mkdir(parents=True)
+    values = json.loads((copy / "scenario.json").read_text(encoding="utf-8"))["procedures"][0]
+    mesh = read_head_mesh(copy / values["noGo"][0]["file"])
+    moved = replace(mesh, vertices=mesh.vertices + np.array([0.0, 0.0, 0.5]))
+    write_head_mesh(folder / values["noGo"][0]["file"], moved)
+    values.update(name="own", title="My own", noGo=values["noGo"][:1])
+    path = folder / "procedure.json"
+    path.write_text(json.dumps(values), encoding="utf-8")
+    return path
+
+
+def plan_words(copy, made, path):
+    return ["scenario", "plan", str(copy), "-o", str(made), "--procedure", str(path)]
+
+
+def test_a_procedure_from_a_file_is_added_with_its_meshes(copy, own_procedure, tmp_path):
+    assert main(plan_words(copy, tmp_path / "made", own_procedure)) == 0
+    made = load_scenario(tmp_path / "made")
+    assert [each.name for each in made.procedures] == ["dbs", "own"]
+    before = read_procedure_meshes(load_scenario(copy).procedure("dbs"), copy / "skull.ply")
+    after = read_procedure_meshes(made.procedure("dbs"), made.skull_mesh)
+    own = read_procedure_meshes(made.procedure("own"), made.skull_mesh)
+    (name,) = own.no_go
+    assert np.array_equal(after.no_go[name].vertices, before.no_go[name].vertices)
+    shift = own.no_go[name].vertices - before.no_go[name].vertices
+    assert shift == pytest.approx(np.tile([0.0, 0.0, 0.5], (len(shift), 1)), abs=1e-4)
+
+
+def test_a_procedure_of_the_same_name_is_replaced(copy, own_procedure):
+    changed = replace(read_procedure(own_procedure), name="dbs", title="Again")
+    scenario, meshes = with_procedure(load_scenario(copy), changed)
+    assert [(each.name, each.title) for each in scenario.procedures] == [("dbs", "Again")]
+    assert list(meshes) == [changed.no_go[0].mesh.name]
+
+
+def test_a_procedure_that_cannot_be_carried_out_is_not_saved(copy, own_procedure, tmp_path, capsys):
+    values = json.loads(own_procedure.read_text(encoding="utf-8"))
+    values["trajectories"][0]["targetRas"] = [0.0, 0.0, 150.0]
+    own_procedure.write_text(json.dumps(values), encoding="utf-8")
+    before = sorted(tmp_path.rglob("*"))
+    assert main(plan_words(copy, tmp_path / "made", own_procedure)) == 2
+    said = capsys.readouterr().err
+    assert "Left subthalamic nucleus has its target" in said
+    assert "outside of the head." in said
+    assert main(["scenario", "lines", str(copy), "--procedure", str(own_procedure)]) == 1
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_scenario_without_a_skull_takes_no_procedure(copy, own_procedure, tmp_path, capsys):
+    values = json.loads((copy / "scenario.json").read_text(encoding="utf-8"))
+    del values["skull"], values["procedures"]
+    write(copy, values)
+    assert main(plan_words(copy, tmp_path / "made", own_procedure)) == 2
+    assert "has no skull, which a procedure needs for drilling" in capsys.readouterr().err
+    assert not (tmp_path / "made").exists()
+
+
+def test_the_planned_lines_are_measured_in_a_table_and_a_file(copy, tmp_path, capsys):
+    told = tmp_path / "lines.json"
+    assert main(["scenario", "lines", str(copy), "--json", str(told)]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[1].startswith("line  ")
+    assert printed[2].startswith("Left subthalamic nucleus")
+    assert printed[2].endswith("yes")
+    (measured,) = json.loads(told.read_text(encoding="utf-8"))
+    assert [line["isHeld"] for line in measured["lines"]] == [True, True]
+    assert measured["wrong"] == []

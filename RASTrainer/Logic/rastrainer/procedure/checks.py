@@ -8,18 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-import numpy as np
-
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.surface_queries import nearest_on_mesh
-from rastrainer.procedure.geometry import (
-    BoneAhead,
-    axis_distance_mm,
-    bone_ahead,
-    is_inside,
-    mesh_crossings,
-    segment_distances_mm,
-    skull_angle_deg,
+from rastrainer.procedure.geometry import is_inside, mesh_crossings
+from rastrainer.procedure.line_measures import (
+    distances_to_no_go,
+    line_distance_mm,
+    planned_bone,
+    planned_skull_angle_deg,
 )
 from rastrainer.procedure.meshes import ProcedureMeshes
 from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
@@ -33,8 +29,6 @@ MAX_SKULL_ANGLE_DEG = 40.0
 """To the skull's normal; a drill that meets bone at a flatter angle slips. Our own convention."""
 APART_MM = 1.0
 """Between the surfaces of two instruments. Our own convention."""
-OUTSIDE_MM = 60.0
-"""Before the entry: outside of the head, also where the entry is planned on the bone."""
 
 
 def check_procedure(procedure: Procedure, head: HeadMesh, meshes: ProcedureMeshes) -> list[str]:
@@ -77,35 +71,6 @@ def unusable_lines(procedure: Procedure, head: HeadMesh, skull: HeadMesh) -> lis
     ]
 
 
-def planned_bone(trajectory: ProcedureTrajectory, skull: HeadMesh) -> BoneAhead | None:
-    """Return where the planned line goes through bone, as distances from the entry in mm.
-
-    They are below 0 where the entry is planned below the bone's surface. None where the line does
-    not go through bone.
-    """
-    direction = trajectory.direction
-    start = trajectory.entry - OUTSIDE_MM * direction
-    bone = bone_ahead(skull, start, direction, OUTSIDE_MM + trajectory.length_mm)
-    if bone is None:
-        return None
-    inner = None if bone.inner_mm is None else bone.inner_mm - OUTSIDE_MM
-    return BoneAhead(bone.outer_mm - OUTSIDE_MM, inner)
-
-
-def distances_to_no_go(
-    trajectory: ProcedureTrajectory, meshes: ProcedureMeshes
-) -> dict[str, float]:
-    """Return how far the instrument's surface stays from each no-go structure, mm, by name.
-
-    Below 0 the instrument overlaps the structure.
-    """
-    radius = trajectory.diameter_mm / 2
-    return {
-        name: axis_distance_mm(mesh, trajectory.entry, trajectory.target) - radius
-        for name, mesh in meshes.no_go.items()
-    }
-
-
 def _about(procedure: Procedure, trajectory: ProcedureTrajectory) -> str:
     return f"{procedure.title}: {trajectory.name}"
 
@@ -142,10 +107,8 @@ def _questionable(trajectory: ProcedureTrajectory, meshes: ProcedureMeshes) -> I
     length = trajectory.length_mm
     if length > MAX_LENGTH_MM:
         yield f"is {length:.0f} mm long; it may be {MAX_LENGTH_MM:g} mm."
-    bone = planned_bone(trajectory, meshes.skull)
-    assert bone is not None, "it is usable"
-    point = trajectory.entry + bone.outer_mm * trajectory.direction
-    angle = skull_angle_deg(meshes.skull, point, trajectory.direction)
+    angle = planned_skull_angle_deg(trajectory, meshes.skull)
+    assert angle is not None, "it is usable"
     if angle > MAX_SKULL_ANGLE_DEG:
         yield (
             f"meets the skull at {angle:.0f}° to its normal; it may be {MAX_SKULL_ANGLE_DEG:g}°."
@@ -162,10 +125,7 @@ def _questionable(trajectory: ProcedureTrajectory, meshes: ProcedureMeshes) -> I
 
 def _too_near_each_other(procedure: Procedure) -> Iterator[str]:
     for one, other in combinations(procedure.trajectories, 2):
-        axes = segment_distances_mm(
-            one.entry, one.target, np.array([other.entry]), np.array([other.target])
-        )
-        distance = float(axes[0]) - (one.diameter_mm + other.diameter_mm) / 2
+        distance = line_distance_mm(one, other)
         if distance < APART_MM:
             yield (
                 f"{procedure.title}: {one.name} and {other.name} come within "

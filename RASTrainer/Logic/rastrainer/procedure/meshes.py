@@ -50,14 +50,32 @@ def read_no_go_mesh(path: Path) -> HeadMesh:
         InputError: it is missing, unusable, open or too large.
     """
     mesh = read_head_mesh(path)
-    if len(mesh.triangles) > MAX_NO_GO_TRIANGLES:
+    check_no_go_mesh(mesh, str(path))
+    return mesh
+
+
+def check_no_go_mesh(mesh: HeadMesh, name: str) -> None:
+    """Check that instruments can be kept away from a surface.
+
+    Args:
+        mesh: to check.
+        name: by which an error names it.
+
+    Raises:
+        InputError: it is open or too large.
+    """
+    check_no_go_size(len(mesh.triangles), name)
+    if not mesh.is_closed:
+        raise InputError(f"The no-go structure {name} is not closed: it has a hole.")
+
+
+def check_no_go_size(triangles: int, name: str) -> None:
+    """Raise `InputError` if a no-go structure has more triangles than one may have."""
+    if triangles > MAX_NO_GO_TRIANGLES:
         raise InputError(
-            f"The no-go structure {path} has {len(mesh.triangles)} triangles; it may have "
+            f"The no-go structure {name} has {triangles} triangles; it may have "
             f"{MAX_NO_GO_TRIANGLES}."
         )
-    if not mesh.is_closed:
-        raise InputError(f"The no-go structure {path} is not closed: it has a hole.")
-    return mesh
 
 
 def read_all_no_go(procedures: Iterable[Procedure]) -> dict[str, HeadMesh]:

@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields
+from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
 
@@ -172,6 +172,17 @@ def read_procedures(fields: Fields) -> tuple[Procedure, ...]:
     if len(files) > MAX_NO_GO_FILES:
         raise fields.error("procedures", f"with at most {MAX_NO_GO_FILES} files of no-go meshes")
     return procedures
+
+
+def read_procedure(path: Path) -> Procedure:
+    """Return the procedure in a file of its own, written as in a scenario's list.
+
+    Meshes are only named, not read; they are in the folder `no-go` beside the file.
+
+    Raises:
+        InputError: it is missing or invalid.
+    """
+    return _read_procedure(read_fields(path))
 
 
 def procedure_json(procedure: Procedure) -> dict[str, Any]:

@@ -1,0 +1,128 @@
+"""A procedure from a file of its own: measured on the head of a scenario, and brought into it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.procedure.line_measures import LineMeasures, measure_lines
+from rastrainer.procedure.meshes import read_all_no_go, read_procedure_meshes
+from rastrainer.procedure.plan import NO_GO_FOLDER, Procedure
+from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.procedure_check import check_procedure_on_head, lines_held
+
+
+@dataclass(frozen=True)
+class MeasuredProcedure:
+    """A procedure as it would be on a head.
+
+    Attributes:
+        procedure: the plan.
+        lines: measured, in its order.
+        is_held: whether the robot can hold the guide on each line; None where the plan is wrong
+            apart from that, and the reach was not tried.
+        wrong: a sentence for each error.
+    """
+
+    procedure: Procedure
+    lines: tuple[LineMeasures, ...]
+    is_held: tuple[bool | None, ...]
+    wrong: tuple[str, ...]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return everything, ready for JSON."""
+        return {
+            "procedure": self.procedure.name,
+            "title": self.procedure.title,
+            "lines": [
+                {**line.to_json(), "isHeld": is_held}
+                for line, is_held in zip(self.lines, self.is_held, strict=True)
+            ],
+            "wrong": list(self.wrong),
+        }
+
+
+def measure_procedures(
+    folder: Path, procedure: Procedure | None = None
+) -> tuple[MeasuredProcedure, ...]:
+    """Return the procedures of a scenario, or another one on its head, as measured.
+
+    Args:
+        folder: of the scenario.
+        procedure: in the place of the scenario's own.
+
+    Raises:
+        InputError: the scenario cannot be read, has no skull, or a mesh is unusable.
+    """
+    scenario = load_scenario(folder)
+    skull = _skull(scenario)
+    planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh))
+    procedures = scenario.procedures if procedure is None else (procedure,)
+    return tuple(_measured(planning, each, skull) for each in procedures)
+
+
+def _measured(planning: PlanningSetup, procedure: Procedure, skull: Path) -> MeasuredProcedure:
+    wrong = check_procedure_on_head(planning, procedure)
+    held: list[bool | None] = [None] * len(procedure.trajectories)
+    unreachable: list[str] = []
+    if not wrong:
+        held[:], unreachable = lines_held(planning, procedure)
+    return MeasuredProcedure(
+        procedure,
+        tuple(measure_lines(procedure, read_procedure_meshes(procedure, skull))),
+        tuple(held),
+        (*wrong, *unreachable),
+    )
+
+
+def with_procedure(
+    scenario: Scenario, procedure: Procedure
+) -> tuple[Scenario, dict[str, HeadMesh]]:
+    """Return a scenario with a procedure, in the place of one of the same name.
+
+    Returns:
+        The scenario, and the meshes of all its no-go structures by file name. A new mesh whose file
+        name another procedure has for another structure gets a name of its own.
+
+    Raises:
+        InputError: the scenario has no skull, or a mesh is unusable.
+    """
+    _skull(scenario)
+    others = [each for each in scenario.procedures if each.name != procedure.name]
+    kept = read_all_no_go(others)
+    structures = []
+    for structure in procedure.no_go:
+        name, mesh = structure.mesh.name, read_head_mesh(structure.mesh)
+        stem = structure.mesh.stem
+        numbers = count(2)
+        while name in kept and not _same(kept[name], mesh):
+            name = f"{stem[:36]}-{next(numbers)}.ply"
+        kept[name] = mesh
+        structures.append(replace(structure, mesh=Path(NO_GO_FOLDER, name)))
+    placed = replace(procedure, no_go=tuple(structures))
+    names = [each.name for each in scenario.procedures]
+    procedures = list(scenario.procedures)
+    if procedure.name in names:
+        procedures[names.index(procedure.name)] = placed
+    else:
+        procedures.append(placed)
+    return replace(scenario, procedures=tuple(procedures)), kept
+
+
+def _same(one: HeadMesh, other: HeadMesh) -> bool:
+    pairs = ((one.vertices, other.vertices), (one.triangles, other.triangles))
+    return all(a.shape == b.shape and bool((a == b).all()) for a, b in pairs)
+
+
+def _skull(scenario: Scenario) -> Path:
+    if scenario.skull_mesh is None:
+        raise InputError(
+            f"The scenario {scenario.name} has no skull, which a procedure needs for drilling; "
+            "make it again with a skull."
+        )
+    return scenario.skull_mesh
