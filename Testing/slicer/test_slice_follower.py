@@ -178,3 +178,55 @@ def test_in_a_cleared_scene_the_slices_go_to_a_tool_that_stands_still(room, foll
     room.now += PERIOD_S
     follower.process()
     np.testing.assert_allclose(place(room.scene), shown)
+
+
+def put_instrument(scene, tip, direction):
+    prepareNodes(scene)
+    pose = findNode(scene, TRANSFORM, DeviceName.INSTRUMENT_TIP_TO_WORLD)
+    across = np.cross(direction, [0.3, 0.9, 0.1])
+    across /= np.linalg.norm(across)
+    axes = np.column_stack([across, np.cross(direction, across), direction])
+    pose.SetMatrixTransformToParent(vtk_matrix(transforms.rigid(axes, tip)))
+
+
+def axes_of(scene, name):
+    matrix = scene.GetNodeByID(f"vtkMRMLSliceNode{name}").GetSliceToRAS()
+    return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(3)])
+
+
+def test_the_slices_lie_along_drill_and_instrument_and_then_as_before(room, follower, scenario):
+    stand(room, scenario)
+    before = {name: axes_of(room.scene, name)[:, :3] for name in ("Red", "Green", "Yellow")}
+    direction = np.array([0.2, -0.3, -0.93])
+    direction /= np.linalg.norm(direction)
+    put_instrument(room.scene, TIP, direction)
+    room.tell(phase="drilling")
+    room.run_until(lambda: room.logic.progress.phase == "drilling")
+    assert follower.needsPoses
+    follower.process()
+    to_head = transforms.inverse(scenario.head_to_world)
+    tip, along = transforms.apply(to_head, TIP), to_head[:3, :3] @ direction
+    for name, normal_along in (("Red", 1.0), ("Green", 0.0), ("Yellow", 0.0)):
+        axes = axes_of(room.scene, name)
+        np.testing.assert_allclose(axes[:, 3], tip, atol=1e-4)
+        assert abs(axes[:, 2] @ along) == pytest.approx(normal_along, abs=1e-6)
+        # As Slicer's own views are: their axes go round like those of a left hand, or a right one.
+        turned = np.linalg.det(axes[:, :3]), np.linalg.det(before[name])
+        assert turned[0] == pytest.approx(turned[1])
+    room.tell(phase="registered")
+    room.run_until(lambda: room.logic.progress.phase == "registered")
+    follower.process()
+    for name, axes in before.items():
+        np.testing.assert_allclose(axes_of(room.scene, name)[:, :3], axes)
+
+
+def test_views_that_are_not_to_lie_along_the_instrument_do_not(room, follower, scenario):
+    stand(room, scenario)
+    put_instrument(room.scene, TIP, np.array([0.0, 0.0, -1.0]))
+    follower.liesAlong = False
+    before = axes_of(room.scene, "Red")
+    room.tell(phase="inserting")
+    room.run_until(lambda: room.logic.progress.phase == "inserting")
+    follower.process()
+    assert not follower.needsPoses
+    np.testing.assert_allclose(axes_of(room.scene, "Red")[:, :3], before[:, :3])

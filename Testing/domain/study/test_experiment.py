@@ -221,6 +221,23 @@ def test_a_protocol_may_require_the_tutorial_before_each_trial_run_or_skip_it():
         protocol(tutorial="short")
 
 
+def test_a_protocol_may_name_a_procedure_for_the_trials_of_a_task():
+    assert "procedures" not in protocol().to_json()
+    own = protocol(procedures={"task-1": "dbs"})
+    assert study_protocol_from_json(own.to_json()) == own
+    steps = [step for step in steps_for(own, 0) if step.procedure]
+    assert {(step.kind, step.task, step.procedure) for step in steps} == {
+        ("trial", "task-1", "dbs")
+    }
+    assert "Task 1 with the procedure dbs" in steps[0].sentence
+    told = StudyStep("P07", "trial", task="task-1", procedure="dbs").arguments()
+    assert StudyStep.from_arguments(check_arguments("StudyStep", told)).procedure == "dbs"
+    with pytest.raises(InputError, match=r"procedures.task-9 must be one of the study's tasks"):
+        protocol(procedures={"task-9": "dbs"})
+    with pytest.raises(InputError, match=r"procedures.task-1 must be"):
+        protocol(procedures={"task-1": "No Name"})
+
+
 def test_nothing_is_skipped_silently(study):
     progress = StudyProgress(study)
     progress.set_protocol(protocol())

@@ -10,6 +10,7 @@ import slicer
 from rastrainer.panels.new_scenario_panel import NewScenarioPanel
 from rastrainer.panels.next_step_panel import NextStepPanel
 from rastrainer.panels.plan_panel import PlanPanel
+from rastrainer.panels.procedure_panel import ProcedurePanel
 from rastrainer.panels.registration_panel import RegistrationPanel
 from rastrainer.panels.scenario_panel import ScenarioPanel
 from rastrainer.panels.score_panel import ScorePanel
@@ -32,6 +33,7 @@ SECTIONS = (
     TrainingPanel,
     RegistrationPanel,
     PlanPanel,
+    ProcedurePanel,
     ScorePanel,
 )
 """In the order of the work."""

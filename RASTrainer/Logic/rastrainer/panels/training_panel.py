@@ -15,6 +15,7 @@ from rastrainer.panels.widgets import (
     YELLOW,
     chosenData,
     connectAsPressed,
+    fillComboBox,
     keepChecked,
     keepChosen,
     setLight,
@@ -78,12 +79,13 @@ class TrainingPanel:
             (session.trials.problemFound, self._showMessage),
             (session.aborted.problemFound, self._showMessage),
             (session.trainees.changed, self.showState),
-            (session.taskChosen, self.showState),
+            (session.taskChosen, self._showProcedures),
             (session.link.statusChanged, self.showState),
         )
         for signal, slot in self._listening:
             signal.connect(slot)
         self._showMessage("")
+        self._showProcedures()
         self._moveSlices()
         self.showState()
 
@@ -97,8 +99,8 @@ class TrainingPanel:
         self._start(TRIAL_RUN)
 
     def startTask(self) -> None:
-        """Start the chosen task."""
-        self._start(self._session.task)
+        """Start the chosen task, which continues with the chosen procedure."""
+        self._start(self._session.task, chosenData(self._ui.procedureComboBox))
 
     def pause(self) -> None:
         """Pause the trial."""
@@ -119,6 +121,15 @@ class TrainingPanel:
             )
             if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
                 self._logic.abort(trial.trialId)
+
+    def _showProcedures(self) -> None:
+        """Offer the procedures of the chosen scenario; another scenario begins with none."""
+        entries = [(_("none: only touches"), "")]
+        entries += [(title, name) for name, title in self._session.procedures]
+        chosen = chosenData(self._ui.procedureComboBox)
+        known = [name for _title, name in entries]
+        fillComboBox(self._ui.procedureComboBox, entries, chosen if chosen in known else "")
+        self.showState()
 
     def _moveSlices(self, *_checked: bool) -> None:
         slices = self._session.slices
@@ -154,10 +165,11 @@ class TrainingPanel:
         text = _("Shown to the trainee: {sentence}").format(sentence=progress.instruction)
         setSentence(ui.instructionText, text if progress.instruction else "")
 
-    def _start(self, task: str) -> None:
+    def _start(self, task: str, procedure: str = "") -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
             mode = chosenData(self._ui.modeComboBox)
-            self._session.study.startTrial(task, mode, self._ui.tutorialCheckBox.checked)
+            isTutorialFirst = self._ui.tutorialCheckBox.checked
+            self._session.study.startTrial(task, mode, isTutorialFirst, procedure)
 
     def _isPaused(self) -> bool:
         return self._logic.progress.phase == Phase.PAUSED.value

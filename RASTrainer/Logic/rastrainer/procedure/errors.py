@@ -129,6 +129,16 @@ class TrajectoryErrors:
         return self.axis_start + self.instrument.instrument_depth_mm * self.axis_direction
 
     @property
+    def shown_entry(self) -> np.ndarray:
+        """(3,) float, RAS: where the planned entry, as it was shown, truly lay in the head."""
+        return self.shown_target - self.trajectory.length_mm * self.shown_direction
+
+    @property
+    def shown_target(self) -> np.ndarray:
+        """(3,) float, RAS: the same of the planned target."""
+        return self.trajectory.target + self.target.by_registration
+
+    @property
     def depth(self) -> tuple[float, float, float]:
         """Depth error and what registration and hand caused of it, mm; above 0 is too deep."""
         return self.target.along(self.trajectory.direction)

@@ -37,6 +37,7 @@ TASK = Setting("RASTrainer/Task", "")
 IS_TUTORIAL_FIRST = Setting("RASTrainer/IsTutorialFirst", True)
 SLICES_SHOW_NEXT_POINT = Setting("RASTrainer/SlicesShowNextPoint", True)
 SLICES_FOLLOW_TOOL = Setting("RASTrainer/SlicesFollowTool", False)
+SLICES_LIE_ALONG = Setting("RASTrainer/SlicesLieAlong", True)
 FIT = Setting("RASTrainer/Fit", RIGID)
 IS_HEAD_COLORED = Setting("RASTrainer/IsHeadColored", False)
 

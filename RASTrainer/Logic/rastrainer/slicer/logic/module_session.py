@@ -12,6 +12,7 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
 from rastrainer.slicer.logic.plan_logic import PlanLogic
+from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.logic.replay_logic import ReplayLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
@@ -84,10 +85,12 @@ class ModuleSession:
         replay: feedback on stored trials, and their replay.
         registration: that is looked at.
         plan: of a target.
+        procedure: that the trial continues with.
         cohort: trials of the published study, with which CTPS compares.
         studyPath: file of the present study.
         task: name of the chosen task.
         taskTitle: what people read.
+        procedures: names and titles of the procedures of the chosen scenario.
         isSeen: returns whether someone may be looking at the module, at the 3D view, or (where
             asked to count them) at the slice views; the module's widget sets it.
         taskChosen: emits nothing, whenever another task is chosen.
@@ -120,6 +123,7 @@ class ModuleSession:
         self._scene = scene
         self._lockWait = LockWait.interactive()
         cache = ScenarioCache.below(places.assets / "scenarios", places.library)
+        self.procedures: tuple[tuple[str, str], ...] = ()
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
         self.work = BackgroundWork()
         self.link = Link(scene, findKit, callSoon=callSoon)
@@ -158,12 +162,14 @@ class ModuleSession:
         )
         self.registration = RegistrationLogic(scene, self.work)
         self.plan = PlanLogic(scene, self.link, self.registration)
+        self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
         self.task = ""
         self.taskTitle = ""
         self.isSeen: Callable[[bool], bool] = lambda _inSlices: False
         self.taskChosen = Signal()
         self.scenarioMade = Signal()
         self._trial = ""
+        self.training.sceneShown.connect(self.procedure.showPlan)
         self.trials.trialKept.connect(self.study.countTrial)
         self.trials.trialScored.connect(self._takeScored)
         self.aborted.kept.connect(self._takeAborted)
@@ -196,9 +202,11 @@ class ModuleSession:
         self.aborted.forgetWaiting()
         self.trainees.reopen()
 
-    def chooseTask(self, name: str, title: str) -> None:
-        """Choose the task that is started next."""
-        self.task, self.taskTitle = name, title
+    def chooseTask(
+        self, name: str, title: str, procedures: tuple[tuple[str, str], ...] = ()
+    ) -> None:
+        """Choose the task that is started next, and say what it may continue with."""
+        self.task, self.taskTitle, self.procedures = name, title, procedures
         self.taskChosen.emit()
 
     def process(self) -> None:
@@ -206,7 +214,7 @@ class ModuleSession:
         self.simulator.process()
         if self._scene.IsBatchProcessing():
             return
-        inSlices = self.slices.followsTool
+        inSlices = self.slices.needsPoses
         areShown = self.scenario.isRobotShown or inSlices
         self.link.wantPoses(areShown and self.isSeen(inSlices))
         self.link.process()
@@ -248,6 +256,7 @@ class ModuleSession:
         """Disconnect, close the study, and end the simulator that was started from here."""
         self.layout.giveBack()
         self.study.close()
+        self.procedure.close()
         self.training.close()
         self.trials.close()
         self.aborted.close()
@@ -265,8 +274,10 @@ class ModuleSession:
             self.work.later(listener)
 
     def _takeScored(self, analysis: TrialAnalysis) -> None:
-        record = analysis.record
+        record, present = analysis.record, self.training.progress
         self.plan.takeTruth(analysis)
+        isOtherOpen = self._isTrialOpen() and present.trialId != record.trial_id
+        self.procedure.takeScored(analysis, isOtherOpen)
         self.replay.takeFeedback(record.trial_id, analysis.feedback)
         self._showTrainees()
 

@@ -9,26 +9,37 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rastrainer import transforms
-from rastrainer.protocol import OPEN_PHASES, DeviceName
+from rastrainer.protocol import OPEN_PHASES, DeviceName, Phase
 from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
 from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
 from rastrainer.slicer.scene.registration_nodes import matrixOf
 from rastrainer.slicer.scene.scene import CONTENT_ATTRIBUTE, TASK_ATTRIBUTE, Role, findNode
-from rastrainer.slicer.scene.views import jumpTo
+from rastrainer.slicer.scene.views import AlongInstrument, jumpTo
 
 TRANSFORM, FIDUCIALS = "vtkMRMLLinearTransformNode", "vtkMRMLMarkupsFiducialNode"
 LEAST_MOVE_MM = 0.5
 PERIOD_S = 0.1
 """Between two jumps after the tool: each renders all slice views."""
+LEAST_TURN = 0.01
+"""Of the tool, in rad, before the views along it follow."""
+DEVICES = {
+    Phase.ALIGNING.value: DeviceName.TOOL_TIP_TO_WORLD,
+    Phase.DRILLING.value: DeviceName.INSTRUMENT_TIP_TO_WORLD,
+    Phase.INSERTING.value: DeviceName.INSTRUMENT_TIP_TO_WORLD,
+}
+"""Whose pose the views along the instrument follow, by the phase of a procedure."""
 
 
 class SliceFollower:
     """Moves the slices as far as they must to go through a place; where they look stays.
 
+    While the guide of a procedure is aligned, and drill and instrument are in it, they may lie
+    along it instead: one across the instrument (probe's-eye view), two along it.
+
     Attributes:
         showsNextPoint: whether they jump to each point that is to be touched next.
         followsTool: whether they stay at the tip of the tool, in the place of the next point.
+        liesAlong: whether they lie along the instrument of a procedure.
     """
 
     def __init__(
@@ -36,6 +47,9 @@ class SliceFollower:
     ) -> None:
         self.showsNextPoint = True
         self.followsTool = False
+        self.liesAlong = True
+        self._along = AlongInstrument(scene)
+        self._pose: np.ndarray | None = None
         self._scene = scene
         self._training = training
         self._clock = clock
@@ -56,15 +70,49 @@ class SliceFollower:
 
     def forgetScene(self) -> None:
         """Forget what was shown: the scene was cleared, and its views with it."""
-        self._shownPoint, self._place = (), None
+        self._shownPoint, self._place, self._pose = (), None, None
+        self._along.forgetScene()
+
+    @property
+    def needsPoses(self) -> bool:
+        """Whether the slices move with the tool."""
+        return self.followsTool or self._device is not None
 
     def process(self) -> None:
         """Follow what has moved; called about ten times a second."""
+        device = self._device
+        if device is not None:
+            self._shownPoint = ()
+            self._lieAlong(device)
+            return
+        if self._along.isShown:
+            if self._training.progress.phase == Phase.PAUSED.value:
+                return
+            self._along.giveBack()
+            self._pose = None
+            self.showAgain()
         if self.followsTool:
             self._shownPoint = ()
             self._followTool()
         elif self.showsNextPoint:
             self._showNextPoint()
+
+    @property
+    def _device(self) -> str | None:
+        """Whose pose the views along the instrument follow; None where they do not."""
+        return DEVICES.get(self._training.progress.phase) if self.liesAlong else None
+
+    def _lieAlong(self, device: str) -> None:
+        pose = poseOnHead(self._scene, device)
+        if pose is None or self._clock() < self._lastJump + PERIOD_S:
+            return
+        if self._pose is not None and self._along.isShown:
+            moved = float(np.linalg.norm(pose[:3, 3] - self._pose[:3, 3]))
+            turned = float(np.linalg.norm(pose[:3, 2] - self._pose[:3, 2]))
+            if moved < LEAST_MOVE_MM and turned < LEAST_TURN:
+                return
+        self._pose, self._lastJump = pose, self._clock()
+        self._along.show(pose[:3, 3], pose[:3, 2])
 
     def _followTool(self) -> None:
         tip = toolTip(self._scene)
@@ -89,14 +137,23 @@ def toolTip(scene: Any) -> np.ndarray | None:
 
     None where nothing is known of it, or of where the head is.
     """
-    pose = findNode(scene, TRANSFORM, DeviceName.TOOL_TIP_TO_WORLD)
+    pose = poseOnHead(scene, DeviceName.TOOL_TIP_TO_WORLD)
+    return None if pose is None else pose[:3, 3]
+
+
+def poseOnHead(scene: Any, device: str) -> np.ndarray | None:
+    """Return the pose of a device on the head, (4, 4) float, RAS mm; z is the tool's axis.
+
+    None where nothing is known of it, or of where the head is.
+    """
+    pose = findNode(scene, TRANSFORM, device)
     toHead = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)
     if pose is None or toHead is None:
         return None
-    tipToWorld = matrixOf(pose)
-    if np.array_equal(tipToWorld, np.eye(4)):
+    toWorld = matrixOf(pose)
+    if np.array_equal(toWorld, np.eye(4)):
         return None  # No pose has come yet.
-    return transforms.apply(matrixOf(toHead), tipToWorld[:3, 3])
+    return matrixOf(toHead) @ toWorld
 
 
 def _nextPoint(status: TrialStatus, fixed: Any | None) -> tuple[str, ...]:

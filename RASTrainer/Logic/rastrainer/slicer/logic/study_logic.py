@@ -129,18 +129,21 @@ class StudyLogic:
             return minutes
         return minutes + self._watch.unsavedS(self._trainees.chosen, step.mode) / 60.0
 
-    def startTrial(self, task: str, mode: str, isTutorialFirst: bool = True) -> None:
+    def startTrial(
+        self, task: str, mode: str, isTutorialFirst: bool = True, procedure: str = ""
+    ) -> None:
         """Start a trial for the chosen trainee, unless the study asks for something else first.
 
-        Within a study, the protocol decides whether a trial run waits for the tutorial.
+        Within a study, the protocol decides whether a trial run waits for the tutorial, and whether
+        the trial continues with a procedure.
 
         Raises:
             InputError: it does, or no trainee or task is chosen.
         """
         if self.protocol() is not None and self._trainees.chosen:
-            self._progress().check_start(mode, task)
+            procedure = self._progress().check_start(mode, task).procedure
             isTutorialFirst = True
-        self._training.start(self._trainees.chosen, task, mode, isTutorialFirst)
+        self._training.start(self._trainees.chosen, task, mode, isTutorialFirst, procedure)
 
     def offProtocolSentence(self) -> str:
         """Return a sentence while an enrolled trainee plays what the study has not requested."""

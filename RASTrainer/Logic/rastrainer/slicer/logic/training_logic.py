@@ -68,6 +68,7 @@ class TrainingLogic:
     Attributes:
         changed: emits nothing, whenever `progress` has changed.
         answered: emits the sentence of a command that was refused, empty where it was accepted.
+        sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
         learner: pseudonym of who does the tutorial before the trial run; empty where nobody does.
     """
 
@@ -80,6 +81,7 @@ class TrainingLogic:
     ) -> None:
         self.changed = Signal()
         self.answered = Signal()
+        self.sceneShown = Signal()
         self.learner = ""
         self._scene = scene
         self._link = link
@@ -100,7 +102,7 @@ class TrainingLogic:
     def progress(self) -> TrialStatus:
         """State of the trial now; its time continues between two messages."""
         state = self._state
-        elapsed = _number(state.get("elapsedS")) or 0.0
+        elapsed = knownNumber(state.get("elapsedS")) or 0.0
         if state.get("phase") == Phase.RUNNING.value:
             elapsed += self._clock() - self._stateTime
         touches = findNode(self._scene, "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS)
@@ -113,13 +115,20 @@ class TrainingLogic:
             nextPoint=str(state.get("nextPoint") or ""),
             touched=touches.GetNumberOfControlPoints() if state and touches is not None else 0,
             elapsedS=elapsed,
-            clearanceMm=_number(state.get("clearanceMm")),
+            clearanceMm=knownNumber(state.get("clearanceMm")),
             proximity=str(state.get("proximity", "")),
             instruction=str(state.get("instruction", "")),
         )
 
-    def start(self, trainee: str, task: str, mode: str, isTutorialFirst: bool = False) -> None:
-        """Start a trial.
+    def start(
+        self,
+        trainee: str,
+        task: str,
+        mode: str,
+        isTutorialFirst: bool = False,
+        procedure: str = "",
+    ) -> None:
+        """Start a trial, which continues with a procedure of the scenario if one is named.
 
         With `isTutorialFirst`, the simulator opens the tutorial instead of a trial run for trainees
         who have not done it yet with the device in use, unless the study or the simulator's setting
@@ -138,7 +147,11 @@ class TrainingLogic:
                 CommandName.START_TUTORIAL, who, lambda reply: self._startUnlessTutorial(reply, who)
             )
         else:
-            self._send(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": mode})
+            wanted = {"task": task, "trainee": trainee, "mode": mode}
+            self._send(
+                CommandName.START_TASK,
+                {**wanted, "procedure": procedure} if procedure else wanted,
+            )
 
     def pause(self) -> None:
         """Pause the trial."""
@@ -212,6 +225,7 @@ class TrainingLogic:
             return
         noteTouchedTask(self._scene, scenario.name, str(self._state.get("task", "")))
         showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
+        self.sceneShown.emit(scenario)
         self.changed.emit()
 
     def forgetScene(self) -> None:
@@ -232,5 +246,7 @@ def tutorialSentence(trainee: str) -> str:
     ).format(trainee=trainee)
 
 
-def _number(value: Any) -> float | None:
-    return float(value) if isinstance(value, (int, float)) and value is not True else None
+def knownNumber(value: Any) -> float | None:
+    """Return a number that the simulator has told; None where it is none."""
+    isNumber = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return float(value) if isNumber else None

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from rastrainer.files.point_list import PointList
 from rastrainer.journal.replay_track import ReplayTrack, find_track
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import Scenario
@@ -17,8 +18,10 @@ from rastrainer.trial import ctps
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
+from rastrainer.trial.touch_registration import TouchRegistration, register_touches
 
 REGISTER = f"{__name__}:register"
+REGISTER_OPEN = f"{__name__}:registerOpen"
 SCORE = f"{__name__}:score"
 EXPLAIN = f"{__name__}:explain"
 READ_TRACK = f"{__name__}:readTrack"
@@ -35,6 +38,14 @@ def register(
     """
     progress("Registering", 0.0)
     return analyze_trial(record, scenario, cohort)
+
+
+def registerOpen(
+    touches: PointList, scenario: Scenario, task: str, progress: Progress
+) -> TouchRegistration:
+    """Return the registration of an open trial's touches; errors of `register_touches`."""
+    progress("Registering", 0.0)
+    return register_touches(touches, scenario, task)
 
 
 def score(

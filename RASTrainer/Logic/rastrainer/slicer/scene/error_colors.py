@@ -154,7 +154,7 @@ def glyphsPolyData(
     for row in range(len(registration.labels)) if rows is None else rows:
         fixed, residual = registration.fixed_mm[row], float(registration.residuals_mm[row])
         append.AddInputData(_withScalar(_ball(fixed), residual))
-        append.AddInputData(_withScalar(_arrow(fixed, tips[row] - fixed), residual))
+        append.AddInputData(_withScalar(arrowPolyData(fixed, tips[row] - fixed), residual))
     append.Update()
     return append.GetOutput()
 
@@ -192,15 +192,21 @@ def _ball(center: np.ndarray) -> vtk.vtkPolyData:
     return sphere.GetOutput()
 
 
-def _arrow(start: np.ndarray, vector: np.ndarray) -> vtk.vtkPolyData:
-    """Return an arrow whose shaft has the same thickness whatever its length."""
+def arrowPolyData(start: np.ndarray, vector: np.ndarray, thickness: float = 1.0) -> vtk.vtkPolyData:
+    """Return an arrow whose shaft has the same thickness whatever its length.
+
+    Args:
+        start: (3,) float, mm.
+        vector: (3,) float, mm.
+        thickness: factor on shaft and tip.
+    """
     length = max(float(np.linalg.norm(vector)), 1e-6)
     arrow = vtk.vtkArrowSource()
     arrow.SetTipResolution(16)
     arrow.SetShaftResolution(12)
-    arrow.SetTipLength(min(4.5, 0.5 * length) / length)
-    arrow.SetTipRadius(2.0 / length)
-    arrow.SetShaftRadius(0.8 / length)
+    arrow.SetTipLength(min(4.5 * thickness, 0.5 * length) / length)
+    arrow.SetTipRadius(2.0 * thickness / length)
+    arrow.SetShaftRadius(0.8 * thickness / length)
     place = vtk.vtkTransform()
     place.Translate(start)
     place.Concatenate(_turnFromX(vector / length))

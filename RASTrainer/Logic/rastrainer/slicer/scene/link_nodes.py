@@ -18,7 +18,8 @@ def prepareNodes(scene: Any) -> None:
     """Make the nodes that are missing; the connector adopts nodes of that name and class."""
     capturedPointsNode(scene)
     simStateNode(scene)
-    for name in (DeviceName.TOOL_TIP_TO_WORLD, *DeviceName.LINK_TO_WORLD):
+    tips = (DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD)
+    for name in (*tips, *DeviceName.LINK_TO_WORLD):
         _node(scene, "vtkMRMLLinearTransformNode", name, name).SetSaveWithScene(False)
 
 

@@ -153,7 +153,7 @@ def _showTargets(scene: Any, scenario: Scenario) -> None:
     names = [scenario.target_name, *(target.name for target in scenario.targets)]
     places = [scenario.target_position, *(target.position for target in scenario.targets)]
     setPoints(node, names, np.array(places, dtype=float))
-    _showAsPlanned(node)
+    showAsPlanned(node)
 
 
 def _showTrajectory(scene: Any, scenario: Scenario) -> None:
@@ -164,9 +164,10 @@ def _showTrajectory(scene: Any, scenario: Scenario) -> None:
     node = findOrAddNode(scene, "vtkMRMLMarkupsLineNode", Role.TRAJECTORY, planned.name)
     node.SetName(planned.name)
     setPoints(node, ("Entry", "Target"), np.array([planned.entry, planned.target], dtype=float))
-    _showAsPlanned(node)
+    showAsPlanned(node)
 
 
-def _showAsPlanned(node: Any) -> None:
+def showAsPlanned(node: Any) -> None:
+    """Show a markups node as part of the plan, which is not moved by hand."""
     node.SetLocked(True)
     node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)

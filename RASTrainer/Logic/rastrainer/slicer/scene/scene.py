@@ -33,6 +33,12 @@ class Role:
     MOTION = "motion metrics"
     PLAN_TARGET = "plan target"
     PLAN_TRAJECTORY = "plan trajectory"
+    PLANNED_LINE = "procedure planned line"
+    REGISTERED_LINE = "procedure registered line"
+    TRUE_LINE = "procedure true line"
+    ERRORS_BY_REGISTRATION = "procedure errors by registration"
+    ERRORS_BY_HAND = "procedure errors by hand"
+    PROCEDURE_ERRORS = "procedure errors"
     ROBOT = "robot"
     REPLAY = "replay"
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import slicer
+import vtk
 
 from rastrainer.slicer.scene.scene import nodesOfClass
 
@@ -24,6 +26,85 @@ def showAsBackground(scene: Any, volume: Any) -> None:
     """Show a volume behind all else in each slice view."""
     for composite in nodesOfClass(scene, "vtkMRMLSliceCompositeNode"):
         composite.SetBackgroundVolumeID(volume.GetID())
+
+
+PROBES_EYE, IN_LINE, ACROSS = "Red", "Green", "Yellow"
+"""Names of the slice views that show the plane across an instrument, and the two along it."""
+LEAST_ACROSS = 0.3
+"""An instrument that goes along the patient's left-right axis leaves less of it across itself."""
+
+
+class AlongInstrument:
+    """Slice views that lie along an instrument for a while, and are then as they were."""
+
+    def __init__(self, scene: Any) -> None:
+        self._scene = scene
+        self._former: dict[str, vtk.vtkMatrix4x4] = {}
+
+    @property
+    def isShown(self) -> bool:
+        """Whether the views lie along an instrument."""
+        return bool(self._former)
+
+    def show(self, tip: np.ndarray, direction: np.ndarray) -> None:
+        """Lay the views through the tip of an instrument.
+
+        The probe's-eye view is across it, seen from outside, the other two are along it, with the
+        instrument coming from above; as far as possible, the patient's right is on the left.
+
+        Args:
+            tip: (3,) float, RAS mm.
+            direction: (3,) float, RAS, unit vector into the head.
+        """
+        axes = instrumentAxes(direction)
+        for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
+            if view.GetName() not in axes:
+                continue
+            matrix = view.GetSliceToRAS()
+            if view.GetID() not in self._former:
+                self._former[view.GetID()] = vtk.vtkMatrix4x4()
+                self._former[view.GetID()].DeepCopy(matrix)
+            for column, vector in enumerate((*axes[view.GetName()], tip)):
+                for row in range(3):
+                    matrix.SetElement(row, column, float(vector[row]))
+            view.UpdateMatrices()
+
+    def giveBack(self) -> None:
+        """Let the views lie as they did before."""
+        for viewId, former in self._former.items():
+            view = self._scene.GetNodeByID(viewId)
+            if view is not None:
+                view.GetSliceToRAS().DeepCopy(former)
+                view.UpdateMatrices()
+        self._former.clear()
+
+    def forgetScene(self) -> None:
+        """Forget how the views lay: the scene was cleared."""
+        self._former.clear()
+
+
+def instrumentAxes(direction: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the axes of the slice views along an instrument, by the view's name.
+
+    Each is (3, 3) float, RAS: to the right of the view, up in it, and its normal, which go round as
+    in Slicer's axial, coronal and sagittal views.
+
+    Args:
+        direction: (3,) float, RAS, unit vector into the head.
+    """
+    outward = -direction
+    left = np.array([-1.0, 0.0, 0.0])
+    across = left - (left @ outward) * outward
+    if np.linalg.norm(across) < LEAST_ACROSS:
+        front = np.array([0.0, 1.0, 0.0])
+        across = front - (front @ outward) * outward
+    across /= np.linalg.norm(across)
+    upward = np.cross(across, outward)
+    return {
+        PROBES_EYE: np.array([across, upward, outward]),
+        IN_LINE: np.array([across, outward, upward]),
+        ACROSS: np.array([-upward, outward, across]),
+    }
 
 
 class BorrowedLayout:

@@ -47,8 +47,10 @@ def _played_for(
     found = next(
         (
             (when, trial)
-            for when, trial, mode, task in _trials_of(connection, pseudonym)
-            if (mode, task) == (step.mode, step.task) and trial not in counted and when >= since
+            for when, trial, *played in _trials_of(connection, pseudonym)
+            if played == [step.mode, step.task, step.procedure]
+            and trial not in counted
+            and when >= since
         ),
         None,
     )
@@ -61,19 +63,21 @@ def _played_for(
 
 def _trials_of(
     connection: sqlite3.Connection, pseudonym: str
-) -> list[tuple[datetime, str, str, str]]:
-    """Return start, UUID, mode and task of the finished trials of a trainee, in order."""
+) -> list[tuple[datetime, str, str, str, str]]:
+    """Return start, UUID, mode, task and procedure of a trainee's finished trials, in order."""
     rows = connection.execute(
-        f"SELECT trial_id, mode, task, started_utc FROM trials WHERE trainee_id = ({TRAINEE_ID})",
+        "SELECT started_utc, trial_id, mode, task, "
+        "coalesce(json_extract(record_json, '$.procedure.procedure'), '') "
+        f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
         (pseudonym,),
     ).fetchall()
-    return sorted((moment(started), trial, mode, task) for trial, mode, task, started in rows)
+    return sorted((moment(started), *others) for started, *others in rows)
 
 
 def _since(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -> datetime:
     """Return the earliest start of the next step's trial."""
     counted = set(progress.counted_trials)
-    after = [when for when, trial, _m, _t in _trials_of(connection, pseudonym) if trial in counted]
+    after = [when for when, trial, *_ in _trials_of(connection, pseudonym) if trial in counted]
     return max([*after, moment(progress.enrolled_utc)])
 
 

@@ -35,6 +35,7 @@ class Step:
         guidance: A `Guidance` to the next point; "" for the simulator's setting.
         ghost: A `GhostRule` for a trial; "" for none.
         tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
+        procedure: That the trial continues with; "" for the touches alone.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Step:
     guidance: str = ""
     ghost: str = ""
     tutorial: str = ""
+    procedure: str = ""
 
     @property
     def sentence(self) -> str:
@@ -58,7 +60,10 @@ class Step:
             return f"Take a break of at least {self.minutes:g} minutes."
         if self.kind is StepKind.TRIAL_RUN:
             return f"Get to know the trial run{where} for {self.minutes:g} minutes."
-        return f"Play {self.task.replace('-', ' ').capitalize()}{where}."
+        task = self.task.replace("-", " ").capitalize()
+        if self.procedure:
+            return f"Play {task} with the procedure {self.procedure}{where}."
+        return f"Play {task}{where}."
 
 
 def steps_for(protocol: StudyProtocol, place: int) -> tuple[Step, ...]:
@@ -128,6 +133,7 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
                 round_ + 1,
                 guidance=protocol.guidance,
                 ghost=protocol.ghost,
+                procedure=protocol.procedures.get(task, ""),
             )
             yield from _questions(protocol, AFTER_TASK, mode, name)
     yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")

@@ -30,7 +30,7 @@ READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, "2", SCORE_VERSION)
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
     *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
-    *("guidance", "ghost", "tutorial"),
+    *("guidance", "ghost", "tutorial", "procedures"),
 )
 
 
@@ -64,6 +64,8 @@ class StudyProtocol:
         guidance: A `Guidance` to the next point; "" leaves it to the simulator's setting.
         ghost: A `GhostRule` for the trials; "" for none, whatever the simulator's setting.
         tutorial: A `TutorialRule`; "" leaves it to the simulator's setting.
+        procedures: By task, the procedure that its trials continue with; without one, a trial ends
+            with the registration.
     """
 
     name: str
@@ -83,11 +85,13 @@ class StudyProtocol:
     guidance: str = ""
     ghost: str = ""
     tutorial: str = ""
+    procedures: Mapping[str, str] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
         mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
         chosen = {"guidance": self.guidance, "ghost": self.ghost, "tutorial": self.tutorial}
+        procedures = {"procedures": dict(self.procedures)} if self.procedures else {}
         return {
             "formatVersion": FORMAT_VERSION,
             "name": self.name,
@@ -96,6 +100,7 @@ class StudyProtocol:
             "modeOrder": self.mode_order,
             "tasks": list(self.tasks),
             **{name: value for name, value in chosen.items() if value},
+            **procedures,
             "taskOrder": self.task_order,
             "repetitions": self.repetitions,
             "trialRun": {"minutes": self.trial_run_min},
@@ -194,10 +199,21 @@ def _protocol(fields: Fields) -> StudyProtocol:
         tutorial=fields.one_of("tutorial", tuple(rule.value for rule in TutorialRule))
         if "tutorial" in fields.names()
         else "",
+        procedures=_procedures(fields, tasks),
     )
     if len(modes) * len(tasks) * protocol.repetitions > MOST_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MOST_STEPS} trials")
     return protocol
+
+
+def _procedures(fields: Fields, tasks: tuple[str, ...]) -> dict[str, str]:
+    if "procedures" not in fields.names():
+        return {}
+    entries = fields.fields("procedures")
+    for task in entries.names():
+        if task not in tasks:
+            raise entries.error(task[:40], f"one of the study's tasks, {', '.join(tasks)}")
+    return {task: entries.identifier(task) for task in entries.names()}
 
 
 def _questionnaire(entry: Fields, modes: tuple[str, ...]) -> ScheduledQuestionnaire:

@@ -67,6 +67,7 @@ class StudyStep:
             over=min(progress.minutes_over(now), step.minutes),
             guidance=step.guidance,
             ghost=step.ghost,
+            procedure=step.procedure,
             tutorial=step.tutorial,
         )
 

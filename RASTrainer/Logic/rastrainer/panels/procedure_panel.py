@@ -1,0 +1,276 @@
+"""The section Procedure: what follows the registration of a trial, step by step, and its errors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import slicer
+
+from rastrainer.number_text import fixed
+from rastrainer.panels.widgets import (
+    fillTable,
+    keepChecked,
+    setSentence,
+    setText,
+    setUsable,
+)
+from rastrainer.procedure.errors import TrajectoryErrors
+from rastrainer.protocol import Phase
+from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
+from rastrainer.slicer.settings import SLICES_LIE_ALONG
+from rastrainer.slicer.translation import _
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
+
+
+class _Step(NamedTuple):
+    """A button: its widget's name, the phases it belongs to, what it does, and its tool tip."""
+
+    button: str
+    phases: tuple[Phase, ...]
+    do: Callable[[ProcedureLogic], None]
+    tip: str
+
+
+_VERIFY, _ALIGN = (Phase.VERIFYING,), (Phase.ALIGNING,)
+_DRILL, _INSERT = (Phase.DRILLING,), (Phase.INSERTING,)
+STEPS = (
+    _Step(
+        "acceptButton",
+        _VERIFY,
+        ProcedureLogic.accept,
+        _("Continue with the registration in use; what comes next depends on it."),
+    ),
+    _Step(
+        "registerAgainButton", _VERIFY, ProcedureLogic.registerAgain, _("Touch all points again.")
+    ),
+    _Step(
+        "alignButton",
+        _ALIGN,
+        ProcedureLogic.align,
+        _("Let the robot bring the guide onto the planned line."),
+    ),
+    _Step("lockButton", _ALIGN, ProcedureLogic.lock, _("Lock the guide where it is.")),
+    _Step(
+        "advanceButton",
+        (*_DRILL, *_INSERT),
+        lambda logic: logic.feed(True),
+        _("Move drill or instrument 1 mm along the guide."),
+    ),
+    _Step(
+        "withdrawButton",
+        (*_DRILL, *_INSERT),
+        lambda logic: logic.feed(False),
+        _("Move drill or instrument 1 mm back."),
+    ),
+    _Step(
+        "retractDrillButton",
+        _DRILL,
+        ProcedureLogic.retractDrill,
+        _("Take the drill out and align the guide again; only before it has cut bone."),
+    ),
+    _Step(
+        "startInsertionButton",
+        _DRILL,
+        ProcedureLogic.startInsertion,
+        _("Replace the drill by the instrument."),
+    ),
+    _Step("releaseButton", _INSERT, ProcedureLogic.release, _("Leave the instrument where it is.")),
+)
+WHEN = {
+    Phase.VERIFYING: _("while the registration is verified"),
+    Phase.ALIGNING: _("while the guide is aligned"),
+    Phase.DRILLING: _("while the skull is drilled"),
+    Phase.INSERTING: _("while the instrument is inserted"),
+}
+
+
+class ProcedurePanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        self._ui = ui
+        self._session = session
+        self._logic = session.procedure
+        self._shown: ProcedureOutcome | None = None
+        keepChecked(ui.slicesAlongCheckBox, session.settings, SLICES_LIE_ALONG)
+        ui.slicesAlongCheckBox.connect("toggled(bool)", self._laySlices)
+        for step in STEPS:
+            getattr(ui, step.button).connect("clicked()", self._action(step))
+        ui.procedureErrorsTable.connect("itemSelectionChanged()", self._jumpToTarget)
+        self._listening = (
+            (self._logic.changed, self.showState),
+            (self._logic.answered, self._showMessage),
+            (session.link.statusChanged, self.showState),
+        )
+        for signal, slot in self._listening:
+            signal.connect(slot)
+        self._laySlices()
+        self._showMessage("")
+        self._showOutcome()
+        self.showState()
+
+    def close(self) -> None:
+        """Stop listening to the session."""
+        for signal, slot in self._listening:
+            signal.disconnect(slot)
+
+    def showState(self, *_arguments: Any) -> None:
+        """Show how far the procedure is; called about ten times a second."""
+        ui, status = self._ui, self._logic.status
+        isConnected = self._session.link.status.state is LinkState.CONNECTED
+        setText(ui.procedureStateText, stateText(status, isConnected))
+        setSentence(ui.procedureInstructionText, instruction(status) if isConnected else "")
+        for step in STEPS:
+            isReady = status.isRegistered or Phase.VERIFYING not in step.phases
+            isNow = status.isUnderWay and status.phase in [phase.value for phase in step.phases]
+            when = _(" or ").join(WHEN[phase] for phase in step.phases)
+            reason = _("Only {when}.").format(when=when)
+            if isNow and not isReady:
+                reason = _("The touches are being registered.")
+            if not isConnected:
+                reason = _("Connect to the simulator first.")
+            setUsable(getattr(ui, step.button), isConnected and isNow and isReady, step.tip, reason)
+        if self._logic.outcome is not self._shown:
+            self._showOutcome()
+
+    def _action(self, step: _Step) -> Callable[[], None]:
+        def act() -> None:
+            with slicer.util.tryWithErrorDisplay(_("The command was not sent.")):
+                step.do(self._logic)
+
+        return act
+
+    def _laySlices(self, *_checked: bool) -> None:
+        self._session.slices.liesAlong = self._ui.slicesAlongCheckBox.checked
+
+    def _showOutcome(self) -> None:
+        ui, outcome = self._ui, self._logic.outcome
+        self._shown = outcome
+        each = () if outcome is None else outcome.analysis.trajectories
+        fillTable(ui.procedureErrorsTable, map(_row, each), [_tip(errors) for errors in each])
+        ui.procedureErrorsTable.visible = outcome is not None
+        setSentence(ui.procedureScoreText, "" if outcome is None else scoreText(outcome))
+
+    def _jumpToTarget(self) -> None:
+        """Show the planned target of the chosen line in the slice views."""
+        row = self._ui.procedureErrorsTable.currentRow()
+        if self._shown is not None and 0 <= row < len(self._shown.analysis.trajectories):
+            self._session.slices.show(self._shown.analysis.trajectories[row].trajectory.target)
+
+    def _showMessage(self, sentence: str) -> None:
+        setSentence(self._ui.procedureMessageText, sentence)
+
+
+def stateText(status: ProcedureStatus, isConnected: bool) -> str:
+    """Return where the procedure is, with the numbers that the trainee sees, too."""
+    if not isConnected:
+        return _("Connect to the simulator first.")
+    if not status.name:
+        return _("No trial with a procedure is open: choose one in the section Training.")
+    line = _("{name}, line {number} of {count}").format(
+        name=status.name, number=status.trajectory + 1, count=status.trajectories
+    )
+    if status.phase == Phase.ALIGNING.value and status.entryDistanceMm is not None:
+        return _(
+            "{line}: the guide is {entry} mm and {angle}° off, {standOff} mm before the entry."
+        ).format(
+            line=line,
+            entry=fixed(status.entryDistanceMm, 2),
+            angle=fixed(status.angleDeg or 0.0, 2),
+            standOff=fixed(status.standOffMm or 0.0, 1),
+        )
+    if status.phase in (Phase.DRILLING.value, Phase.INSERTING.value):
+        return _("{line}: {depth} mm beyond the guide.").format(
+            line=line, depth=fixed(status.feedMm, 1)
+        )
+    return line if status.trajectories else status.name
+
+
+def instruction(status: ProcedureStatus) -> str:
+    """Return what comes next; empty where that is not the procedure's."""
+    if not status.isUnderWay:
+        return ""
+    if status.phase == Phase.VERIFYING.value:
+        if not status.isRegistered:
+            return _("The touches are being registered.")
+        checked = _("No checkpoint has been touched.")
+        if status.lastCheckMm is not None:
+            checked = _("The last checkpoint was {error} mm off.").format(
+                error=fixed(status.lastCheckMm, 1)
+            )
+        return (
+            checked
+            + " "
+            + _(
+                "Touch checkpoints to verify the registration; then accept it, or register again. "
+                "An offset common to all touches cannot be seen there."
+            )
+        )
+    return {
+        Phase.ALIGNING.value: _(
+            "Bring the guide onto the planned line, by hand or by the robot; then lock it."
+        ),
+        Phase.DRILLING.value: _(
+            "Drill through the skull, and stop past its inner table; then insert the instrument."
+        ),
+        Phase.INSERTING.value: _("Advance the instrument to the target, and release it there."),
+    }[status.phase]
+
+
+def scoreText(outcome: ProcedureOutcome) -> str:
+    """Return the score of a procedure, and why it is not acceptable where it is not."""
+    score, analysis = outcome.score, outcome.analysis
+    text = _("Score of the procedure: {score} of 100 (version {version}).").format(
+        score=fixed(score.score, 1), version=score.version
+    )
+    for trajectory, structure in analysis.hits:
+        text += " " + _("{trajectory} hit {structure}.").format(
+            trajectory=trajectory, structure=structure
+        )
+    for trajectory in analysis.missed_bone:
+        text += " " + _("{trajectory} missed the skull.").format(trajectory=trajectory)
+    if not score.acceptable:
+        text += " " + _("Not acceptable: an error is beyond its limit, or a structure was hit.")
+    return text
+
+
+def _row(errors: TrajectoryErrors) -> tuple[str, ...]:
+    target = errors.target
+    return (
+        errors.trajectory.name,
+        fixed(target.length_mm, 2),
+        fixed(target.registration_mm, 2),
+        fixed(target.hand_mm, 2),
+        fixed(errors.entry.length_mm, 2),
+        fixed(errors.angle_deg, 2),
+    )
+
+
+def _tip(errors: TrajectoryErrors) -> str:
+    depth, depthShown, depthHand = errors.depth
+    plunge = "–" if errors.plunge_mm is None else f"{fixed(errors.plunge_mm, 1)} mm"
+    lines = [
+        _(
+            "Radial error {radial} mm, depth error {depth} mm (registration {shown}, hand {hand})."
+        ).format(
+            radial=fixed(errors.radial.length_mm, 2),
+            depth=fixed(depth, 2),
+            shown=fixed(depthShown, 2),
+            hand=fixed(depthHand, 2),
+        ),
+        _("Entry: by registration {shown} mm, by hand {hand} mm.").format(
+            shown=fixed(errors.entry.registration_mm, 2), hand=fixed(errors.entry.hand_mm, 2)
+        ),
+        _("Angle: by registration {shown}°, by hand {hand}°.").format(
+            shown=fixed(errors.registration_angle_deg, 2), hand=fixed(errors.hand_angle_deg, 2)
+        ),
+        _("Plunge depth {plunge}.").format(plunge=plunge),
+        *(
+            _("{mm} mm to {name}.").format(mm=fixed(kept, 1), name=name)
+            for name, kept in errors.kept_mm.items()
+        ),
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,231 @@
+"""A trial's procedure from Slicer: its touches registered, its steps commanded, its lines shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.training_logic import knownNumber
+from rastrainer.slicer.logic.trial_work import REGISTER_OPEN
+from rastrainer.slicer.program.own_process import Run, runHere
+from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProcedureErrors
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
+from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from rastrainer.trial.touch_registration import TouchRegistration, touches_of
+
+FEED_MM, FEED_MM_S = 1.0, 2.0
+"""How far one press of a button feeds drill or instrument, and how fast."""
+
+
+@dataclass(frozen=True)
+class ProcedureStatus:
+    """State of the procedure of the simulator's trial, everything by the registration in use.
+
+    Attributes:
+        name: of the procedure; empty where the trial has none.
+        phase: of the trial.
+        trajectory: number of the line at hand, from 0.
+        trajectories: how many there are.
+        isRegistered: whether a registration is in use.
+        entryDistanceMm: of the planned entry from the guide's axis; None where there is no guide.
+        angleDeg: between guide and planned line; None where there is no guide.
+        standOffMm: of the guide's tip from the entry; None where there is no guide.
+        feedMm: how far drill or instrument is beyond the guide's tip.
+        lastCheckMm: error at the checkpoint that was touched last; None before.
+    """
+
+    name: str = ""
+    phase: str = Phase.IDLE.value
+    trajectory: int = 0
+    trajectories: int = 0
+    isRegistered: bool = False
+    entryDistanceMm: float | None = None
+    angleDeg: float | None = None
+    standOffMm: float | None = None
+    feedMm: float = 0.0
+    lastCheckMm: float | None = None
+
+    @classmethod
+    def of(cls, state: Mapping[str, Any]) -> ProcedureStatus:
+        """Return the procedure's part of the simulator's state, which may hold anything."""
+        told = state.get("procedure")
+        if not isinstance(told, Mapping):
+            return cls(phase=str(state.get("phase", Phase.IDLE.value)))
+        return cls(
+            name=str(told.get("name", "")),
+            phase=str(state.get("phase", Phase.IDLE.value)),
+            trajectory=int(knownNumber(told.get("trajectory")) or 0),
+            trajectories=int(knownNumber(told.get("trajectories")) or 0),
+            isRegistered=told.get("registrationInUse") is True,
+            entryDistanceMm=knownNumber(told.get("entryDistanceMm")),
+            angleDeg=knownNumber(told.get("angleDeg")),
+            standOffMm=knownNumber(told.get("standOffMm")),
+            feedMm=knownNumber(told.get("feedMm")) or 0.0,
+            lastCheckMm=knownNumber(told.get("lastCheckMm")),
+        )
+
+    @property
+    def isUnderWay(self) -> bool:
+        """Whether the touches are done, and the procedure goes on."""
+        return bool(self.name) and self.phase in PROCEDURE_PHASES
+
+
+class ProcedureLogic:
+    """What the Procedure panel does; answers come by a later `process` of the link.
+
+    The touches of an open trial with a procedure are registered here, without being asked: the
+    simulator waits for that as long as Slicer is connected. Nothing is revealed by it.
+
+    Attributes:
+        changed: emits nothing, whenever `status` or `outcome` has changed.
+        answered: emits the sentence of a command that was refused, empty where it was accepted.
+        status: of the trial's procedure.
+        outcome: of the procedure that was scored last; None before, and during the next one.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        link: Link,
+        findScenario: Callable[[str], Scenario],
+        work: BackgroundWork,
+        run: Run = runHere,
+    ) -> None:
+        """Follow the trials of a link.
+
+        Args:
+            scene: the scene.
+            link: to the simulator.
+            findScenario: gives the scenario of a name, in any thread.
+            work: in which touches are registered.
+            run: runs the function that does so.
+        """
+        self.changed = Signal()
+        self.answered = Signal()
+        self.status = ProcedureStatus()
+        self.outcome: ProcedureOutcome | None = None
+        self._scene = scene
+        self._link = link
+        self._findScenario = findScenario
+        self._work = work
+        self._run = run
+        self._trialId = ""
+        self._registering = ""
+        link.stateChanged.connect(self._follow)
+        link.opened.connect(self._beginAgain)
+
+    def close(self) -> None:
+        """Stop listening to the link."""
+        self._link.stateChanged.disconnect(self._follow)
+        self._link.opened.disconnect(self._beginAgain)
+
+    def accept(self) -> None:
+        """Go on by the registration in use."""
+        self._send(CommandName.ACCEPT_REGISTRATION)
+
+    def registerAgain(self) -> None:
+        """Let all points be touched again."""
+        self._send(CommandName.REGISTER_AGAIN)
+
+    def align(self) -> None:
+        """Let the robot bring the guide onto the planned line by itself."""
+        self._send(CommandName.ALIGN_GUIDE)
+
+    def lock(self) -> None:
+        """Lock the guide where it is."""
+        self._send(CommandName.LOCK_GUIDE)
+
+    def feed(self, forward: bool) -> None:
+        """Move drill or instrument by a millimeter along the guide."""
+        velocity = FEED_MM_S if forward else -FEED_MM_S
+        arguments = {"velocityMmS": velocity, "durationS": FEED_MM / FEED_MM_S}
+        self._send(CommandName.FEED, arguments)
+
+    def retractDrill(self) -> None:
+        """Take the drill out, and align again."""
+        self._send(CommandName.RETRACT_DRILL)
+
+    def startInsertion(self) -> None:
+        """Exchange the drill for the instrument."""
+        self._send(CommandName.START_INSERTION)
+
+    def release(self) -> None:
+        """Leave the instrument where it is."""
+        self._send(CommandName.RELEASE_INSTRUMENT)
+
+    def takeScored(self, analysis: TrialAnalysis, isOtherOpen: bool) -> None:
+        """Take the errors of a scored trial, and show them unless another trial is played."""
+        if analysis.procedure is None or isOtherOpen:
+            return
+        self.outcome = analysis.procedure
+        showProcedureErrors(self._scene, self.outcome.analysis)
+        self.changed.emit()
+
+    def showPlan(self, scenario: Scenario) -> None:
+        """Show the planned lines of the procedure of a trial that has begun, in its scenario."""
+        named = [each for each in scenario.procedures if each.name == self.status.name]
+        showPlannedLines(self._scene, named[0] if named else None)
+
+    def _send(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
+        self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
+
+    def _follow(self, state: Mapping[str, Any]) -> None:
+        status, trialId = ProcedureStatus.of(state), str(state.get("trialId", ""))
+        if trialId != self._trialId:
+            self._trialId = trialId
+            self.outcome = None if status.name else self.outcome
+        if status != self.status:
+            self.status = status
+            self.changed.emit()
+        if status.phase != Phase.VERIFYING.value or status.isRegistered:
+            self._registering = ""
+        elif status.name and self._registering != trialId:
+            self._registering = trialId
+            self._register(trialId)
+
+    def _beginAgain(self) -> None:
+        self._registering = ""
+
+    def _register(self, trialId: str) -> None:
+        """Have the touches of the open trial registered, and the procedure go on by that."""
+
+        def askForTouches(reply: Reply) -> None:
+            scenario = str(reply.data.get("scenario", ""))
+            self._ask(
+                CommandName.GET_TRIAL,
+                {"trialId": trialId},
+                lambda told: self._work.do(
+                    lambda: self._registered(told.data, scenario), use, self._fail
+                ),
+            )
+
+        def use(registered: TouchRegistration) -> None:
+            self._ask(CommandName.USE_REGISTRATION, registered.arguments(trialId), lambda _r: None)
+
+        self._ask(CommandName.LIST_TASKS, {}, askForTouches)
+
+    def _registered(self, told: Mapping[str, Any], scenarioName: str) -> TouchRegistration:
+        scenario = self._findScenario(scenarioName)
+        progress, task = self._work.checkWanted, str(told.get("task", ""))
+        return self._run(REGISTER_OPEN, progress, touches_of(told), scenario, task)
+
+    def _ask(self, name: str, arguments: Mapping[str, Any], take: Callable[[Reply], None]) -> None:
+        def takeAnswer(reply: Reply) -> None:
+            if reply.ok:
+                take(reply)
+            else:
+                self._fail(reply.error)
+
+        self._link.send(name, arguments, takeAnswer)
+
+    def _fail(self, reason: Exception | str) -> None:
+        text = _("The touches were not registered: {reason}").format(reason=reason)
+        self.answered.emit(text)

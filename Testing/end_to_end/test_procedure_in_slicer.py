@@ -1,0 +1,158 @@
+"""Slicer's side leads a procedure of the default head, against a real simulator, and scores it."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from rastrainer.protocol import DEFAULT_HOST, CommandName, Phase
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.logic.module_session import ModulePaths, ModuleSession
+from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer.slicer.scene.procedure_lines import LINE
+from rastrainer.slicer.scene.scene import Role, nodesOf, nodesOfClass
+from rastrainer.study.database.study import Study
+from rastrainer_headless.connector import headlessKit
+from rastrainer_headless.scene import HeadlessScene
+from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.end_to_end.study_side import ROOT
+from Testing.end_to_end.test_trial_over_openigtlink import SPEED, Player, play
+
+PROCEDURE = "biopsy"
+FEED_MM_S, FEED_S = 10.0, 1.0
+WITHIN_S = 60.0
+
+
+class Leader:
+    """The whole session of Slicer's module, whose timer the test is."""
+
+    def __init__(self, folder, port: int):
+        places = ModulePaths(
+            assets=asset_path(),
+            python=sys.executable,
+            simulator=folder / "simulator",
+            study=folder / "study.db",
+            records=folder / "records",
+            library=folder / "scenarios",
+            package=SimulatorPackage.of(ROOT / "RASTrainer"),
+        )
+        self.session = ModuleSession(HeadlessScene().scene, places, headlessKit)
+        self.session.isSeen = lambda _slices: True
+        self.answers: list[str] = []
+        self.session.procedure.answered.connect(self.answers.append)
+        self.session.link.connectTo(DEFAULT_HOST, port)
+
+    @property
+    def status(self):
+        return self.session.procedure.status
+
+    def until(self, condition) -> None:
+        deadline = time.monotonic() + WITHIN_S
+        while not condition():
+            if self.session.link.connector is not None:
+                self.session.link.connector.PeriodicProcess()
+            self.session.process()
+            self.session.work.giveTime()
+            time.sleep(0.005)
+            assert time.monotonic() < deadline, (self.status, self.answers)
+
+    def until_in(self, phase: Phase) -> None:
+        self.until(lambda: self.status.phase == phase.value)
+
+    def is_aligned(self) -> bool:
+        off = (self.status.entryDistanceMm, self.status.angleDeg)
+        return None not in off and max(off) < 0.01
+
+    def feed_to(self, depth_mm: float) -> None:
+        while self.status.feedMm < depth_mm:
+            before = self.status.feedMm
+            arguments = {"velocityMmS": FEED_MM_S, "durationS": FEED_S}
+            self.session.link.send(CommandName.FEED, arguments)
+            self.until(lambda before=before: self.status.feedMm > before)
+
+    def slices(self) -> dict:
+        """The axes and origins of the slice views, (4, 4) float."""
+        return {
+            view.GetName(): np.array(
+                [
+                    [view.GetSliceToRAS().GetElement(row, column) for column in range(4)]
+                    for row in range(4)
+                ]
+            )
+            for view in nodesOfClass(self.session._scene, "vtkMRMLSliceNode")
+        }
+
+
+@pytest.fixture(scope="module")
+def led(tmp_path_factory):
+    """What Slicer's side saw while it led a procedure with one line."""
+    folder = tmp_path_factory.mktemp("led")
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    seen: dict = {"scenario": scenario}
+    with SimulatorProcess(folder / "records", "--speed", SPEED) as simulator:
+        leader = Leader(folder, simulator.port)
+        session, procedure = leader.session, leader.session.procedure
+        leader.until(lambda: session.link.isOpen)
+        with Player(simulator.port) as player:
+            touching = threading.Thread(
+                target=play, args=(player, scenario), kwargs={"procedure": PROCEDURE}, daemon=True
+            )
+            touching.start()
+            leader.until(lambda: not touching.is_alive())
+            leader.until(lambda: leader.status.isRegistered)
+            seen["axial"] = leader.slices()
+            procedure.accept()
+            leader.until_in(Phase.ALIGNING)
+            procedure.align()
+            leader.until(leader.is_aligned)
+            procedure.lock()
+            leader.until_in(Phase.DRILLING)
+            procedure.feed(True)
+            leader.until(lambda: leader.status.feedMm > 0.9)
+            leader.feed_to(55.0)
+            seen["along"] = leader.slices()
+            procedure.startInsertion()
+            leader.until_in(Phase.INSERTING)
+            line = scenario.procedure(PROCEDURE).trajectories[0]
+            leader.feed_to(30.0 + line.length_mm)
+            procedure.release()
+            leader.until(lambda: procedure.outcome is not None)
+            seen["after"] = leader.slices()
+        seen["outcome"] = procedure.outcome
+        seen["scene"] = session._scene
+        seen["lines"] = {
+            role: len(nodesOf(session._scene, LINE, role))
+            for role in (Role.PLANNED_LINE, Role.REGISTERED_LINE, Role.TRUE_LINE)
+        }
+        seen["answers"] = leader.answers
+        session.close()
+    with Study.open_for_reading(folder / "study.db") as study:
+        (seen["stored"],) = study.history("anna")
+    return seen
+
+
+def test_the_procedure_is_registered_led_and_scored_by_slicer(led):
+    outcome, record = led["outcome"], led["stored"].record
+    assert [answer for answer in led["answers"] if answer] == []
+    assert record.procedure.procedure == PROCEDURE
+    (errors,) = outcome.analysis.trajectories
+    assert errors.target.length_mm > 0.0
+    assert errors.entry.hand_mm < 0.1
+    assert errors.instrument.self_aligned
+    assert outcome.score.version == "procedure-1"
+    assert led["lines"] == dict.fromkeys(led["lines"], 1)
+
+
+def test_the_slices_lie_along_the_instrument_and_are_then_as_they_were(led):
+    (errors,) = led["outcome"].analysis.trajectories
+    across = led["along"]["Red"][:3, 2]
+    assert abs(across @ errors.shown_direction) > 0.9999
+    for name in ("Green", "Yellow"):
+        assert abs(led["along"][name][:3, 2] @ errors.shown_direction) < 0.01
+    for name, matrix in led["axial"].items():
+        assert np.array_equal(led["after"][name][:3, :3], matrix[:3, :3])

@@ -1,0 +1,120 @@
+"""A procedure's lines, error arrows and table in the scene, also after saving and opening it."""
+
+import numpy as np
+import pytest
+from vtk.util.numpy_support import vtk_to_numpy
+
+from rastrainer import transforms
+from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.slicer.scene.control_points import worldPoints
+from rastrainer.slicer.scene.procedure_lines import (
+    LINE,
+    MODEL,
+    TABLE,
+    showPlannedLines,
+    showProcedureErrors,
+)
+from rastrainer.slicer.scene.scene import Role, findNode, nodesOf
+from Testing.domain.procedure.made_up_procedure import (
+    made_up_meshes,
+    made_up_procedure,
+    trajectory,
+)
+from Testing.domain.procedure.procedure_records import recorded, rotation
+
+ROLES = (Role.PLANNED_LINE, Role.REGISTERED_LINE, Role.TRUE_LINE)
+
+
+@pytest.fixture(scope="module")
+def analysis():
+    """Two lines, off by a registration and by a hand that stopped 2 mm too early."""
+    random = np.random.default_rng(4)
+    truth = transforms.rigid(rotation(random, 90.0), random.normal(0.0, 100.0, 3))
+    off = transforms.rigid(rotation(random, 2.0), np.array([0.4, -0.7, 0.5]))
+    procedure = made_up_procedure()
+    done = recorded(procedure, truth @ off, depth=60.0)
+    return procedure, analyze_procedure(done, procedure, made_up_meshes(), truth)
+
+
+def lines(scene, role):
+    return [worldPoints(node) for node in nodesOf(scene, LINE, role)]
+
+
+def column(scene, name):
+    table = findNode(scene, TABLE, Role.PROCEDURE_ERRORS).GetTable()
+    return vtk_to_numpy(table.GetColumnByName(name))
+
+
+def check(scene, found):
+    planned, registered, true = (lines(scene, role) for role in ROLES)
+    assert len(planned) == len(registered) == len(true) == len(found.trajectories)
+    rows = zip(found.trajectories, planned, registered, true, strict=True)
+    for row, (errors, plan, shown, placed) in enumerate(rows):
+        whole = np.linalg.norm(placed[1] - plan[1])
+        assert column(scene, "target point error (mm)")[row] == pytest.approx(whole, abs=1e-4)
+        split = {
+            "registration": np.linalg.norm(shown[1] - plan[1]),
+            "hand": np.linalg.norm(placed[1] - shown[1]),
+        }
+        for who, length in split.items():
+            told = column(scene, f"target point error, by {who} (mm)")[row]
+            assert told == pytest.approx(length, abs=1e-4)
+        assert np.linalg.norm(shown[1] - shown[0]) == pytest.approx(errors.trajectory.length_mm)
+        assert column(scene, "plunge depth (mm)")[row] == pytest.approx(errors.plunge_mm, abs=1e-3)
+
+
+def test_the_lines_of_a_scene_have_the_errors_that_its_table_tells(headless_scene, analysis):
+    scene, found = headless_scene.scene, analysis[1]
+    showProcedureErrors(scene, found)
+    check(scene, found)
+    names = [node.GetName() for node in nodesOf(scene, LINE, Role.TRUE_LINE)]
+    assert names == ["Left, true", "Right, true"]
+    assert all(node.GetLocked() for role in ROLES for node in nodesOf(scene, LINE, role))
+
+
+def test_the_arrows_go_by_the_registration_and_then_by_the_hand_true_to_scale(
+    headless_scene, analysis
+):
+    scene, found = headless_scene.scene, analysis[1]
+    showProcedureErrors(scene, found)
+    by_registration, by_hand = (
+        findNode(scene, MODEL, role).GetPolyData()
+        for role in (Role.ERRORS_BY_REGISTRATION, Role.ERRORS_BY_HAND)
+    )
+    for errors in found.trajectories:
+        target, shown = errors.trajectory.target, errors.shown_target
+        for data, place in (
+            (by_registration, target),
+            (by_registration, shown),
+            (by_hand, shown),
+            (by_hand, errors.tip),
+        ):
+            points = vtk_to_numpy(data.GetPoints().GetData())
+            assert np.linalg.norm(points - place, axis=1).min() < 0.3
+
+
+def test_everything_is_still_there_in_a_scene_that_was_saved_and_opened(
+    headless_scene, analysis, tmp_path
+):
+    showProcedureErrors(headless_scene.scene, analysis[1])
+    headless_scene.save(tmp_path / "procedure.mrb")
+    headless_scene.load(tmp_path / "procedure.mrb")
+    check(headless_scene.scene, analysis[1])
+    assert findNode(headless_scene.scene, MODEL, Role.ERRORS_BY_HAND).GetPolyData() is not None
+    # Shown again, nothing is made twice.
+    showProcedureErrors(headless_scene.scene, analysis[1])
+    check(headless_scene.scene, analysis[1])
+
+
+def test_another_plan_takes_the_place_of_lines_and_errors(headless_scene, analysis):
+    scene, procedure = headless_scene.scene, analysis[0]
+    showProcedureErrors(scene, analysis[1])
+    other = made_up_procedure(trajectory("Only", (0.0, 0.0, 90.0), (0.0, 5.0, 10.0)))
+    showPlannedLines(scene, other)
+    assert [node.GetName() for node in nodesOf(scene, LINE, Role.PLANNED_LINE)] == ["Only"]
+    assert lines(scene, Role.TRUE_LINE) == []
+    assert findNode(scene, TABLE, Role.PROCEDURE_ERRORS) is None
+    showPlannedLines(scene, procedure)
+    assert len(lines(scene, Role.PLANNED_LINE)) == 2
+    showPlannedLines(scene, None)
+    assert lines(scene, Role.PLANNED_LINE) == []

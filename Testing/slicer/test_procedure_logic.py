@@ -1,0 +1,140 @@
+"""A trial's procedure from Slicer: touches registered unasked, steps commanded, hostile state."""
+
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.igtl.content import String
+from rastrainer.protocol import DeviceName
+from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
+from Testing.slicer.simulator_double import run_logic_until
+from Testing.slicer.training_room import TRIAL, Room
+
+VERIFYING = {"name": "dbs", "trajectory": 0, "trajectories": 2, "registrationInUse": False}
+
+
+class Theater(Room):
+    """A room in which procedures are carried out."""
+
+    def __init__(self, scene, scenario):
+        self.touches, self.refused = [], ""
+        super().__init__(scene, scenario)
+        self.work = BackgroundWork()
+        self.procedure = ProcedureLogic(scene, self.link, lambda _name: scenario, self.work)
+        self.said = []
+        self.procedure.answered.connect(self.said.append)
+        places = transforms.apply(scenario.head_to_world, scenario.task("task-1").fiducials)
+        self.touches = [
+            {"label": label, "positionMm": place.tolist()}
+            for label, place in zip(LABELS, places, strict=True)
+        ]
+
+    def answer(self, name, arguments):
+        if name == self.refused:
+            return "This is refused."
+        if name == "GetTrial":
+            return {"task": "task-1", "touches": self.touches}
+        return super().answer(name, arguments)
+
+    def say(self, phase, **procedure):
+        self.tell(phase=phase, procedure={**VERIFYING, **procedure})
+        self.run_until(lambda: self.procedure.status.phase == phase)
+
+    def run_until(self, condition):
+        if hasattr(self, "work"):
+            run_logic_until(self.link, self.work, condition)
+        else:
+            super().run_until(condition)
+
+    def close(self):
+        self.procedure.close()
+        self.work.close()
+        super().close()
+
+
+@pytest.fixture
+def theater(scene, scenario):
+    theater = Theater(scene, scenario)
+    yield theater
+    theater.close()
+
+
+def test_the_touches_are_registered_as_soon_as_the_procedure_waits_for_that(theater, scenario):
+    theater.say("verifying")
+    theater.run_until(lambda: theater.sent("UseRegistration"))
+    (used,) = theater.sent("UseRegistration")
+    assert used["trialId"] == TRIAL
+    matrix = np.reshape(used["matrix"], (4, 4))
+    np.testing.assert_allclose(matrix @ scenario.head_to_world, np.eye(4), atol=1e-9)
+    assert used["freMm"] == pytest.approx(0.0, abs=1e-9)
+    theater.say("verifying", registrationInUse=True)
+    theater.run_until(lambda: theater.procedure.status.isRegistered)
+    assert len(theater.sent("UseRegistration")) == 1
+
+
+def test_after_touching_again_the_touches_are_registered_again(theater):
+    theater.say("verifying")
+    theater.run_until(lambda: theater.sent("UseRegistration"))
+    theater.say("running")
+    theater.say("verifying")
+    theater.run_until(lambda: len(theater.sent("UseRegistration")) == 2)
+
+
+def test_why_the_touches_were_not_registered_is_said_once(theater):
+    theater.refused = "UseRegistration"
+    theater.say("verifying")
+    theater.run_until(lambda: theater.said)
+    assert theater.said == ["The touches were not registered: This is refused."]
+    theater.touches = theater.touches[:3]
+    theater.say("running")
+    theater.say("verifying")
+    theater.run_until(lambda: len(theater.said) == 2)
+    assert "must hold touches, a list of 15" in theater.said[1]
+
+
+def test_each_step_sends_its_command(theater):
+    procedure = theater.procedure
+    steps = {
+        "AcceptRegistration": procedure.accept,
+        "RegisterAgain": procedure.registerAgain,
+        "AlignGuide": procedure.align,
+        "LockGuide": procedure.lock,
+        "RetractDrill": procedure.retractDrill,
+        "StartInsertion": procedure.startInsertion,
+        "ReleaseInstrument": procedure.release,
+    }
+    for command, do in steps.items():
+        do()
+        theater.run_until(lambda command=command: theater.sent(command))
+    procedure.feed(True)
+    procedure.feed(False)
+    theater.run_until(lambda: len(theater.sent("Feed")) == 2)
+    moved = [each["velocityMmS"] * each["durationS"] for each in theater.sent("Feed")]
+    assert moved == [1.0, -1.0]
+
+
+@pytest.mark.parametrize(
+    "told",
+    [None, 7, [], {"name": 3, "trajectory": "x", "trajectories": None, "feedMm": True}],
+    ids=["none", "number", "list", "wrong"],
+)
+def test_a_state_of_any_kind_is_no_trouble(theater, told):
+    state = {"trialId": TRIAL, "phase": "drilling", "procedure": told}
+    theater.simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
+    theater.run_until(lambda: theater.procedure.status.phase == "drilling")
+    assert theater.procedure.status.feedMm == 0.0
+    assert theater.procedure.status.trajectories == 0
+
+
+def test_a_trial_with_a_procedure_is_started_with_its_name(theater):
+    theater.logic.start("T001", "task-1", "desktop", procedure="dbs")
+    theater.run_until(lambda: theater.sent("StartTask"))
+    assert theater.sent("StartTask")[0]["procedure"] == "dbs"
+
+
+def test_the_touches_alone_have_no_procedure():
+    assert not ProcedureStatus.of({"phase": "running", "procedure": None}).isUnderWay

@@ -1,0 +1,124 @@
+"""The section Procedure leads from the registration to the release, and shows the errors."""
+
+import json
+import uuid
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.igtl.content import Status, String
+from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.procedure.score import ProcedureMeasures, score_procedure
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
+from Testing.domain.procedure.procedure_records import recorded
+from Testing.slicer.simulator_double import SimulatorDouble
+
+TRIAL = str(uuid.UUID(int=21))
+STATE = {"trialId": TRIAL, "trainee": "T001", "task": "task-1", "mode": "desktop"}
+BUTTONS = {
+    "verifying": {"acceptButton": "AcceptRegistration", "registerAgainButton": "RegisterAgain"},
+    "aligning": {"alignButton": "AlignGuide", "lockButton": "LockGuide"},
+    "drilling": {
+        "advanceButton": "Feed",
+        "withdrawButton": "Feed",
+        "retractDrillButton": "RetractDrill",
+        "startInsertionButton": "StartInsertion",
+    },
+    "inserting": {
+        "advanceButton": "Feed",
+        "withdrawButton": "Feed",
+        "releaseButton": "ReleaseInstrument",
+    },
+}
+ALL = sorted({name for buttons in BUTTONS.values() for name in buttons})
+
+
+@pytest.fixture
+def surgery(host):
+    """The module, connected, with a trainee and a scenario that has procedures."""
+    with SimulatorDouble(lambda _name, _arguments: {"scenario": "colin27"}) as simulator:
+        host.open()
+        host.type("portSpinBox", str(simulator.port))
+        host.press("connectButton")
+        host.wait_until(lambda: simulator.commands, "the module says hello")
+        simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+        host.wait_until(lambda: host.text("stateText").startswith("Connected"), "the heartbeat")
+        host.press("createTraineeButton")
+        yield host, simulator
+
+
+def tell(host, simulator, phase, **procedure):
+    """Have the simulator say how far the procedure is, and wait until it is shown."""
+    told = {"name": "seeg", "trajectory": 1, "trajectories": 5, "registrationInUse": True}
+    state = {**STATE, "phase": phase, "procedure": {**told, **procedure}}
+    simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
+    status = host.widget.logic.session.procedure
+    host.wait_until(lambda: status.status.phase == phase, "the phase has come")
+    host.let_pass(0.15)
+
+
+def sent(simulator, name):
+    return [arguments for command, arguments in simulator.commands if command == name]
+
+
+def test_a_procedure_is_started_beside_the_task(surgery):
+    host, simulator = surgery
+    host.choose("procedureComboBox", "Stereo-EEG of the right hemisphere")
+    host.press("startTaskButton")
+    host.wait_until(lambda: sent(simulator, "StartTask"), "the task is started")
+    assert sent(simulator, "StartTask")[0]["procedure"] == "seeg"
+    assert host.text("procedureStateText").startswith("No trial with a procedure is open")
+
+
+def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):
+    host, simulator = surgery
+    tell(host, simulator, "verifying", registrationInUse=False)
+    assert host.text("procedureInstructionText") == "The touches are being registered."
+    assert not host.find("acceptButton").enabled
+    words = {
+        "verifying": ({"lastCheckMm": 1.26}, "The last checkpoint was 1.3 mm off."),
+        "aligning": (
+            {"entryDistanceMm": 0.312, "angleDeg": 0.2, "standOffMm": 25.0},
+            "seeg, line 2 of 5: the guide is 0.31 mm and 0.20° off, 25.0 mm before the entry.",
+        ),
+        "drilling": ({"feedMm": 31.44}, "seeg, line 2 of 5: 31.4 mm beyond the guide."),
+        "inserting": ({"feedMm": 7.0}, "seeg, line 2 of 5: 7.0 mm beyond the guide."),
+    }
+    for phase, buttons in BUTTONS.items():
+        values, sentence = words[phase]
+        tell(host, simulator, phase, **values)
+        told = host.text("procedureStateText") + " " + host.text("procedureInstructionText")
+        assert sentence in told
+        assert [name for name in ALL if host.find(name).enabled] == sorted(buttons)
+        for button, command in buttons.items():
+            before = len(sent(simulator, command))
+            host.press(button)
+            host.wait_until(
+                lambda command=command, before=before: len(sent(simulator, command)) > before,
+                f"{command} is sent",
+            )
+    assert "while the registration is verified" in host.find("acceptButton").toolTip
+
+
+def test_the_errors_are_shown_with_what_registration_and_hand_caused(host):
+    host.open()
+    session = host.widget.logic.session
+    procedure = made_up_procedure()
+    off = transforms.rigid(np.eye(3), np.array([0.0, 1.5, 0.0]))
+    analysis = analyze_procedure(recorded(procedure, off), procedure, made_up_meshes(), np.eye(4))
+    session.procedure.outcome = ProcedureOutcome(
+        analysis, score_procedure(ProcedureMeasures.of(analysis), 300.0)
+    )
+    session.procedure.changed.emit()
+    host.unfold("procedureErrorsTable")
+    table = host.find("procedureErrorsTable")
+    assert [table.item(0, column).text() for column in range(4)] == ["Left", "1.50", "1.50", "0.00"]
+    assert host.text("procedureScoreText").startswith("Score of the procedure: ")
+    host.choose("procedureErrorsTable", 1)
+    red = host.scene.GetNodeByID("vtkMRMLSliceNodeRed").GetSliceToRAS()
+    assert red.GetElement(2, 3) == pytest.approx(procedure.trajectories[1].target[2])
+    host.check("slicesAlongCheckBox", False)
+    assert not session.slices.liesAlong
