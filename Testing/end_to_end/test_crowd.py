@@ -14,9 +14,8 @@ SECONDS = 2.0
 TIMEOUT_S = 120.0
 
 
-@pytest.mark.parametrize(
-    ("clients", "views"), [(30, 5), pytest.param(CLIENTS, VIEWS, marks=pytest.mark.soak)]
-)
+@pytest.mark.soak
+@pytest.mark.parametrize(("clients", "views"), [(30, 5), (CLIENTS, VIEWS)])
 def test_many_clients_and_views_at_once_are_all_served(tmp_path, clients, views):
     key = secrets.token_urlsafe()
     begin = multiprocessing.get_context("spawn")

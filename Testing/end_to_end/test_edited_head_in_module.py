@@ -57,6 +57,7 @@ def paint_wen(node):
     assert logic.SetBinaryLabelmapToSegment(image, node, segment, logic.MODE_MERGE_MAX)
 
 
+@pytest.mark.soak
 def test_the_scenario_has_the_edited_head_on_the_base_that_was_shown(host):
     host.press("previewHeadButton")
     assert host.messages == []

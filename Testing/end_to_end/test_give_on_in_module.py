@@ -27,6 +27,7 @@ def scenario_of_ones_own(host, tmp_path):
     unfold(host, "shareGroupBox")
 
 
+@pytest.mark.soak
 def test_it_is_saved_without_face_and_names_and_the_panel_says_so(host, tmp_path):
     host.answer("Save the scenario", tmp_path / "out.zip")
     host.press("exportScenarioButton")
@@ -40,6 +41,7 @@ def test_it_is_saved_without_face_and_names_and_the_panel_says_so(host, tmp_path
     assert read_head_mesh(given.head_mesh).vertices[:, 1].max() < egg().vertices[:, 1].max() - 3.0
 
 
+@pytest.mark.soak
 def test_face_and_names_stay_where_that_is_chosen(host, tmp_path):
     host.check("removeFaceCheckBox", False)
     host.check("removeNamesCheckBox", False)
@@ -54,6 +56,7 @@ def read_scenario(folder):
     return load_scenario(unpack(folder / "out.zip", folder / "library"))
 
 
+@pytest.mark.soak
 def test_a_plan_is_kept_in_a_copy_of_the_scenario_which_is_chosen_and_shown(host):
     line = host.scene.AddNewNodeByClass("vtkMRMLMarkupsLineNode", "Other way")
     setPoints(line, ("Entry", "Target"), np.array([[10.0, 20.0, 97.0], [15.0, 10.0, 30.0]]))

@@ -282,6 +282,7 @@ def test_three_hundred_kills_of_both_sides_in_play_lose_no_touch_and_double_no_t
         )
 
 
+@pytest.mark.soak
 def test_slicers_side_and_the_server_killed_at_any_moment_deliver_every_trial_once(
     tmp_path, simulators, slicer_sides
 ):

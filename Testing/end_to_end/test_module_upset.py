@@ -43,6 +43,7 @@ def upset(story, delete_nodes):
         assert len(host.text(name).split()) > 1, f"{name} says nothing"
 
 
+@pytest.mark.soak
 def test_the_scene_may_be_upset_in_mid_trial_and_after_it(story):
     host = story.host
     story.start_simulator()

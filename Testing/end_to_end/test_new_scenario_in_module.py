@@ -103,6 +103,7 @@ def sample(host, tmp_path, monkeypatch, request):
     )
 
 
+@pytest.mark.soak
 @pytest.mark.usefixtures("session_under_way")
 def test_five_clicks_start_training_on_a_loaded_volume_with_placed_fiducials(host, tmp_path):
     path = write_volume(tmp_path / "ms-x.nii.gz", phantom(spacing=(2.0, 2.0, 2.0), size=SIZE))

@@ -76,6 +76,7 @@ def without_its_mark(scored):
     return {**scored, "details": details}
 
 
+@pytest.mark.soak
 def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials(
     tmp_path, scenario, cohort
 ):
@@ -143,6 +144,7 @@ def test_slicer_that_connects_later_stores_the_trial_and_its_score_replaces_the_
         assert {study.trial(trial).score.version for trial in alone.trials} == {SCORE_VERSION}
 
 
+@pytest.mark.soak
 def test_a_view_of_the_real_simulator_shows_its_own_score_until_slicer_scores_the_trial(
     tmp_path, scenario, cohort, loop_thread
 ):

@@ -123,6 +123,7 @@ def test_after_leaving_the_module_the_robot_moves_only_in_a_shown_3d_view(connec
     wait_for_renders(connected, arm)
 
 
+@pytest.mark.soak
 def test_in_a_minimized_window_nothing_is_rendered(connected, arm):
     show_robot(connected)
     connected.minimize()

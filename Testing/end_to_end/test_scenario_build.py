@@ -48,6 +48,7 @@ def wait_for_head(process):
     return process.head(lambda _step, _share: None, lambda _warning: None)
 
 
+@pytest.mark.soak
 def test_a_head_is_worked_with_before_its_skull_is_made(ct):
     with head_process(ct, []) as process:
         first = wait_for_head(process)
@@ -61,6 +62,7 @@ def test_a_head_is_worked_with_before_its_skull_is_made(ct):
     assert whole.method == f"{first.method} Skull: bone of the CT."
 
 
+@pytest.mark.soak
 def test_a_ct_without_bone_is_refused_with_a_sentence_if_its_skull_is_wanted(tmp_path):
     soft = phantom({**CT, "bone": CT["scalp"]}, spacing=(2.0, 2.0, 2.0), lowest=-46.0, size=0.75)
     with head_process(write_volume(tmp_path / "soft.nrrd", soft), []) as process:

@@ -36,6 +36,7 @@ def ball(tmp_path):
     return tmp_path / "ball"
 
 
+@pytest.mark.soak
 def test_a_head_is_pictured_before_anything_is_made_of_it(volume, tmp_path, capsys):
     picture = tmp_path / "head.png"
     assert main(["scenario", "preview", str(volume), str(picture), "--cut=-30"]) == 0

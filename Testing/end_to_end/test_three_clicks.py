@@ -74,6 +74,7 @@ def test_three_clicks_lead_from_an_empty_slicer_to_a_running_trial(set_up_slicer
     ]
 
 
+@pytest.mark.soak
 def test_the_button_leads_on_through_the_trial_to_its_score_and_the_next_task(
     set_up_slicer, tmp_path
 ):

@@ -18,7 +18,10 @@ from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.virtual_display import VirtualDisplay
 from Testing.end_to_end.window_process import wait_until
 
-pytestmark = pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="Linux tells")
+pytestmark = [
+    pytest.mark.soak,
+    pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="Linux tells"),
+]
 KEY = "0" * 32
 NEVER_IMPORTED = ("matplotlib", "embreex", "fontTools", "scipy", "networkx", "PIL", "Cython")
 

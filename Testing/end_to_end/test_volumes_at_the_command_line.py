@@ -106,7 +106,14 @@ BROKEN = NO_FILE_OF_A_VOLUME | {
 }
 
 
-ONE_OF_EACH_KIND = ("no file", "a NIfTI file cut short", "DICOM, one slice missing", "a block")
+ONE_OF_EACH_KIND = (
+    "no file",
+    "a block",
+    *(
+        pytest.param(name, marks=pytest.mark.soak)
+        for name in ("a NIfTI file cut short", "DICOM, one slice missing")
+    ),
+)
 
 
 @pytest.mark.parametrize("name", ONE_OF_EACH_KIND)

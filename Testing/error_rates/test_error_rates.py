@@ -28,11 +28,12 @@ from Testing.error_rates.registered import common_biases, errors_along_skin, reg
 from Testing.simulator.authoring import planned_heads
 
 FEW = {
-    "biased aim": 40,
-    "several groups": 40,
-    "target errors": 50,
-    "learning": 100,
-    "propagation": 50,
+    "biased aim": 10,
+    "several groups": 25,
+    "target errors": 20,
+    "learning": 40,
+    "propagation": 20,
+    "groups": 40,
     "recovery": 20,
     "recovery intervals": 20,
 }

@@ -64,6 +64,7 @@ def test_the_page_shows_each_touch_behind_the_head_at_its_best_view(place, page)
         trainee.have_touched(int(label))
 
 
+@pytest.mark.soak
 def test_left_is_left_in_the_picture_after_a_drag_with_the_right_button(place, page):
     trainee = place.carried_trainee(PageKeys(page))
     trainee.begin("task-1", page)

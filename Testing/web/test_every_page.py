@@ -32,6 +32,7 @@ def show(browser, loop, loop_thread):  # noqa: F811
     served.close()
 
 
+@pytest.mark.soak
 def test_every_page_is_shown_the_same_when_it_is_opened_again(show, presenter):  # noqa: F811
     screens = every_screen(presenter)
     assert names_of_pages() <= screens.keys()

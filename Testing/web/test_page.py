@@ -46,6 +46,7 @@ def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
     page.wait_for_selector("#menu dl dd[data-tone]")
 
 
+@pytest.mark.soak
 def test_a_gamepad_of_the_browser_begins_a_task_and_steers(place, page):
     trainee = place.trainee(BrowserPad(page))
     trainee.begin("task-2", page)

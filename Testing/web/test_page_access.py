@@ -111,7 +111,7 @@ def complaints(page, screen: str, axe_sizes: tuple[str, ...]) -> list[str]:
 
 
 @AXE_SIZES
-@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("language", ["en", pytest.param("de", marks=pytest.mark.soak)])
 def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_any_size(
     browser,
     loop,  # noqa: F811
@@ -143,6 +143,7 @@ def shown(page, trainee) -> str:
     return name
 
 
+@pytest.mark.soak
 @AXE_SIZES
 def test_no_part_of_a_trial_breaks_a_rule_of_accessibility_or_overlaps_at_any_size(
     place, page, axe_sizes

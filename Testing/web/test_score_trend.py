@@ -23,7 +23,7 @@ def page(browser, loop, loop_thread):  # noqa: F811
     served.close()
 
 
-@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("language", ["en", pytest.param("de", marks=pytest.mark.soak)])
 def test_the_plot_stands_beside_the_tasks_and_every_score_is_its_text(
     page,
     loop,  # noqa: F811

@@ -40,6 +40,7 @@ def steering(place, page, trainee):
     return trainee
 
 
+@pytest.mark.soak
 def test_a_finger_touches_undoes_pauses_and_resumes(place, page, steering):
     steering.touch("1")
     assert steering.touched == 1

@@ -117,7 +117,6 @@ DRAW_NOTHING = """(() => {
 """A picture takes a processor long, and nothing here depends on it."""
 SLOW = "0.5"
 """Simulated seconds in a second, for hands on a busy machine."""
-BY_HANDS = pytest.mark.soak
 WAYS = (
     Way("a touch screen", SourceKind.TOUCH_SCREEN, TappingTrainee, PhoneLearner),
     Way(
@@ -143,12 +142,8 @@ SAYS = {
 }
 
 
-def by_name(way):
-    marks = BY_HANDS if way.name.endswith("alone") else ()
-    return pytest.param(way, id=way.name, marks=marks)
-
-
-@pytest.mark.parametrize("way", [by_name(way) for way in WAYS])
+@pytest.mark.soak
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: way.name)
 def test_the_tutorial_is_played_from_the_id_to_the_trial_run_by(way, tmp_path, browser):
     """Every step is done by the device; the first two have the tip carried to the points."""
     with Place(tmp_path, "--speed", way.speed, limits=WITHOUT_GRAPHICS, **REQUIRED) as place:

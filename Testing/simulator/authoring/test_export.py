@@ -166,12 +166,14 @@ def test_the_skin_that_is_found_in_the_images_afterwards_has_nothing_of_the_face
     assert to_skin_found_in(after, face).min() > 4.0
 
 
+@pytest.mark.soak
 def test_the_skin_that_is_found_afterwards_in_the_images_of_a_ball_has_nothing_of_its_face():
     head = ball_with_a_face()
     after = without_face_in(images_of(head, np.eye(3) * 2.0), head)
     assert to_skin_found_in(after, middle_of_face(head)).min() > 4.0
 
 
+@pytest.mark.soak
 def test_the_brain_stays_but_for_what_is_close_behind_the_face(colin27):
     head, before, after = colin27
     grid = Grid(before.values.shape, before.ijk_to_ras)

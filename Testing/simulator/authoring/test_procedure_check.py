@@ -120,6 +120,7 @@ def test_the_command_reports_what_is_wrong_with_a_procedure(copy, capsys):
     assert "right-ventricle.ply is not closed: it has a hole." in capsys.readouterr().err
 
 
+@pytest.mark.soak
 def test_a_copy_with_another_plan_keeps_the_procedures(copy, tmp_path):
     target = (PlannedTarget("Cyst", np.array([5.0, -10.0, 30.0])),)
     made = copy_with_plan(copy, "Another plan", tmp_path / "made", target, None, print)

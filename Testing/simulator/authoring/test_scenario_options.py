@@ -106,6 +106,7 @@ def test_a_copy_with_a_trajectory_keeps_head_tasks_target_and_provenance(tmp_pat
     assert copy.preview is not None
 
 
+@pytest.mark.soak
 def test_a_copy_with_targets_reports_the_error_at_the_first(tmp_path):
     words = ("--target", "Tumor", *INSIDE, "--target", "Cyst", "20", "0", "20")
     assert copied(tmp_path / "copy", *words) == 0

@@ -61,6 +61,7 @@ def test_the_check_of_manually_placed_fiducials_finds_nothing_wrong_with_them(pl
     assert check_tasks(planning, tasks[::3], first_seed=70_000) == []
 
 
+@pytest.mark.soak
 def test_everything_that_is_promised_of_a_set_is_kept(planning, tasks):
     assert broken_promises(planning, tasks) == []
 

@@ -63,6 +63,7 @@ def errors_are_drawn_as_revealed(trainee, registration):
     assert trainee.presenter.screen.errors == ()
 
 
+@pytest.mark.soak
 def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_replaces_it(
     trainee, outside
 ):
@@ -87,6 +88,7 @@ def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_
     assert trainee.menu.name == "result"
 
 
+@pytest.mark.soak
 def test_while_slicer_is_connected_or_a_study_is_led_the_simulator_scores_nothing(trainee, outside):
     outside.has_slicer = True
     trial = register(trainee)

@@ -111,7 +111,12 @@ def go_to_step(trainee, step):
     ("who", "device", "says"),
     [
         ("trainee", SourceKind.KEYBOARD, ("30 mm to the right: D.", "the view by 20°: Q / E, or")),
-        ("pilot", SourceKind.GAMEPAD, ("the right: Left stick right.", "20°: D-pad left / right.")),
+        pytest.param(
+            "pilot",
+            SourceKind.GAMEPAD,
+            ("the right: Left stick right.", "20°: D-pad left / right."),
+            marks=pytest.mark.soak,
+        ),
     ],
 )
 def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, request, outside):

@@ -61,6 +61,7 @@ def played(setup):
     return play(), play(*IDLE), play(PAUSE, *IDLE, RESUME), play(*ROUND_TRIP)
 
 
+@pytest.mark.soak
 def test_waiting_in_a_trial_costs_points(played):
     at_once, idle, *_ = played
     assert idle.record.completion_time_s > at_once.record.completion_time_s + 0.9 * WAIT_S

@@ -77,6 +77,7 @@ def _digests(folder: Path) -> dict[str, str]:
     }
 
 
+@pytest.mark.soak
 def test_the_comparison_finds_no_distance_between_equals_and_a_known_shift(tmp_path, visuals):
     for number, link in enumerate(LINK_ORIGINS_M):
         outstretched(visuals, link).export(tmp_path / f"link_{number}.stl")

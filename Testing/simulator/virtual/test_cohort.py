@@ -86,6 +86,7 @@ def test_the_truth_is_stored_beside_the_study(played):
     assert truth["population"]["skill"]["aim_sd_mm"] == BRISK.aim_sd_mm
 
 
+@pytest.mark.soak
 def test_equal_jobs_give_equal_trials_whatever_was_played_before_and_in_which_process(
     protocol, population
 ):
@@ -103,6 +104,7 @@ def test_every_engine_gives_the_results_in_the_order_of_the_jobs(engine):
     assert found == [number * number for number in range(20)]
 
 
+@pytest.mark.soak
 def test_dask_plays_the_same_trial_as_this_process(protocol, population):
     job = next(iter(trial_jobs(protocol, population, 1, 7)))
     play = functools.partial(play_job, settings=PlaySettings())

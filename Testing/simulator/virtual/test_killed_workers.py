@@ -127,6 +127,7 @@ def test_a_job_that_kills_every_worker_of_dask_is_named_too(tmp_path):
         list(run_jobs(function, [1], "dask", workers=1, name_of="job {}".format))
 
 
+@pytest.mark.soak
 def test_a_worker_of_dask_that_is_killed_once_is_replaced(tmp_path):
     function = functools.partial(squared_by_mortals, tmp_path, {1}, 1)
     assert list(run_jobs(function, range(3), "dask", workers=1)) == [0, 1, 4]
@@ -145,6 +146,7 @@ def test_all_workers_have_jobs_and_end_with_the_run():
     assert not any(map(runs, pids))
 
 
+@pytest.mark.soak
 def test_a_cohort_whose_workers_are_killed_is_the_same_to_the_last_bit(
     played, protocol, population, tmp_path, monkeypatch
 ):
@@ -259,9 +261,8 @@ def whole(tmp_path_factory):
     return words, tables(folder / "study" / DATABASE)
 
 
-@pytest.mark.parametrize(
-    "stop", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.soak)]
-)
+@pytest.mark.soak
+@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGKILL])
 def test_a_command_that_is_stopped_leaves_a_study_that_the_same_command_resumes(
     stop, whole, tmp_path, capsys
 ):

@@ -52,6 +52,7 @@ def test_the_skull_of_a_ct_is_its_bone(ct_draft):
     assert "bone of the CT" in draft.method
 
 
+@pytest.mark.soak
 def test_thick_slices_give_a_whole_head_and_a_warning():
     # Cut where nobody has chosen a base, its decimated skin has a fin, which must go.
     scan = phantom(spacing=(1.0, 1.0, 5.0))
