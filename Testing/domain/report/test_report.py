@@ -14,6 +14,7 @@ from scipy.stats import pearsonr
 
 from rastrainer.errors import InputError
 from rastrainer.report.elements.comparisons import compare_modes, mode_delays, paired_means
+from rastrainer.report.elements.markup import paragraph
 from rastrainer.report.elements.scores import cohort_scores, complexity_correlation, with_ctps
 from rastrainer.report.report import report_html, write_report
 from rastrainer.report.sections.published_tables import performance_color
@@ -492,3 +493,8 @@ def test_a_study_without_any_consent_is_refused(tmp_path):
         study.add_trial(make_record())
     with pytest.raises(InputError, match="no trials of trainees who agreed"):
         write_report(read_study_data(tmp_path / "study.db"), tmp_path)
+
+
+def test_no_line_ends_between_a_number_and_its_unit():
+    text = "at most 8 s and 160 mm, 5 % of 12 studies, 3 sets"
+    assert paragraph(text) == ("<p>at most 8\xa0s and 160\xa0mm, 5\xa0% of 12 studies, 3 sets</p>")

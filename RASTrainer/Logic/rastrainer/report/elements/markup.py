@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -66,12 +67,12 @@ def heading(text: str) -> str:
 def paragraph(text: str, kind: str = "") -> str:
     """Return a paragraph."""
     attribute = f' class="{kind}"' if kind else ""
-    return f"<p{attribute}>{html.escape(text)}</p>"
+    return f"<p{attribute}>{_flowing(text)}</p>"
 
 
 def bullets(texts: Sequence[str]) -> str:
     """Return a list."""
-    return f"<ul>{''.join(f'<li>{html.escape(text)}</li>' for text in texts)}</ul>"
+    return f"<ul>{''.join(f'<li>{_flowing(text)}</li>' for text in texts)}</ul>"
 
 
 def figure(charts: Sequence[str], caption: str) -> str:
@@ -80,8 +81,16 @@ def figure(charts: Sequence[str], caption: str) -> str:
     kind = "charts" if len(charts) > 1 else "chart-alone"
     return (
         f'<figure><div class="{kind}">{inside}</div>'
-        f"<figcaption>{html.escape(caption)}</figcaption></figure>"
+        f"<figcaption>{_flowing(caption)}</figcaption></figure>"
     )
+
+
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|(?:mm|s|of 100)\b))")
+
+
+def _flowing(text: str) -> str:
+    """Return escaped text in which no line ends between a number and its unit."""
+    return html.escape(_BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", text))
 
 
 def _row(line: Sequence[Cell | str]) -> str:

@@ -140,7 +140,9 @@ def passing(data: StudyData) -> str:
     }
     return section(
         "Pass mark",
-        table([HEADER], [_row(data, mode, found[mode], competence[mode]) for mode in found]),
+        table(
+            [HEADER], [_row(data, mode, found[mode], competence[mode]) for mode in found], "wide"
+        ),
         figure(
             [_chart(data, mode, charts) for mode, charts in competence.items()],
             "LC-CUSUM of every trainee; thick: the limit at which competence is shown.",

@@ -152,12 +152,12 @@ def _sources(found: StudyVariation, modes: list[str]) -> list[str]:
     trials, trainees = counted(found.trials, "trial"), counted(found.trainees, "trainee")
     rows: list[Line] = [
         [
-            "Practice: exponent b, the m-th trial of all in proportion to m^−b",
+            "Practice: exponent b, the m-th trial of all in proportion to m⁻ᵇ",
             trials,
             *(_exponent(one.learning) for one in both),
         ],
         [
-            "Speed and accuracy: exponent k, RMSE in proportion to time^−k",
+            "Speed and accuracy: exponent k, RMSE in proportion to time⁻ᵏ",
             trials,
             "–",
             _exponent(found.trade_off),
