@@ -280,7 +280,8 @@ def test_the_window_shows_each_step_of_the_flow(session):
         pixels = read_png(path)
         assert pixels.shape == (HEIGHT, WIDTH, 3)
         assert pixels.std() > 20, name
-        if WANTS_SCREENSHOTS:
+        # That of the result is made by `Testing.end_to_end.result_picture`.
+        if WANTS_SCREENSHOTS and name != "result":
             shutil.copyfile(path, SCREENSHOTS / f"{name}.png")
     red, blue = ((200, 0, 0), (255, 60, 60)), ((0, 30, 190), (70, 125, 255))
     free, near = (
