@@ -123,7 +123,7 @@ def session(tmp_path_factory) -> dict:
             "felt": lab.simulator.felt(),
             "felt_events": list(lab.view.events),
         }
-        unplugged = unplug_and_go_on(lab, trainee, photographer)
+        unplugged = unplug_and_resume(lab, trainee, photographer)
         listen_to_the_end(window)
         return {
             **played,
@@ -183,7 +183,7 @@ def tell_of_crash(trainee: StreamTrainee, label: str) -> dict:
     return {"phase": state["phase"], "touched": state["touched"], "warnings": trainee.warnings}
 
 
-def unplug_and_go_on(lab: Lab, trainee: StreamTrainee, photographer: Photographer) -> dict:
+def unplug_and_resume(lab: Lab, trainee: StreamTrainee, photographer: Photographer) -> dict:
     """Lose the gamepad in the next task while its stick is pushed; return what came of it."""
     trainee.choose("next")
     trainee.until_menu("experiment")

@@ -157,7 +157,7 @@ def test_three_hundred_kills_of_the_server_lose_no_acknowledged_touch(tmp_path, 
         touches = sum(map(len, player.kept.values()))
         print(
             f"\n300 kills: {len(player.registered)} trials, {touches} touches, {player.resumed} "
-            "times gone on with"
+            "times resumed"
         )
 
 
@@ -278,7 +278,7 @@ def test_three_hundred_kills_of_both_sides_in_play_lose_no_touch_and_double_no_t
         touches = sum(map(len, player.kept.values()))
         print(
             f"\n300 kills of both: {len(player.registered)} trials, {touches} touches, "
-            f"{player.resumed} times gone on with"
+            f"{player.resumed} times resumed"
         )
 
 

@@ -87,7 +87,7 @@ def test_the_simulator_may_be_killed_and_started_again_in_mid_trial(story):
     story.kill_simulator()
     assert "no touch is lost" in story.host.text("phaseText")
     story.start_simulator()
-    story.go_on_with_task()
+    story.resume_task()
     assert story.host.find("pointsProgressBar").value == 6
 
 
@@ -104,7 +104,7 @@ def test_the_simulator_may_be_killed_and_started_again_at_every_step(story):
     story.kill_simulator()
     assert "no touch is lost" in host.text("phaseText")
     story.start_simulator()
-    story.go_on_with_task()
+    story.resume_task()
     story.touch_the_others()
     # The module hears nothing of the registration, and then the simulator is gone.
     host.press("connectButton")

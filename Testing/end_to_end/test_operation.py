@@ -176,7 +176,7 @@ def test_an_interrupted_trial_is_reported_on_the_terminal_and_left_alone_on_requ
     ):
         assert do(client, "StartTask", task="task-1", trainee=TRAINEE).ok
         simulator.kill()
-    with SimulatorProcess(records, "--no-views", "--no-go-on") as simulator:
+    with SimulatorProcess(records, "--no-views", "--no-resume") as simulator:
         with Client(port=simulator.port) as client:
             in_phase(client, "idle")
         assert simulator.stop()[0] == 0

@@ -26,7 +26,7 @@ TIMEOUT_S = 120.0
 class LinkAttack:
     """Sends mutated messages; every byte that comes back is checked for what harms Slicer.
 
-    A message that claims to be long swallows those after it: then the attack goes on with another
+    A message that claims to be long swallows those after it: then the attack continues with another
     connection, so that the server has to do with nearly all of them.
 
     Attributes:

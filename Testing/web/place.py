@@ -180,7 +180,7 @@ class Trainee(StreamTrainee):
         self.choose("done")
 
     def resume(self) -> None:
-        """Go on with a trial that was paused."""
+        """Resume a trial that was paused."""
         self.until_menu("trial")
         self.choose("resume")
         self.until(lambda: self.view.state["phase"] == "running", "the trial again")

@@ -41,7 +41,7 @@ class Relay:
         """Pass nothing on, as a wireless network out of reach; nobody is told."""
         self._thread.call(self._goes.clear)
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Pass on what waits, and everything after it."""
         self._thread.call(self._goes.set)
 

@@ -71,7 +71,7 @@ def test_a_network_that_stands_still_pauses_the_trial_and_is_told(place, relay, 
         wait_for(page, "page.headset.boards.warning.shown.includes('is lost')")
     else:
         page.wait_for_selector(LOST)
-    relay.go_on()
+    relay.resume()
     trainee.resume()
     assert trainee.touched == TOUCHED
     trainee.touch_all(TOUCHED + 1)

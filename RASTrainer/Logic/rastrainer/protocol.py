@@ -87,7 +87,7 @@ class AbortReason(str, Enum):
     TRAINEE = "trainee"
     CLIENT = "client"
     PRACTICE_OVER = "practice over"
-    NOT_GONE_ON_WITH = "not gone on with"
+    NOT_RESUMED = "not gone on with"
 
 
 COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTICE_OVER)

@@ -83,7 +83,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
     )
     parser.add_argument(
-        "--go-on",
+        "--resume",
         action=argparse.BooleanOptionalAction,
         default=True,
         help="resume the newest trial where it was interrupted; it is paused until it is "
@@ -133,7 +133,7 @@ def run(arguments: argparse.Namespace) -> int:
         has_desktop=arguments.desktop,
         config=arguments.config,
         logs=logs,
-        resumes=arguments.go_on,
+        resumes=arguments.resume,
         scores_alone=arguments.own_score,
         connect_to=connect_to,
         speed=arguments.speed,

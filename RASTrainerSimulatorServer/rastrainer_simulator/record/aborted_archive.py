@@ -186,7 +186,7 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
         aborted_utc=entries[-1]["utc"],
         elapsed_s=elapsed_s,
         phase=phase,
-        reason=AbortReason.NOT_GONE_ON_WITH.value,
+        reason=AbortReason.NOT_RESUMED.value,
         points=points,
         rejected_touches=len(trajectory.refused),
         undone_touches=trajectory.undone,

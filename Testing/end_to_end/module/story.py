@@ -104,7 +104,7 @@ class Story:
         host.wait_until(lambda: "running" in host.text("phaseText"), "the trial runs")
         self.player = Player(self.port, self.records)
 
-    def go_on_with_task(self) -> None:
+    def resume_task(self) -> None:
         """Resume the trial that the simulator has taken up after its crash."""
         host = self.host
         host.wait_until(lambda: "paused" in host.text("phaseText"), "the trial waits")

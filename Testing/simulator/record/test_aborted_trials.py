@@ -27,7 +27,7 @@ from Testing.simulator.record.test_interrupted_trial import (
 
 
 class Restarted(Server):
-    """A server that was started with `--no-go-on`."""
+    """A server that was started with `--no-resume`."""
 
     def __init__(self, simulation, folder):
         self.loop = ControlLoop(simulation, folder, speed=None)

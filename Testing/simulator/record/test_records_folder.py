@@ -92,7 +92,7 @@ def journal_of_two_touches(simulation, folder):
 
 
 def kept_beside_a_server_that_touches_until_it_leaves(path, size, config):
-    """Start a simulator while another one adds to a journal; return what it says it goes on with.
+    """Start a simulator while another one adds to a journal; return what it says it resumes.
 
     The other one leaves the folder in the moment in which the new one takes it.
     """

@@ -62,7 +62,7 @@ class Tour:
         return [(name, what, getattr(self.hands.find(name), what)) for name, what in kept]
 
     def choose_study(self, path: Path) -> None:
-        """Go on with a study in the tour's folder."""
+        """Continue with a study in the tour's folder."""
         self.hands.find("studyPathLineEdit").currentPath = str(path)
         self.hands.let_pass(0.2)
 

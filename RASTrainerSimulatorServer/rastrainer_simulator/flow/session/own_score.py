@@ -100,7 +100,7 @@ class OwnScore:
         """Begin what no Slicer does: it is not connected, or has not been for a while.
 
         A trial that is registered is scored, outside of a study. The touches of one with a
-        procedure are registered so that it can go on: that reveals nothing.
+        procedure are registered so that it can continue: that reveals nothing.
         """
         job = _job(training, is_in_study)
         if self._is_slicer_connected() or job is None:
@@ -141,7 +141,7 @@ class OwnScore:
 
 
 def register_open_trial(ask: Ask, trial_id: str, scenario: Scenario) -> None:
-    """Register the touches of an open trial, and have its procedure go on by that.
+    """Register the touches of an open trial, and have its procedure continue with that.
 
     Raises:
         InputError: they cannot be registered, or another registration is in use.

@@ -64,7 +64,7 @@ def test_quaternions_agree_with_another_library_for_any_rotation():
         assert np.hypot(np.hypot(x, y), np.hypot(z, w)) == pytest.approx(1.0)
 
 
-def test_states_go_on_coming_and_their_ticks_rise(served, connect):
+def test_states_keep_coming_and_their_ticks_rise(served, connect):
     view = connect(served)
     view.join()
     ticks = [view.next("state")["tick"] for _ in range(20)]

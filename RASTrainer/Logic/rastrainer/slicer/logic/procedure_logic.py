@@ -195,7 +195,7 @@ class ProcedureLogic:
         self._registering = ""
 
     def _register(self, trialId: str) -> None:
-        """Have the touches of the open trial registered, and the procedure go on by that."""
+        """Have the touches of the open trial registered, and the procedure continue with that."""
 
         def askForTouches(reply: Reply) -> None:
             scenario = str(reply.data.get("scenario", ""))
