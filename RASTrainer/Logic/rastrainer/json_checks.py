@@ -53,6 +53,11 @@ def is_identifier(name: str) -> bool:
     return len(name) <= 40 and _IDENTIFIER.fullmatch(name) is not None
 
 
+def identifier_of(text: str) -> str:
+    """Return the identifier made of a text; empty if it has no Latin letter or digit."""
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:40].strip("-")
+
+
 def accepted(check: Callable[[Any], T], value: Any, what: str) -> T:
     """Return the value that a check accepts.
 

@@ -11,6 +11,7 @@ from rastrainer.panels.new_scenario_panel import NewScenarioPanel
 from rastrainer.panels.next_step_panel import NextStepPanel
 from rastrainer.panels.plan_panel import PlanPanel
 from rastrainer.panels.procedure_panel import ProcedurePanel
+from rastrainer.panels.procedure_plan_panel import ProcedurePlanPanel
 from rastrainer.panels.registration_panel import RegistrationPanel
 from rastrainer.panels.scenario_panel import ScenarioPanel
 from rastrainer.panels.score_panel import ScorePanel
@@ -29,6 +30,7 @@ SECTIONS = (
     TraineesPanel,
     ScenarioPanel,
     NewScenarioPanel,
+    ProcedurePlanPanel,
     StudyPanel,
     TrainingPanel,
     RegistrationPanel,

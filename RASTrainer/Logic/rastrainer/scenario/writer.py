@@ -7,7 +7,6 @@ available, `skull.ply` and `volume.nrrd`.
 from __future__ import annotations
 
 import contextlib
-import re
 import shutil
 import uuid
 from collections.abc import Iterator, Mapping
@@ -24,7 +23,7 @@ from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_private_folder, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, read_head_volume, read_volume_file, write_head_volume
-from rastrainer.json_checks import is_identifier
+from rastrainer.json_checks import identifier_of
 from rastrainer.procedure.plan import NO_GO_FOLDER, procedure_json
 from rastrainer.scenario.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
 from rastrainer.scenario.tasks import Task
@@ -62,8 +61,8 @@ def scenario_name(title: str) -> str:
     Raises:
         InputError: the title has no Latin letter or digit.
     """
-    name = re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")[:40].strip("-")
-    if not is_identifier(name):
+    name = identifier_of(title)
+    if not name:
         raise InputError(
             f"{title!r} cannot be a scenario's title: it needs a Latin letter or digit."
         )

@@ -13,6 +13,7 @@ from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
 from rastrainer.slicer.logic.plan_logic import PlanLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
+from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.logic.replay_logic import ReplayLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
@@ -86,6 +87,7 @@ class ModuleSession:
         registration: that is looked at.
         plan: of a target.
         procedure: that the trial continues with.
+        procedurePlan: of a procedure, in the scene and in scenarios.
         cohort: trials of the published study, with which CTPS compares.
         studyPath: file of the present study.
         task: name of the chosen task.
@@ -163,6 +165,7 @@ class ModuleSession:
         self.registration = RegistrationLogic(scene, self.work)
         self.plan = PlanLogic(scene, self.link, self.registration)
         self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
+        self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
         self.task = ""
         self.taskTitle = ""
         self.isSeen: Callable[[bool], bool] = lambda _inSlices: False

@@ -176,7 +176,7 @@ class ScenarioFiles:
         words = ["pack", str(self._cache.find(name).folder), str(package)]
         words += ["--keep-face"] if keepsFace else []
         words += ["--keep-names"] if keepsNames else []
-        return self._run(words, ownProgram, progress)
+        return self.run(words, ownProgram, progress)
 
     def savePlan(
         self,
@@ -203,17 +203,51 @@ class ScenarioFiles:
         plan = planWords(None, node) if isLine else planWords(node, None)
         source = str(self._cache.find(name).folder)
         words = ["plan", source, "-o", str(folder), f"--title={title}", *plan]
-        self._run(words, ownProgram, progress)
+        self.run(words, ownProgram, progress)
         self._cache.refresh()
         return load_scenario(folder)
 
-    def _run(self, words: list[str], ownProgram: str, progress: Progress) -> str:
-        """Run `rastrainer scenario` and return the last line that it has written."""
+    def saveProcedure(
+        self,
+        name: str,
+        title: str,
+        procedure: Path,
+        ownProgram: str = "",
+        progress: Progress = lambda _step, _share: None,
+    ) -> Scenario:
+        """Copy a scenario with a procedure, in the place of one of the same name.
+
+        Args:
+            name: of the scenario, which stays as it is.
+            title: of the copy.
+            procedure: a file with one procedure, its meshes beside it.
+            ownProgram: see the class.
+            progress: see the class.
+
+        Raises:
+            InputError: there is one of that title already, or the plan cannot be carried out.
+        """
+        folder = self._library / self._cache.newName(title)
+        source = str(self._cache.find(name).folder)
+        words = ["plan", source, "-o", str(folder), f"--title={title}"]
+        self.run([*words, "--procedure", str(procedure)], ownProgram, progress)
+        self._cache.refresh()
+        return load_scenario(folder)
+
+    def run(
+        self, words: list[str], ownProgram: str, progress: Progress, mayFail: bool = False
+    ) -> str:
+        """Run `rastrainer scenario` and return the last line that it has written.
+
+        Raises:
+            InputError: it has ended with an error, and may not.
+        """
         command = self._simulator.command(["scenario", *words], ownProgram)
         ended = runChild(command, progress)
         sentence = ended.lastLine or _("The simulator's program wrote nothing.")
-        if ended.exitStatus != 0:
-            raise InputError(sentence.removeprefix("rastrainer: "))
+        sentence = sentence.removeprefix("rastrainer: ")
+        if ended.exitStatus != 0 and not mayFail:
+            raise InputError(sentence)
         return sentence
 
 

@@ -1,0 +1,302 @@
+"""The section Plan of a procedure: its lines, their checks, and a scenario that has it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.number_text import fixed
+from rastrainer.panels.cancelable_work import CancelableWork
+from rastrainer.panels.widgets import (
+    chosenData,
+    fillComboBox,
+    fillTable,
+    setSentence,
+    setText,
+    setUsable,
+)
+from rastrainer.procedure.plan import ProcedureKind
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.procedure_plan_logic import CheckedLine, CheckedPlan, PlanDescription
+from rastrainer.slicer.scene.control_points import worldPoints
+from rastrainer.slicer.scene.plan_points import startPlacing
+from rastrainer.slicer.scene.procedure_plan_nodes import (
+    FIDUCIALS,
+    instrumentOf,
+    isNoGo,
+    lengthMm,
+    newPlanLine,
+    noGoNodes,
+    planLines,
+    setInstrument,
+    setNoGo,
+)
+from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.translation import _
+
+KINDS = (
+    (_("Biopsy"), ProcedureKind.BIOPSY.value),
+    (_("Deep brain stimulation (DBS)"), ProcedureKind.DBS.value),
+    (_("Stereo-EEG (SEEG)"), ProcedureKind.SEEG.value),
+)
+REACH = {True: _("yes"), False: _("no"), None: "–"}
+
+
+class ProcedurePlanPanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        self._ui = ui
+        self._session = session
+        self._logic = session.procedurePlan
+        self._name = ""
+        self._seen: tuple = ()
+        self._checked: tuple[tuple, CheckedPlan] | None = None
+        self._problem = ""
+        self._work = CancelableWork(self._showProblem, self._showProgress, self.showState)
+        fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
+        ui.editProcedureButton.connect("clicked()", self.edit)
+        ui.placeLineButton.connect("clicked()", self.placeLine)
+        ui.removeLineButton.connect("clicked()", self.removeLine)
+        ui.linesTable.connect("itemSelectionChanged()", self._showLine)
+        ui.lineNameLineEdit.connect("editingFinished()", self._renameLine)
+        for box in (ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
+            box.connect("valueChanged(double)", self._changeInstrument)
+        ui.noGoButton.connect("clicked()", self.toggleNoGo)
+        ui.noGoComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
+        self._work.connectButton(ui.checkLinesButton, self.check)
+        ui.saveProcedureButton.connect("clicked()", self.save)
+        self._listening = ((session.taskChosen, self._showProcedures),)
+        for signal, slot in self._listening:
+            signal.connect(slot)
+        self._showProcedures()
+        self.showState()
+
+    def close(self) -> None:
+        """Cancel what is under way, and stop listening to the session."""
+        self._work.cancel()
+        for signal, slot in self._listening:
+            signal.disconnect(slot)
+
+    def edit(self) -> None:
+        """Bring the chosen procedure into the scene, in the place of the plan there."""
+        with slicer.util.tryWithErrorDisplay(_("The procedure cannot be edited.")):
+            ui = self._ui
+            procedure = self._logic.edit(self._scenario(), chosenData(ui.procedurePlanComboBox))
+            self._checked, self._problem = None, ""
+            self._name = "" if procedure is None else procedure.name
+            if procedure is not None:
+                ui.procedureTitleLineEdit.text = procedure.title
+                ui.procedureSourceLineEdit.text = procedure.source
+                ui.procedureSourceLineEdit.cursorPosition = 0
+                fillComboBox(ui.procedureKindComboBox, KINDS, procedure.kind.value)
+            checkpoints = findNode(slicer.mrmlScene, FIDUCIALS, Role.CHECKPOINTS)
+            ui.checkpointsComboBox.setCurrentNode(checkpoints)
+            self.showState()
+
+    def placeLine(self) -> None:
+        """Let the next two clicks place a line, from its entry to its target."""
+        with slicer.util.tryWithErrorDisplay(_("No line can be placed.")):
+            startPlacing(slicer.mrmlScene, newPlanLine(slicer.mrmlScene))
+            self.showState()
+
+    def removeLine(self) -> None:
+        """Remove the chosen line."""
+        line = self._line()
+        if line is not None:
+            slicer.mrmlScene.RemoveNode(line)
+            self.showState()
+
+    def toggleNoGo(self) -> None:
+        """Let instruments keep away from the chosen model or segmentation, or no longer."""
+        node = self._ui.noGoComboBox.currentNode()
+        if node is not None:
+            setNoGo(node, not isNoGo(node))
+            self.showState()
+
+    def check(self) -> None:
+        """Measure all lines on the head of the chosen scenario."""
+        with slicer.util.tryWithErrorDisplay(_("The lines were not checked.")):
+            self._problem = ""
+            scenario, plan, snapshot = self._scenario(), self._description(), self._snapshot()
+            own = self._ui.programPathLineEdit.currentPath
+            found = self._work.run(lambda report: self._logic.check(scenario, plan, own, report))
+            if found is not None:
+                self._checked = snapshot, found
+                self._seen = ()
+                self.showState()
+
+    def save(self) -> None:
+        """Copy the chosen scenario with this procedure and use the copy."""
+        with slicer.util.tryWithErrorDisplay(_("The procedure was not saved.")):
+            title = self._ui.procedureScenarioLineEdit.text.strip()
+            scenario, plan = self._scenario(), self._description()
+            own = self._ui.programPathLineEdit.currentPath
+            saved = self._work.run(
+                lambda report: self._logic.save(scenario, title, plan, own, report)
+            )
+            if saved is not None:
+                self._session.scenarioMade.emit(saved.name)
+
+    def showState(self, *_arguments: Any) -> None:
+        """Show the plan of the scene; called about ten times a second."""
+        ui, isAtWork = self._ui, self._work.isUnderWay
+        snapshot = self._snapshot()
+        if snapshot != self._seen:
+            self._seen = snapshot
+            self._showLines()
+        hasLines, line = bool(planLines(slicer.mrmlScene)), self._line()
+        for box in (ui.lineNameLineEdit, ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
+            box.enabled = line is not None
+        setUsable(
+            ui.removeLineButton,
+            line is not None,
+            _("Remove the chosen line."),
+            _("Choose a line in the table first."),
+        )
+        node = ui.noGoComboBox.currentNode()
+        ui.noGoButton.text = _("Ignore") if node is not None and isNoGo(node) else _("Keep away")
+        setUsable(
+            ui.noGoButton,
+            node is not None,
+            _("Let instruments keep away from this, or no longer."),
+            _("Choose a model or a segmentation first."),
+        )
+        names = ", ".join(each.GetName() for each in noGoNodes(slicer.mrmlScene))
+        setSentence(ui.noGoText, _("To keep away from: {names}").format(names=names or "–"))
+        ui.checkLinesButton.text = _("Cancel") if isAtWork else _("Check")
+        first = _("Place a line first.")
+        setUsable(
+            ui.checkLinesButton,
+            hasLines or isAtWork,
+            _("Measure angles, distances and reach of all lines on the head chosen above."),
+            first,
+        )
+        setUsable(
+            ui.saveProcedureButton,
+            hasLines and not isAtWork,
+            _("Copy the scenario above with this procedure."),
+            _("Wait until the work under way is done.") if isAtWork else first,
+        )
+        if not isAtWork:
+            setSentence(ui.procedurePlanText, self._problem or self._verdict())
+
+    def _verdict(self) -> str:
+        """Return what is wrong with the plan as it was checked, or that nothing is."""
+        if self._checked is None:
+            return ""
+        if self._checked[0] != self._seen:
+            return _("The plan has changed since it was checked: check it again.")
+        wrong = self._checked[1].wrong
+        return "\n".join(wrong) or _("The procedure can be carried out.")
+
+    def _snapshot(self) -> tuple:
+        """Return a value that changes with anything that is measured."""
+        lines = planLines(slicer.mrmlScene)
+        return (
+            *(
+                (line.GetName(), instrumentOf(line), worldPoints(line).tobytes(), lengthMm(line))
+                for line in lines
+            ),
+            *((node.GetID(), node.GetMTime()) for node in noGoNodes(slicer.mrmlScene)),
+            chosenData(self._ui.scenarioComboBox),
+        )
+
+    def _showLines(self) -> None:
+        lines, table = planLines(slicer.mrmlScene), self._ui.linesTable
+        isFresh = self._checked is not None and self._checked[0] == self._seen
+        found = self._checked[1].lines if isFresh and self._checked is not None else ()
+        measured = {each.name: each for each in found}
+        chosen = table.currentRow()
+        wasBlocked = table.blockSignals(True)
+        fillTable(table, [_row(line, measured.get(line.GetName())) for line in lines])
+        if lines:
+            table.selectRow(min(max(chosen, 0), len(lines) - 1))
+        table.blockSignals(wasBlocked)
+        self._showLine()
+
+    def _showLine(self) -> None:
+        """Show name and instrument of the chosen line."""
+        ui, line = self._ui, self._line()
+        if line is None:
+            return
+        diameter, safety = instrumentOf(line)
+        boxes: Sequence[tuple[Any, float]] = (
+            (ui.lineDiameterSpinBox, diameter),
+            (ui.lineSafetySpinBox, safety),
+        )
+        for box, value in boxes:
+            wasBlocked = box.blockSignals(True)
+            box.value = value
+            box.blockSignals(wasBlocked)
+        if ui.lineNameLineEdit.text != line.GetName():
+            ui.lineNameLineEdit.text = line.GetName()
+
+    def _renameLine(self) -> None:
+        line, name = self._line(), self._ui.lineNameLineEdit.text.strip()
+        if line is not None and name:
+            line.SetName(name)
+            self.showState()
+
+    def _changeInstrument(self, _value: float = 0.0) -> None:
+        line = self._line()
+        if line is not None:
+            ui = self._ui
+            setInstrument(line, ui.lineDiameterSpinBox.value, ui.lineSafetySpinBox.value)
+            self.showState()
+
+    def _line(self) -> Any | None:
+        lines, row = planLines(slicer.mrmlScene), self._ui.linesTable.currentRow()
+        return lines[row] if 0 <= row < len(lines) else None
+
+    def _description(self) -> PlanDescription:
+        ui = self._ui
+        return PlanDescription(
+            title=ui.procedureTitleLineEdit.text,
+            kind=chosenData(ui.procedureKindComboBox),
+            source=ui.procedureSourceLineEdit.text,
+            name=self._name,
+            checkpoints=ui.checkpointsComboBox.currentNode(),
+        )
+
+    def _scenario(self) -> Any:
+        name = chosenData(self._ui.scenarioComboBox)
+        if not name:
+            raise InputError(_("Choose a scenario that can be used."))
+        return self._session.scenario.find(name)
+
+    def _showProcedures(self) -> None:
+        """Offer the procedures of the chosen scenario, and a new one."""
+        entries = [(title, name) for name, title in self._session.procedures]
+        entries.append((_("New procedure"), ""))
+        combo = self._ui.procedurePlanComboBox
+        chosen, known = chosenData(combo), [name for _title, name in entries]
+        fillComboBox(combo, entries, chosen if chosen in known and combo.count else known[0])
+
+    def _showProgress(self, step: str, share: float) -> None:
+        if step:
+            setText(self._ui.procedurePlanText, f"{step}: {100 * share:.0f} %")
+
+    def _showProblem(self, sentence: str) -> None:
+        self._problem = sentence
+
+
+def _row(line: Any, measured: CheckedLine | None) -> tuple[str, ...]:
+    length = lengthMm(line)
+    first = (line.GetName(), "–" if length is None else fixed(length, 1))
+    if measured is None:
+        return (*first, "–", "–", "–", "–")
+    return (
+        *first,
+        "–" if measured.angleDeg is None else fixed(measured.angleDeg, 1),
+        _named(measured.noGoMm, measured.noGo),
+        _named(measured.otherMm, measured.other),
+        REACH[measured.isHeld],
+    )
+
+
+def _named(distanceMm: float | None, name: str) -> str:
+    return "–" if distanceMm is None else f"{fixed(distanceMm, 1)} {name}"

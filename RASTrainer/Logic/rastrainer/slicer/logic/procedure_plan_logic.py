@@ -1,0 +1,271 @@
+"""The plan of a procedure: taken from a scenario, read from the scene, checked and saved."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.writing import write_json
+from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.json_checks import identifier_of
+from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import (
+    MAX_NO_GO,
+    MAX_TRAJECTORIES,
+    MIN_LENGTH_MM,
+    NO_GO_FOLDER,
+    Checkpoint,
+    NoGoStructure,
+    Procedure,
+    ProcedureKind,
+    ProcedureTrajectory,
+    procedure_json,
+)
+from rastrainer.progress import Progress
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.logic.no_go_structures import noGoMeshes
+from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
+from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
+from rastrainer.slicer.scene.plan_points import ENDS, placedRows
+from rastrainer.slicer.scene.procedure_plan_nodes import (
+    instrumentOf,
+    noGoNodes,
+    planLines,
+    showPlan,
+)
+from rastrainer.slicer.translation import _
+
+FILE = "procedure.json"
+
+
+@dataclass(frozen=True)
+class PlanDescription:
+    """What of a plan is no node of the scene.
+
+    Attributes:
+        title: for people.
+        kind: a `ProcedureKind`.
+        source: where the coordinates come from; empty says that they were placed in Slicer.
+        name: of the procedure that is changed; empty for a new one, whose name its title gives.
+        checkpoints: a list of points on the skin, or None.
+    """
+
+    title: str
+    kind: str
+    source: str = ""
+    name: str = ""
+    checkpoints: Any = None
+
+
+@dataclass(frozen=True)
+class CheckedLine:
+    """What was measured of a line: as `LineMeasures`, and whether the robot reaches along it.
+
+    Attributes:
+        name: of the line.
+        angleDeg: to the skull's normal; None where the line does not meet it.
+        noGo: name of the nearest no-go structure; empty where there is none.
+        noGoMm: how far it is from the instrument's surface.
+        other: name of the nearest other line; empty where there is none.
+        otherMm: between the surfaces of both instruments.
+        isHeld: whether the robot can hold the guide on the line; None where that was not tried.
+    """
+
+    name: str
+    angleDeg: float | None
+    noGo: str
+    noGoMm: float | None
+    other: str
+    otherMm: float | None
+    isHeld: bool | None
+
+    @classmethod
+    def of(cls, told: Mapping[str, Any]) -> CheckedLine:
+        """Return a line of the file that `rastrainer scenario lines` writes."""
+        distances = told["noGoMm"]
+        nearest = min(distances, key=distances.get, default="")
+        return cls(
+            name=told["name"],
+            angleDeg=told["skullAngleDeg"],
+            noGo=nearest,
+            noGoMm=distances.get(nearest),
+            other=told["nearestLine"],
+            otherMm=told["nearestLineMm"],
+            isHeld=told["isHeld"],
+        )
+
+
+@dataclass(frozen=True)
+class CheckedPlan:
+    """A plan as it was measured on a head, and a sentence for each error."""
+
+    lines: tuple[CheckedLine, ...]
+    wrong: tuple[str, ...]
+
+
+class ProcedurePlanLogic:
+    """What the panel of a procedure's plan does."""
+
+    def __init__(self, scene: Any, files: ScenarioFiles) -> None:
+        """`files` keeps plans in scenarios."""
+        self._scene = scene
+        self._files = files
+
+    def edit(self, scenario: Scenario, name: str) -> Procedure | None:
+        """Show a procedure of a scenario in the scene, to be changed; an empty one without a name.
+
+        Raises:
+            InputError: there is no such procedure, or a mesh is unusable.
+        """
+        if not name:
+            showPlan(self._scene, (), {}, ())
+            return None
+        procedure, skull = scenario.procedure(name), scenario.skull_mesh
+        assert skull is not None, "a scenario with procedures has a skull"
+        meshes = read_procedure_meshes(procedure, skull)
+        showPlan(self._scene, procedure.trajectories, dict(meshes.no_go), procedure.checkpoints)
+        return procedure
+
+    def read(self, plan: PlanDescription) -> tuple[Procedure, dict[str, HeadMesh]]:
+        """Return the plan of the scene, and the meshes of its no-go structures by file name.
+
+        Raises:
+            InputError: something is missing or unusable; the sentence says what.
+        """
+        title = plan.title.strip()
+        if not title:
+            raise InputError(_("Enter a title for the procedure."))
+        trajectories = self._trajectories()
+        meshes: dict[str, HeadMesh] = {}
+        structures: list[NoGoStructure] = []
+        for name, mesh in noGoMeshes(noGoNodes(self._scene)).items():
+            file = f"structure-{len(structures) + 1}.ply"
+            meshes[file] = mesh
+            structures.append(NoGoStructure(name[:60], Path(NO_GO_FOLDER, file)))
+        if len(structures) > MAX_NO_GO:
+            text = _("The plan has {count} no-go structures; it may have {most}.")
+            raise InputError(text.format(count=len(structures), most=MAX_NO_GO))
+        procedure = Procedure(
+            name=plan.name or _nameOf(title),
+            title=title[:80],
+            kind=ProcedureKind(plan.kind),
+            source=plan.source.strip() or _("Planned in 3D Slicer."),
+            trajectories=trajectories,
+            no_go=tuple(structures),
+            checkpoints=_checkpoints(plan.checkpoints),
+        )
+        return procedure, meshes
+
+    def check(
+        self,
+        scenario: Scenario,
+        plan: PlanDescription,
+        ownProgram: str = "",
+        progress: Progress = lambda _step, _share: None,
+    ) -> CheckedPlan:
+        """Measure the plan on the head of a scenario; nothing is changed.
+
+        Args:
+            scenario: whose head it is.
+            plan: what of it is no node.
+            ownProgram: see `ScenarioFiles`.
+            progress: see `ScenarioFiles`.
+
+        Raises:
+            InputError: the plan cannot be measured; otherwise what is wrong with it is returned.
+        """
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary)
+            path = self._write(folder, plan)
+            told = folder / "lines.json"
+            words = ["lines", str(scenario.folder), "--procedure", str(path), "--json", str(told)]
+            refusal = self._files.run(words, ownProgram, progress, mayFail=True)
+            if not told.is_file():
+                raise InputError(refusal)
+            (measured,) = json.loads(told.read_text(encoding="utf-8"))
+        lines = tuple(CheckedLine.of(line) for line in measured["lines"])
+        return CheckedPlan(lines, tuple(measured["wrong"]))
+
+    def save(
+        self,
+        scenario: Scenario,
+        title: str,
+        plan: PlanDescription,
+        ownProgram: str = "",
+        progress: Progress = lambda _step, _share: None,
+    ) -> Scenario:
+        """Copy a scenario with the plan, and return the copy.
+
+        Args:
+            scenario: which stays as it is.
+            title: of the copy.
+            plan: what of it is no node.
+            ownProgram: see `ScenarioFiles`.
+            progress: see `ScenarioFiles`.
+
+        Raises:
+            InputError: there is one of that title already, or the plan cannot be carried out.
+                Nothing is written then.
+        """
+        with tempfile.TemporaryDirectory() as temporary:
+            path = self._write(Path(temporary), plan)
+            return self._files.saveProcedure(scenario.name, title, path, ownProgram, progress)
+
+    def _write(self, folder: Path, plan: PlanDescription) -> Path:
+        procedure, meshes = self.read(plan)
+        (folder / NO_GO_FOLDER).mkdir()
+        for name, mesh in meshes.items():
+            write_head_mesh(folder / NO_GO_FOLDER / name, mesh)
+        write_json(folder / FILE, procedure_json(procedure))
+        return folder / FILE
+
+    def _trajectories(self) -> tuple[ProcedureTrajectory, ...]:
+        lines = planLines(self._scene)
+        if not 1 <= len(lines) <= MAX_TRAJECTORIES:
+            text = _("A procedure has 1 to {most} lines; the plan has {count}. Place a line.")
+            raise InputError(text.format(most=MAX_TRAJECTORIES, count=len(lines)))
+        names = [line.GetName() for line in lines]
+        for name in names:
+            if names.count(name) > 1:
+                text = _("Two lines are named {name}: give each its own name.")
+                raise InputError(text.format(name=name))
+        return tuple(_trajectory(line) for line in lines)
+
+
+def _trajectory(line: Any) -> ProcedureTrajectory:
+    name = line.GetName()
+    if len(placedRows(line)) != ENDS:
+        text = _("{name} needs two points: its entry and its target.")
+        raise InputError(text.format(name=name))
+    entry, target = (np.array(point) for point in worldPoints(line))
+    diameter, safety = instrumentOf(line)
+    trajectory = ProcedureTrajectory(name[:60], entry, target, diameter, safety)
+    if trajectory.length_mm < MIN_LENGTH_MM:
+        text = _("{name} is {length:.1f} mm long; it must be at least {least:g} mm.")
+        raise InputError(text.format(name=name, length=trajectory.length_mm, least=MIN_LENGTH_MM))
+    return trajectory
+
+
+def _checkpoints(node: Any | None) -> tuple[Checkpoint, ...]:
+    if node is None:
+        return ()
+    pairs = zip(labelsOf(node), worldPoints(node), strict=True)
+    return tuple(Checkpoint(label, np.array(place)) for label, place in pairs)
+
+
+def _nameOf(title: str) -> str:
+    name = identifier_of(title)
+    if not name:
+        raise InputError(
+            _("{title} cannot be a procedure's title: it needs a Latin letter or digit.").format(
+                title=title
+            )
+        )
+    return name

@@ -1,0 +1,96 @@
+"""A procedure is planned in Slicer by lines, checked by the simulator's program, and saved."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.scenario.library import user_library
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.scene.control_points import setPoints, worldPoints
+from rastrainer.slicer.scene.procedure_plan_nodes import noGoNodes, planLines
+from Testing.end_to_end.module.story import Story
+from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
+
+DBS = "Deep brain stimulation of both subthalamic nuclei"
+
+
+def cells(host):
+    table = host.find("linesTable")
+    return [
+        [table.item(row, column).text() for column in range(table.columnCount)]
+        for row in range(table.rowCount)
+    ]
+
+
+def test_a_procedure_is_edited_checked_and_saved_in_a_copy_of_its_scenario(host, tmp_path):
+    Story(host, tmp_path).choose_own_program()
+    host.choose("scenarioComboBox", 0)
+    host.choose("procedurePlanComboBox", DBS)
+    host.press("editProcedureButton")
+    assert [row[0] for row in cells(host)] == [
+        "Left subthalamic nucleus",
+        "Right subthalamic nucleus",
+    ]
+    assert [row[1:] for row in cells(host)] == [
+        ["96.1", "–", "–", "–", "–"],
+        ["94.7", "–", "–", "–", "–"],
+    ]
+    host.press("checkLinesButton")
+    left = cells(host)[0]
+    assert left[2] == "18.2"
+    assert left[3].startswith("2.9 Left lateral ventricle")
+    assert left[4] == "23.9 Right subthalamic nucleus"
+    assert left[5] == "yes"
+    assert host.text("procedurePlanText") == "The procedure can be carried out."
+
+    right = planLines(host.scene)[1]
+    good = worldPoints(right).copy()
+    setPoints(right, ("Entry", "Target"), good + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 130.0]]))
+    host.let_pass(0.2)
+    assert "check it again" in host.text("procedurePlanText")
+    assert cells(host)[0][2] == "–"
+    host.type("procedureScenarioLineEdit", "My DBS")
+    host.press("saveProcedureButton")
+    assert "Right subthalamic nucleus has its target" in host.messages[-1].text
+    assert "outside of the head." in host.messages[-1].text
+    assert not (user_library() / "my-dbs").exists()
+
+    setPoints(right, ("Entry", "Target"), good)
+    host.choose("linesTable", 1)
+    host.type("lineNameLineEdit", "Right STN")
+    host.type("lineDiameterSpinBox", "2.0")
+    host.press("saveProcedureButton")
+    assert len(host.messages) == 1
+    saved = load_scenario(user_library() / "my-dbs")
+    assert [each.name for each in saved.procedures] == ["biopsy", "dbs", "seeg"]
+    dbs = saved.procedure("dbs")
+    assert [each.name for each in dbs.trajectories] == ["Left subthalamic nucleus", "Right STN"]
+    assert dbs.trajectories[1].diameter_mm == 2.0
+    np.testing.assert_allclose(dbs.trajectories[1].target, good[1], atol=1e-3)
+    assert len(dbs.checkpoints) == 6
+    meshes = read_procedure_meshes(dbs, saved.skull_mesh).no_go
+    assert list(meshes) == [node.GetName() for node in noGoNodes(host.scene)]
+    assert host.find("scenarioComboBox").currentText == "My DBS"
+    assert host.find("procedureComboBox").count == 4
+
+
+def test_lines_are_placed_by_two_clicks_and_models_kept_away_from(host):
+    host.open()
+    host.choose("procedureKindComboBox", "Stereo-EEG")
+    host.press("placeLineButton")
+    host.place(0.0, -20.0, 100.0)
+    host.place(2.0, -15.0, 5.0)
+    host.wait_until(lambda: cells(host) and cells(host)[0][1] == "95.2", "its length is shown")
+    assert host.find("checkLinesButton").enabled
+    model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", "Vein")
+    host.choose("noGoComboBox", model)
+    host.press("noGoButton")
+    assert host.text("noGoText") == "To keep away from: Vein"
+    assert host.text("noGoButton") == "Ignore"
+    host.press("noGoButton")
+    assert host.text("noGoText") == "To keep away from: –"
+    host.choose("linesTable", 0)
+    host.press("removeLineButton")
+    assert planLines(host.scene) == []
+    assert not host.find("saveProcedureButton").enabled

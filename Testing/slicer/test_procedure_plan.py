@@ -1,0 +1,170 @@
+"""The plan of a procedure in the scene: read with one sentence for what is missing, and kept."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import vtk
+
+from rastrainer.errors import InputError
+from rastrainer.procedure.meshes import MAX_NO_GO_TRIANGLES
+from rastrainer.slicer.logic.no_go_structures import noGoMeshes
+from rastrainer.slicer.logic.procedure_plan_logic import PlanDescription, ProcedurePlanLogic
+from rastrainer.slicer.scene.control_points import setPoints
+from rastrainer.slicer.scene.procedure_plan_nodes import (
+    instrumentOf,
+    isNoGo,
+    newPlanLine,
+    noGoNodes,
+    planLines,
+    setInstrument,
+    setNoGo,
+    showPlan,
+)
+from Testing.domain.procedure.made_up_procedure import made_up_procedure, vessel
+
+PLAN = PlanDescription("Two leads", "dbs")
+ENDS = np.array([[0.0, 0.0, 90.0], [0.0, 0.0, 20.0]])
+
+
+@pytest.fixture
+def logic(scene):
+    return ProcedurePlanLogic(scene, None)
+
+
+def placed(scene, name="Line", ends=ENDS):
+    line = newPlanLine(scene)
+    line.SetName(name)
+    setPoints(line, ("Entry", "Target"), ends)
+    return line
+
+
+def sphere_node(scene, name="Vessel", resolution=20, is_open=False):
+    source = vtk.vtkSphereSource()
+    source.SetRadius(5.0)
+    source.SetThetaResolution(resolution)
+    source.SetPhiResolution(resolution)
+    if is_open:
+        source.SetEndTheta(300.0)
+    source.Update()
+    node = scene.AddNewNodeByClass("vtkMRMLModelNode", name)
+    node.SetAndObservePolyData(source.GetOutput())
+    setNoGo(node, True)
+    return node
+
+
+def test_a_plan_that_was_shown_is_read_as_it_was(scene, logic):
+    procedure = made_up_procedure()
+    showPlan(scene, procedure.trajectories, {"Vessel": vessel()}, procedure.checkpoints)
+    node = scene.GetFirstNodeByName("Checkpoints")
+    read, meshes = logic.read(replace(PLAN, name="dbs-1", checkpoints=node))
+    assert [each.name for each in read.trajectories] == ["Left", "Right"]
+    for one, other in zip(read.trajectories, procedure.trajectories, strict=True):
+        np.testing.assert_allclose(one.entry, other.entry)
+        assert (one.diameter_mm, one.safety_mm) == (other.diameter_mm, other.safety_mm)
+    assert (read.name, read.title, read.kind.value) == ("dbs-1", "Two leads", "dbs")
+    assert [(each.name, each.mesh.name) for each in read.no_go] == [("Vessel", "structure-1.ply")]
+    assert meshes["structure-1.ply"].is_closed
+    assert read.checkpoints[0].name == "Vertex"
+
+
+@pytest.mark.parametrize(
+    ("spoil", "sentence"),
+    [
+        (lambda _scene, line: line.RemoveNthControlPoint(1), "Line needs two points: its entry"),
+        (lambda scene, line: scene.RemoveNode(line), "A procedure has 1 to 20 lines; the plan has"),
+        (
+            lambda _scene, line: setPoints(
+                line, ("", ""), ENDS * [1, 1, 0] + [[0, 0, 5], [0, 0, 1]]
+            ),
+            "Line is 4.0 mm long; it must be at least 10 mm.",
+        ),
+        (lambda scene, _line: placed(scene), "Two lines are named Line"),
+        (
+            lambda scene, _line: sphere_node(scene, is_open=True),
+            "The no-go structure Vessel is not closed: it has a hole.",
+        ),
+        (
+            lambda scene, _line: sphere_node(scene, resolution=400),
+            f"it may have {MAX_NO_GO_TRIANGLES}.",
+        ),
+        (
+            lambda scene, _line: setNoGo(scene.AddNewNodeByClass("vtkMRMLModelNode", "None"), True),
+            "The no-go structure None is empty.",
+        ),
+        (
+            lambda scene, _line: [sphere_node(scene), sphere_node(scene)],
+            "Two no-go structures are named Vessel",
+        ),
+        (
+            lambda scene, _line: [sphere_node(scene, f"V{number}") for number in range(11)],
+            "The plan has 11 no-go structures; it may have 10.",
+        ),
+    ],
+    ids=["unfinished", "none", "short", "twice", "open", "huge", "empty", "two", "many"],
+)
+def test_what_is_missing_or_unusable_is_one_sentence(scene, logic, spoil, sentence):
+    spoil(scene, placed(scene))
+    with pytest.raises(InputError) as refused:
+        logic.read(PLAN)
+    assert sentence in str(refused.value)
+
+
+def test_a_plan_needs_a_title_of_which_a_name_can_be_made(scene, logic):
+    placed(scene)
+    with pytest.raises(InputError, match="Enter a title"):
+        logic.read(replace(PLAN, title="  "))
+    with pytest.raises(InputError, match="needs a Latin letter or digit"):
+        logic.read(replace(PLAN, title="Ω"))
+    assert logic.read(replace(PLAN, title="Ä first: Try!"))[0].name == "first-try"
+
+
+def test_a_structure_is_where_its_transform_puts_it(scene):
+    node = sphere_node(scene)
+    transform = scene.AddNewNodeByClass("vtkMRMLLinearTransformNode")
+    matrix = vtk.vtkMatrix4x4()
+    matrix.SetElement(0, 3, 25.0)
+    transform.SetMatrixTransformToParent(matrix)
+    node.SetAndObserveTransformNodeID(transform.GetID())
+    (mesh,) = noGoMeshes([node]).values()
+    assert mesh.vertices[:, 0].mean() == pytest.approx(25.0, abs=0.1)
+    assert mesh.is_closed
+
+
+def test_each_segment_of_a_segmentation_is_a_structure(scene):
+    node = scene.AddNewNodeByClass("vtkMRMLSegmentationNode", "Vessels")
+    node.GetSegmentation().SetSourceRepresentationName("Closed surface")
+    for name, x in (("Artery", -20.0), ("Vein", 20.0)):
+        source = vtk.vtkSphereSource()
+        source.SetCenter(x, 0.0, 0.0)
+        source.SetRadius(6.0)
+        source.Update()
+        node.AddSegmentFromClosedSurfaceRepresentation(source.GetOutput(), name, [1.0, 0.0, 0.0])
+    meshes = noGoMeshes([node])
+    assert list(meshes) == ["Artery", "Vein"]
+    assert meshes["Vein"].vertices[:, 0].mean() == pytest.approx(20.0, abs=0.5)
+
+
+def test_instruments_and_structures_are_kept_with_the_scene(headless_scene, logic, tmp_path):
+    line = placed(headless_scene.scene, "Left")
+    setInstrument(line, 2.25, 3.5)
+    sphere_node(headless_scene.scene)
+    headless_scene.save(tmp_path / "plan.mrb")
+    headless_scene.load(tmp_path / "plan.mrb")
+    (line,) = planLines(headless_scene.scene)
+    assert instrumentOf(line) == (2.25, 3.5)
+    (node,) = noGoNodes(headless_scene.scene)
+    assert isNoGo(node)
+    procedure, meshes = logic.read(PLAN)
+    assert procedure.trajectories[0].diameter_mm == 2.25
+    assert len(meshes) == 1
+
+
+def test_another_plan_removes_its_own_models_and_unmarks_those_of_the_user(scene):
+    mine = sphere_node(scene, "Mine")
+    showPlan(scene, (), {"Shown": vessel()}, ())
+    assert [node.GetName() for node in noGoNodes(scene)] == ["Shown"]
+    showPlan(scene, (), {}, ())
+    assert noGoNodes(scene) == []
+    assert scene.GetFirstNodeByName("Shown") is None
+    assert mine.GetScene() is scene
