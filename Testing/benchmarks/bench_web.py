@@ -58,6 +58,20 @@ COUNT_A_PICTURE = """async () => {
 }"""
 
 
+# The next fiducial pulses, so that each picture differs from the one before.
+COUNT_PICTURES = """async (seconds) => {
+  const { frames } = page;
+  const drawn = frames.drawn.bind(frames);
+  let count = 0;
+  frames.drawn = () => { count++; drawn(); };
+  const begin = performance.now();
+  await new Promise((done) => setTimeout(done, 1000 * seconds));
+  frames.drawn = drawn;
+  return (1000 * count) / (performance.now() - begin);
+}"""
+SIZES = ((1920, 1080), (1280, 720))
+
+
 def rows(quick: bool) -> list[dict]:
     """Return the rows `web.*`."""
     packed = sum((DIST / f"{name}.br").stat().st_size for name in PAGE_FILES) / KB
@@ -67,6 +81,7 @@ def rows(quick: bool) -> list[dict]:
             found += _picture(page, "page")
             found.append(_bytes(page, 3 if quick else 10))
             found.append(_delay(place, page, 5 if quick else 40))
+            found += [_pictures(page, size, 5 if quick else 15) for size in SIZES]
         with _page(playwright, HEADSET) as (_place, page):
             found += _picture(page, "headset")
         found += _heaps(playwright, 5 if quick else 60)
@@ -124,6 +139,14 @@ def _bytes(page: Page, seconds: int) -> dict:
     passed = time.monotonic() - begin
     session.detach()
     return row("web.stream per view", [sum(sizes) / KB / passed], "kB/s")
+
+
+def _pictures(page: Page, size: tuple[int, int], seconds: int) -> dict:
+    """Count the pictures of a window of a size, drawn by the processor where nothing else can."""
+    width, height = size
+    page.set_viewport_size({"width": width, "height": height})
+    rate = page.evaluate(COUNT_PICTURES, seconds)
+    return row(f"web.pictures {width}x{height}", [rate], "1/s")
 
 
 def _delay(place: Place, page: Page, count: int) -> dict:

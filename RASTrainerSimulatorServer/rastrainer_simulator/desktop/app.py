@@ -22,6 +22,7 @@ from rastrainer_simulator.desktop.inbox import Inbox
 from rastrainer_simulator.desktop.keyboard import OperatorKeys, without_late_repeats
 from rastrainer_simulator.desktop.performance import (
     SLOWEST_FRAME_S,
+    SOFTWARE_SIZE,
     FrameCount,
     Quality,
     first_quality,
@@ -93,6 +94,8 @@ class DesktopWindow:
         if quality is Quality.LOW:
             # It draws with the processor that the control loop needs on time.
             _lower_priority()
+            if options.size is None:
+                self._window.shrink_to(SOFTWARE_SIZE)
         self._picture = Picture(self._window, self._inbox, quality)
         self._frame_times: list[float] | None = [] if options.quality is None else None
         self._connection = ServerConnection(

@@ -89,6 +89,12 @@ class GlWindow:
         else:
             self._window.set_windowed()
 
+    def shrink_to(self, most: tuple[int, int]) -> None:
+        """Make the window no larger than a size in pixels; one that fills the display stays."""
+        width, height = self.size
+        if not self._is_fullscreen:
+            self._window.size = min(width, most[0]), min(height, most[1])
+
     def fit(self) -> None:
         """Have VTK draw as large as the window is."""
         if self.render_window.GetSize() != self.size:

@@ -16,13 +16,16 @@ SOFTWARE_RENDERERS = (
     "gdi generic",
 )
 SLOWEST_FRAME_S = 1.0 / 45.0
+SOFTWARE_SIZE = (1280, 720)
+"""A processor of two cores draws 20 pictures a second of this size; docs/design.md has numbers."""
 
 
 class Quality(str, Enum):
     """What a picture is made of.
 
     High has physically based light, soft shadows, shaded corners and smooth edges; medium leaves
-    shadows and shaded corners out; low is plain light, for machines without a graphics processor.
+    shadows and shaded corners out; low is plain light, and in large windows a fraction of the
+    resolution, for machines without a graphics processor.
     """
 
     HIGH = "high"

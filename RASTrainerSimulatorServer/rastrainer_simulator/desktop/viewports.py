@@ -13,6 +13,7 @@ from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.canvas import Box
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.plain_light import add_plain_lights
+from rastrainer_simulator.desktop.reduced_scene import ReducedScene
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 
@@ -39,6 +40,7 @@ class Viewports:
             window.render_window.AddRenderer(renderer)
         for renderer in (self.main, self._inset):
             renderer.SetBackground(*BACKGROUND)
+        self._reduced = ReducedScene(window, self.main)
         self._scene: ShownScene | None = None
         self._cameras: dict[str, Viewpoint] = {}
         self._chosen = ("", 0.0)
@@ -116,6 +118,7 @@ class Viewports:
     def prepare(self, now: float) -> None:
         """Set cameras and viewports for the picture at `now` (s)."""
         self._inset.SetDraw(self.has_inset)
+        self._reduced.fit(self.quality is Quality.LOW)
         if self._transition is None:
             return
         self._transition.at(now).look(self.main)
