@@ -7,8 +7,7 @@ of many directions. Time and safety are those of the stored trials of the usual 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,9 +16,8 @@ from rastrainer.trial.score_reference import fiducial_normals, region_of, score_
 from rastrainer.trial.scoring import PASS_MARK, ScoreMeasures, passes, score_trial
 from rastrainer_simulator.collision.capsules import sphere_directions
 from Testing.error_rates.cheats import MOST
-from Testing.error_rates.equal_hands import scenario_of
+from Testing.error_rates.hands import HEADS, TASKS, USUAL, scenario_of, trials_of
 from Testing.error_rates.measured import share_of, share_text
-from Testing.error_rates.played import HEADS, TASKS, USUAL, stored
 from Testing.error_rates.registered import common_biases, errors_along_skin, registered_errors
 from Testing.simulator.virtual.cheating_trainees import BIAS_MM, FLE_MM
 
@@ -117,20 +115,18 @@ def scored(head: str, task: str, errors: np.ndarray) -> tuple[np.ndarray, float]
     fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
     tre_mm = registered_errors(region_of(scenario), fiducials, fiducials + errors)
     bias_mm = common_biases(normals, errors)
-    reference, hands = score_reference(scenario, task), _hands(head, task)
+    reference, hands = score_reference(scenario, task), trials_of(USUAL, head, task)
     found = [
         score_trial(
-            replace(hands[number % len(hands)], tre_mm=float(tre), common_bias_mm=float(bias)),
+            ScoreMeasures(
+                hands[number % len(hands)].time_s,
+                float(tre),
+                *hands[number % len(hands)].safety,
+                float(bias),
+            ),
             reference,
         )
         for number, (tre, bias) in enumerate(zip(tre_mm, bias_mm, strict=True))
     ]
     passed = share_of([passes(one.score, one.acceptable, PASS_MARK) for one in found])
     return np.array([one.score for one in found]), passed
-
-
-def _hands(head: str, task: str) -> Sequence[ScoreMeasures]:
-    """Return what the usual hands measured, of which time and safety count here."""
-    return [
-        one.measures for one in stored() if (one.head, one.way, one.task) == (head, USUAL, task)
-    ]

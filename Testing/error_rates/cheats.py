@@ -13,9 +13,9 @@ from rastrainer.number_text import fixed
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import PASS_MARK, TrialScore, passes, score_trial
 from rastrainer.trial.trainee_progress import TRAINING_TRIALS, competence_of
-from Testing.error_rates.equal_hands import scenario_of
+from Testing.error_rates.hands import TASKS, scenario_of
 from Testing.error_rates.measured import Measured, share_of
-from Testing.error_rates.played import HEADS, OBLIQUE_WAYS, TASKS, stored
+from Testing.error_rates.played import COLIN27, OBLIQUE_WAYS, stored
 
 MOST = 40.0
 """Points that a cheat may get."""
@@ -98,19 +98,19 @@ def _passes(score: TrialScore) -> bool:
     return passes(score.score, score.acceptable, PASS_MARK)
 
 
-def scores_of(head: str, ways: Sequence[str]) -> dict[str, list[TrialScore]]:
-    """Return the scores of the trials played on a head in some ways, by task."""
-    scenario = scenario_of(head)
+def scores_of(ways: Sequence[str]) -> dict[str, list[TrialScore]]:
+    """Return the scores of the trials played in some ways, by task."""
+    scenario = scenario_of(COLIN27)
     found: dict[str, list[TrialScore]] = {task: [] for task in TASKS}
     for one in stored():
-        if one.head == head and one.way in ways:
+        if one.way in ways:
             found[one.task].append(score_trial(one.measures, score_reference(scenario, one.task)))
     return found
 
 
 def played(_sets: int) -> list[Scored]:
-    """Return the scores of each strategy on Colin27."""
-    return [Scored(words, scores_of(HEADS[0], ways), most) for words, ways, most in ROWS]
+    """Return the scores of each strategy."""
+    return [Scored(words, scores_of(ways), most) for words, ways, most in ROWS]
 
 
 ABORTED_HEADER = (

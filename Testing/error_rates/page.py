@@ -9,6 +9,7 @@ from pathlib import Path
 from Testing.error_rates import (
     biased_aim,
     cheats,
+    cohort,
     equal_hands,
     groups,
     learning,
@@ -31,6 +32,7 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "effect sizes": (modes.EFFECT_HEADER, modes.coverage),
     "recovery": (recovery.HEADER, recovery.parameters),
     "recovery intervals": (recovery.COVERAGE_HEADER, recovery.coverage),
+    "played cohort": (cohort.HEADER, cohort.recovered),
     "throughput": (cheats.THROUGHPUT_HEADER, cheats.offsets),
     "aborted trials": (cheats.ABORTED_HEADER, cheats.competence),
     "target errors": (target_errors.HEADER, target_errors.intervals),

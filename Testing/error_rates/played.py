@@ -1,4 +1,4 @@
-"""Trials that honest and cheating trainees have played, kept beside the tables made of them.
+"""Trials that honest and cheating trainees have played on Colin27, kept beside their tables.
 
 `python -m Testing.error_rates.played` plays all of them that `played_trials.csv` does not hold,
 some seconds each. What is kept is what is scored, so that another score needs no new trials unless
@@ -10,7 +10,6 @@ from __future__ import annotations
 import csv
 import functools
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,8 +21,7 @@ from rastrainer.trial.score_reference import fiducial_normals, region_of, score_
 from rastrainer.trial.scoring import ScoreMeasures, TrialScore, score_trial
 from rastrainer.trial.trueness import common_bias, true_touch_errors
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.virtual.scripted_trainee import Skill
-from Testing.simulator.authoring.planned_heads import setup_of
+from Testing.error_rates.hands import HEADS, TASKS, setup
 from Testing.simulator.virtual.cheating_trainees import (
     BIAS_MM,
     PlayedTrial,
@@ -35,13 +33,6 @@ from Testing.simulator.virtual.cheating_trainees import (
 )
 
 FILE = Path(__file__).with_name("played_trials.csv")
-TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
-HEADS = ("colin27", "egg", "small")
-USUAL, SLOW = "usual", "slow"
-SLOW_SKILL = Skill(
-    speed_mm_s=70.0, gain_per_s=2.0, aim_sd_mm=1.2, tremor_mm_s=6.0, reaction_s=0.4, dwell_s=0.5
-)
-"""Slower hands, and less exact ones: FLE 1.7 mm."""
 Play = Callable[[SimulationSetup, str, int], PlayedTrial]
 OBLIQUE = ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
 """Directions of World between the axes, to four corners of a cube."""
@@ -56,8 +47,6 @@ def _aim(direction: tuple[int, ...]) -> Play:
 
 
 WAYS: dict[str, Play] = {
-    USUAL: functools.partial(play_honestly, skill=Skill()),
-    SLOW: functools.partial(play_honestly, skill=SLOW_SKILL),
     "honest": play_honestly,
     "hover": hover,
     "hover 2 mm": functools.partial(hover, by_mm=2.0),
@@ -67,15 +56,14 @@ WAYS: dict[str, Play] = {
     **{f"aim beside, {name}": _aim(direction) for name, direction in AXES.items()},
 }
 OBLIQUE_WAYS = tuple(f"aim beside, {name}" for name in list(AXES)[3:])
-FEW = {"hover": 2, "hover 2 mm": 1, "drag": 2, "press": 2, SLOW: 1}
-"""Trials of each task on Colin27; three of the other ways."""
-FEW_ON_OTHER_HEADS = {USUAL: 3, SLOW: 1}
+COLIN27 = HEADS[0]
+FEW = {"hover": 2, "hover 2 mm": 1, "drag": 2, "press": 2}
+"""Trials of each task; three of the other ways."""
 
 
-def seeds(head: str, way: str) -> range:
+def seeds(way: str) -> range:
     """Return the seeds, of the head's pose and of the hands, with which a way is played."""
-    few = FEW.get(way, 3) if head == HEADS[0] else FEW_ON_OTHER_HEADS.get(way, 0)
-    return range(1, few + 1)
+    return range(1, FEW.get(way, 3) + 1)
 
 
 @dataclass(frozen=True)
@@ -83,23 +71,21 @@ class Played:
     """What is scored of one played trial, and what it was.
 
     Attributes:
-        head: one of `HEADS`.
         way: one of `WAYS`.
         task: of the head.
         seed: of the head's pose and the hands.
         measures: what is scored.
     """
 
-    head: str
     way: str
     task: str
     seed: int
     measures: ScoreMeasures
 
     @property
-    def key(self) -> tuple[str, str, str, int]:
+    def key(self) -> tuple[str, str, int]:
         """What there is one trial of."""
-        return self.head, self.way, self.task, self.seed
+        return self.way, self.task, self.seed
 
 
 def measures_of(setup: SimulationSetup, played: PlayedTrial) -> ScoreMeasures:
@@ -122,11 +108,11 @@ def score_of(setup: SimulationSetup, played: PlayedTrial) -> TrialScore:
     return score_trial(measures_of(setup, played), reference)
 
 
-def play(setup: SimulationSetup, head: str, way: str, task: str, seed: int) -> Played:
+def play(way: str, task: str, seed: int) -> Played:
     """Play one trial."""
-    measures = measures_of(setup, WAYS[way](setup, task, seed))
+    measures = measures_of(setup(COLIN27), WAYS[way](setup(COLIN27), task, seed))
     rounded = {name: round(value, 4) for name, value in vars(measures).items()}
-    return Played(head, way, task, seed, replace(measures, **rounded))
+    return Played(way, task, seed, replace(measures, **rounded))
 
 
 @functools.cache
@@ -136,16 +122,15 @@ def stored() -> tuple[Played, ...]:
         return ()
     with FILE.open(encoding="utf-8", newline="") as file:
         return tuple(
-            Played(head, way, task, int(seed), ScoreMeasures(*map(float, values)))
-            for head, way, task, seed, *values in list(csv.reader(file))[1:]
+            Played(way, task, int(seed), ScoreMeasures(*map(float, values)))
+            for way, task, seed, *values in list(csv.reader(file))[1:]
         )
 
 
-def all_keys() -> Iterator[tuple[str, str, str, int]]:
-    """Yield head, way, task and seed of all trials that the file is to hold."""
+def all_keys() -> Iterator[tuple[str, str, int]]:
+    """Yield way, task and seed of all trials that the file is to hold."""
     for way in WAYS:
-        for head in HEADS:
-            yield from ((head, way, task, seed) for seed in seeds(head, way) for task in TASKS)
+        yield from ((way, task, seed) for seed in seeds(way) for task in TASKS)
 
 
 def write(trials: list[Played]) -> None:
@@ -154,7 +139,7 @@ def write(trials: list[Played]) -> None:
     names = list(ScoreMeasures.__annotations__)
     with FILE.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["head", "way", "task", "seed", *names])
+        rows.writerow(["way", "task", "seed", *names])
         for one in sorted(trials, key=lambda one: order[one.key]):
             rows.writerow([*one.key, *vars(one.measures).values()])
 
@@ -163,16 +148,12 @@ def main() -> int:
     """Play what is missing."""
     trials = list(stored())
     there = {one.key for one in trials}
-    with tempfile.TemporaryDirectory() as folder:
-        setups: dict[str, SimulationSetup] = {}
-        for key in all_keys():
-            if key in there:
-                continue
-            if key[0] not in setups:
-                setups[key[0]] = setup_of(key[0], Path(folder))
-            trials.append(play(setups[key[0]], *key))
-            write(trials)
-            print(*key, vars(trials[-1].measures), flush=True)
+    for key in all_keys():
+        if key in there:
+            continue
+        trials.append(play(*key))
+        write(trials)
+        print(*key, vars(trials[-1].measures), flush=True)
     return 0
 
 

@@ -1,18 +1,22 @@
-"""Make the picture of a report's target errors: python -m Testing.web.report_pictures [PAGE.png].
+"""Make the pictures of reports: python -m Testing.web.report_pictures [FOLDER].
 
-The study is drawn: eight trainees do all tasks on the built-in head in both modes; in the headset
-the view misleads all touches by 1 mm. With a file's name, the whole page is kept there as well.
+That of the target errors is of a drawn study: eight trainees do all tasks on the built-in head in
+both modes; in the headset the view misleads all touches by 1 mm. With the folder of the cohort that
+`Testing.error_rates.cohort` has played, the sections that give back its truth are shown, too.
 """
 
 from __future__ import annotations
 
+import io
 import sys
 import tempfile
 import uuid
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from playwright.sync_api import sync_playwright
+from PIL import Image
+from playwright.sync_api import Browser, Locator, Page, sync_playwright
 
 from rastrainer import transforms
 from rastrainer.report.report import write_report
@@ -22,11 +26,17 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.virtual.cohort import DATABASE
 from Testing.domain.trial.trial_records import make_record
 from Testing.web.chromium import launch
 
-FOLDER = Path(__file__).parents[2] / "Screenshots"
-PICTURE = "report-target-errors.png"
+ROOT = Path(__file__).parents[2]
+PICTURE = ROOT / "Screenshots" / "report-target-errors.png"
+COHORT_PICTURE = ROOT / "docs" / "pictures" / "report-of-a-cohort.png"
+COHORT_SECTIONS = ("What completion time and error vary with", "Expected and true target error")
+COLORS = 128
+"""Of the picture of the cohort, so that its file is small."""
+MARGIN = 24
 TRAINEES, MODES = 8, ("desktop", "hmd")
 SCATTER_MM = (0.4, 1.1)
 """Of touches on each axis: of the best trainee and of the worst."""
@@ -73,20 +83,44 @@ def _add_trial(
     study.set_truth(trial_id, float(np.linalg.norm(there - target)), head_to_world.ravel().tolist())
 
 
-def main(whole_page: str = "") -> None:
-    """Make the picture."""
+def main(cohort: str = "") -> None:
+    """Make the pictures."""
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         path = Path(folder, "study.db")
         draw_study(path)
-        written = write_report(read_study_data(path), Path(folder, "report"))
         browser = launch(playwright)
-        page = browser.new_page(viewport=SIZE, device_scale_factor=1.5)
-        page.goto(written.page.as_uri())
-        if whole_page:
-            page.screenshot(path=whole_page, full_page=True)
-        shown = page.locator("section", has=page.locator("h2", has_text="Expected and true"))
-        shown.screenshot(path=FOLDER / PICTURE)
+        page = _report(browser, path, Path(folder), scale=1.5)
+        _section(page, "Expected and true target error").screenshot(path=PICTURE)
+        if cohort:
+            page = _report(browser, Path(cohort, DATABASE), Path(folder), scale=1.0)
+            shown = [_section(page, title).screenshot() for title in COHORT_SECTIONS]
+            picture = _stacked(shown).quantize(COLORS, Image.Quantize.MAXCOVERAGE)
+            picture.save(COHORT_PICTURE, optimize=True)
         browser.close()
+
+
+def _report(browser: Browser, study: Path, folder: Path, scale: float) -> Page:
+    """Return the page of the report of a study."""
+    written = write_report(read_study_data(study), folder / "report")
+    page = browser.new_page(viewport=SIZE, device_scale_factor=scale)
+    page.goto(written.page.as_uri())
+    return page
+
+
+def _section(page: Page, title: str) -> Locator:
+    return page.locator("section", has=page.locator("h2", has_text=title))
+
+
+def _stacked(pictures: Sequence[bytes]) -> Image.Image:
+    """Return pictures of one width below each other, with a margin."""
+    parts = [Image.open(io.BytesIO(picture)).convert("RGB") for picture in pictures]
+    height = MARGIN + sum(part.height + MARGIN for part in parts)
+    whole = Image.new("RGB", (parts[0].width + 2 * MARGIN, height), "white")
+    top = MARGIN
+    for part in parts:
+        whole.paste(part, (MARGIN, top))
+        top += part.height + MARGIN
+    return whole
 
 
 if __name__ == "__main__":

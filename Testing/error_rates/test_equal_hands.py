@@ -1,0 +1,110 @@
+"""The same hands really play the same on all tasks, and the references of the tasks are fair."""
+
+import json
+
+import numpy as np
+import pytest
+import scipy.stats
+
+from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
+from Testing.error_rates import hands
+from Testing.error_rates.equal_hands import PlayedTask
+from Testing.error_rates.hands import HEADS, SEEDS, SLOW, TASKS, USUAL, keys, scenario_of, trials_of
+from Testing.error_rates.registered import errors_along_skin, registered_errors
+from Testing.simulator.authoring import planned_heads
+
+SETS = 1000
+PLACES = [(head, task) for head in HEADS for task in TASKS]
+
+
+def errors_along(which, head, task):
+    """Return the played errors along the skin, (trials, 15, 3) float, RAS mm."""
+    normals = fiducial_normals(scenario_of(head), task)
+    errors = np.array([one.errors_mm for one in trials_of(which, head, task)])
+    return errors - normals * np.einsum("sij,ij->si", errors, normals)[..., None]
+
+
+@pytest.mark.parametrize("task", ["trial-run", "task-5"])
+@pytest.mark.parametrize("head", HEADS)
+def test_the_reference_error_is_that_of_errors_along_the_skin(head, task):
+    scenario, random = scenario_of(head), np.random.default_rng(3)
+    fiducials = np.asarray(scenario.task(task).fiducials, dtype=float)
+    normals = fiducial_normals(scenario, task)
+    touches = fiducials + errors_along_skin(normals, 1.0, 1500, random)
+    errors = registered_errors(region_of(scenario), fiducials, touches)
+    expected = region_of(scenario).tre_per_fle(fiducials, normals)
+    assert np.sqrt(np.mean(errors**2)) == pytest.approx(expected, rel=0.05)
+
+
+def test_the_reference_times_of_colin27_have_the_published_mean():
+    scenario = scenario_of("colin27")
+    times_s = [score_reference(scenario, task).time_s for task in TASKS[1:]]
+    assert np.mean(times_s) == pytest.approx(127.0, abs=1.0)
+
+
+@pytest.mark.parametrize("which", [USUAL, SLOW])
+def test_trials_that_are_put_together_score_like_those_that_were_played(which):
+    off = []
+    for number, place in enumerate(PLACES):
+        task = PlayedTask(*place, trials_of(which, *place))
+        put_together = task.put_together(task.touches, SETS, np.random.default_rng(number))
+        played = task.scores(task.played())
+        error = played.std(ddof=1) / np.sqrt(len(played))
+        off.append((played.mean() - task.scores(put_together).mean()) / error)
+    assert abs(np.mean(off)) < 3.3 / np.sqrt(len(off))
+
+
+@pytest.mark.parametrize("which", [USUAL, SLOW])
+def test_the_touches_of_a_trial_are_independent_and_hardly_err_in_one_direction(which):
+    errors = np.concatenate([errors_along(which, *place) for place in PLACES])
+    products = np.einsum("sij,sij->si", errors[:, 1:], errors[:, :-1])
+    assert abs(products.mean()) < 3.3 * products.std() / np.sqrt(products.size)
+    assert (np.abs(errors.mean(axis=(0, 1))) < 0.1).all()
+
+
+@pytest.mark.parametrize("which", [USUAL, SLOW])
+def test_the_touches_are_equally_accurate_on_all_tasks(which):
+    """Otherwise those of all tasks could not stand for those of one."""
+    squares = [np.sum(errors_along(which, *place) ** 2, axis=2) for place in PLACES]
+    assert scipy.stats.f_oneway(*(each.mean(axis=1) for each in squares)).pvalue > 0.001
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("head", planned_heads.HEADS)
+def test_the_heads_have_the_tasks_that_the_planner_proposes(head):
+    kept = json.loads(planned_heads.FILE.read_text(encoding="utf-8"))[head]
+    again = planned_heads.as_json(planned_heads.proposed(head))
+    for one, other in zip(kept, again, strict=True):
+        assert one["name"] == other["name"]
+        assert np.allclose(one["fiducials"], other["fiducials"], atol=1e-3)
+
+
+def assert_is_as_stored(key):
+    """Compare with tolerances: other versions of the libraries round differently."""
+    kept, again = hands.stored()[key], hands.play(*key)
+    assert again.time_s == pytest.approx(kept.time_s, rel=0.1)
+    assert np.sqrt(np.mean((again.errors_mm - kept.errors_mm) ** 2)) < 0.3
+    assert again.safety.pressing_depth_mm == pytest.approx(kept.safety.pressing_depth_mm, abs=0.15)
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_the_usual_hands_reproduce_a_stored_trial_of_each_head(head):
+    assert_is_as_stored((USUAL, 1, head, "task-1"))
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("head", HEADS)
+@pytest.mark.parametrize("which", [USUAL, SLOW])
+def test_hands_reproduce_the_first_and_the_last_stored_trial(which, head, task):
+    for seed in (SEEDS[which][0], SEEDS[which][-1]):
+        assert_is_as_stored((which, seed, head, task))
+
+
+def test_the_file_has_every_trial_once_and_is_rewritten_unchanged(tmp_path, monkeypatch):
+    trials = hands.stored()
+    assert list(trials) == list(keys())
+    before = hands.FILE.read_bytes()
+    monkeypatch.setattr(hands, "FILE", tmp_path / "trials.csv")
+    hands.write(reversed(trials.values()))
+    assert hands.FILE.read_bytes() == before
