@@ -21,6 +21,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.state import Motion
 from Testing.benchmarks.loop_health import Punctuality
+from Testing.benchmarks.procedure_ticks import procedure_rows
 from Testing.benchmarks.row import resident_mb, row, row_of_figures
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
@@ -34,12 +35,16 @@ ABOVE = np.array([0.0, 0.0, 165.0])
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the rows `tick.60k` and `tick.200k`, and those of the loop: see `_on_time`."""
+    """Return the rows `tick.60k` and `tick.200k`, those of a procedure, and of the loop.
+
+    See `procedure_rows` and `_on_time`.
+    """
     runs = 1 if quick else 5
     setup = load_setup()
     with tempfile.TemporaryDirectory() as folder:
         fine = _with_finer_head(setup, Path(folder) / "head.ply")
         ticks = [_tick("tick.60k", setup, runs), _tick("tick.200k", fine, runs)]
+    ticks += procedure_rows(setup, runs)
     return [*ticks, *_on_time(QUICK_S if quick else ON_TIME_S)]
 
 

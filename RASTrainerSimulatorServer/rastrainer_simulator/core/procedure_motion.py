@@ -12,7 +12,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.head_outline import HeadOutline
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.core.true_head import TrueHead
+from rastrainer_simulator.core.true_head import PlannedBone, TrueHead
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.texts.texts import LocalizedText, Texts
 from rastrainer_simulator.procedure_state import GuideAxis, ProcedureState
@@ -43,6 +43,7 @@ class ProcedureMotion:
 
     Attributes:
         feed: what is in the guide.
+        planned_bone: where the planned lines go through bone; empty without procedures.
     """
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh, reach: PlanReach) -> None:
@@ -54,8 +55,10 @@ class ProcedureMotion:
         self._drive = FeedDrive(settings.procedure, settings.teleoperation.response)
         self._true_head: TrueHead | None = None
         self._outline: HeadOutline | None = None
+        self.planned_bone: PlannedBone = {}
         if scenario.procedures:
             self._true_head = TrueHead(scenario, head)
+            self.planned_bone = self._true_head.planned_bone
             self._outline = HeadOutline(head.vertices, scenario.target_position)
 
     def reset(self, feed: Feed = NO_FEED) -> None:

@@ -20,6 +20,7 @@ from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_j
 from rastrainer_simulator.core.procedure_motion import FED, ProcedureMotion
 from rastrainer_simulator.core.scene_view import SceneView, stand_pose
 from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.core.true_head import PlannedBone
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.procedure_state import GuideAxis
@@ -89,6 +90,11 @@ class Simulation:
     def truth(self) -> Truth:
         """Where the head is: secret until the trial is scored."""
         return self._training.truth
+
+    @property
+    def planned_bone(self) -> PlannedBone:
+        """Where the planned lines of the scenario's procedures go through bone."""
+        return self._procedure_motion.planned_bone
 
     @property
     def trial_seed(self) -> int:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.procedure.geometry import bone_ahead, mesh_crossings
+from rastrainer.procedure.checks import planned_bone
+from rastrainer.procedure.geometry import BoneAhead, bone_ahead, mesh_crossings
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.procedure_state import GuideAxis
@@ -15,8 +18,16 @@ BEHIND_MM = 1.0
 """A tip that rests on the skin may be a little within it: the search begins so far behind it."""
 
 
+PlannedBone = Mapping[str, tuple[BoneAhead | None, ...]]
+"""Where the planned lines of each procedure go through bone, mm from the entry."""
+
+
 class TrueHead:
-    """The surfaces of skin and skull of a scenario with procedures."""
+    """The surfaces of skin and skull of a scenario with procedures.
+
+    Attributes:
+        planned_bone: on the lines of each procedure, in their order.
+    """
 
     def __init__(self, scenario: Scenario, skin: HeadMesh) -> None:
         """Read the skull of the scenario whose skin is given.
@@ -28,6 +39,10 @@ class TrueHead:
         self._skin, self._skull = skin, read_head_mesh(scenario.skull_mesh)
         # Computed now, not in the tick in which the first guide is locked.
         _ = skin.triangle_spheres, self._skull.triangle_spheres
+        self.planned_bone: PlannedBone = {
+            each.name: tuple(planned_bone(line, self._skull) for line in each.trajectories)
+            for each in scenario.procedures
+        }
 
     def ahead(self, guide: GuideAxis, head_to_world: np.ndarray) -> HeadAhead:
         """Return what lies ahead along a guide's axis, with the head at (4, 4) float, m."""

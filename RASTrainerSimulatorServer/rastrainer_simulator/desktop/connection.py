@@ -155,6 +155,7 @@ class ServerConnection:
             read_parts(content, self._inbox.bodies),
             {name: Viewpoint.from_json(value) for name, value in message["cameras"].items()},
             {str(label): tuple(place) for label, place in message["fiducials"].items()},
+            {str(name): tuple(nodes) for name, nodes in message["noGo"].items()},
         )
 
     async def _content(self, session: aiohttp.ClientSession, path: str, most: int) -> bytes:

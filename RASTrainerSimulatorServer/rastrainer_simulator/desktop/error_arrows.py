@@ -57,13 +57,17 @@ def _actor(tone: Tone, mapper: vtkPolyDataMapper) -> vtkActor:
 def _surface(arrows: Sequence[ErrorArrow]) -> vtkPolyData:
     points, cells, append = vtkPoints(), vtkCellArray(), vtkAppendPolyData()
     for arrow in arrows:
-        cells.InsertNextCell(2)
-        cells.InsertCellPoint(points.InsertNextPoint(arrow.begin))
-        cells.InsertCellPoint(points.InsertNextPoint(arrow.end))
+        if arrow.begin != arrow.end:
+            cells.InsertNextCell(2)
+            cells.InsertCellPoint(points.InsertNextPoint(arrow.begin))
+            cells.InsertCellPoint(points.InsertNextPoint(arrow.end))
         ball = vtkSphereSource()
         ball.SetCenter(arrow.end)
         ball.SetRadius(BALL_M)
         append.AddInputConnection(ball.GetOutputPort())
+    if cells.GetNumberOfCells() == 0:
+        append.Update()
+        return append.GetOutput()
     lines = vtkPolyData()
     lines.SetPoints(points)
     lines.SetLines(cells)

@@ -16,12 +16,13 @@ UNREADABLE = "The scene that the simulator sent cannot be read: {reason}."
 
 @dataclass(frozen=True)
 class Finish:
-    """How a surface looks: linear colors 0 to 1 as in glTF, roughness and metallicity."""
+    """How a surface looks: linear colors 0 to 1 as in glTF, roughness, metallicity, opacity."""
 
     color: tuple[float, float, float]
     glow: tuple[float, float, float]
     roughness: float
     metallic: float
+    opacity: float = 1.0
 
     @property
     def is_glowing(self) -> bool:
@@ -98,4 +99,5 @@ def _finish(mesh: trimesh.Trimesh) -> Finish:
         (0.0, 0.0, 0.0) if glow is None else tuple(np.asarray(glow, dtype=float).tolist()),
         0.5 if roughness is None else float(roughness),
         0.0 if metallic is None else float(metallic),
+        1.0 if color is None else float(color[3]) / 255.0,
     )

@@ -7,7 +7,7 @@ import contextlib
 import logging
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from rastrainer.finite_json import decode_finite_json
@@ -27,6 +27,7 @@ STATE_MEMBERS = (
     "inset",
     "next",
     "touched",
+    "procedure",
 )
 
 _log = logging.getLogger(__name__)
@@ -34,11 +35,15 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class LoadedScene:
-    """A scene to be shown, its cameras by name, and its fiducials in the head's frame (m)."""
+    """A scene to be shown, its cameras by name, and its fiducials in the head's frame (m).
+
+    `no_go` names the nodes of the no-go structures of each procedure.
+    """
 
     parts: list[Part]
     cameras: Mapping[str, Viewpoint]
     fiducials: Mapping[str, tuple[float, float, float]]
+    no_go: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

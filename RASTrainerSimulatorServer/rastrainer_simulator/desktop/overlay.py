@@ -11,7 +11,9 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from rastrainer_simulator.desktop.panels import edges, strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.bulls_eye import BullsEye, paint_bulls_eye
 from rastrainer_simulator.desktop.panels.canvas import Box
+from rastrainer_simulator.desktop.panels.depth_gauge import DepthGauge, paint_gauge
 from rastrainer_simulator.desktop.panels.edges import Side
 from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
 from rastrainer_simulator.desktop.panels.sprite import Sprite
@@ -42,6 +44,8 @@ class Content:
         target: direction to a target out of sight, and its distance in mm.
         hovered: name of the item under the mouse.
         thumbnail: picture of the menu's item that has the focus; None without one.
+        aim: how the planned line lies to the guide; None while none is aligned.
+        gauge: how deep drill or instrument is; None while none is fed.
     """
 
     screen: Screen
@@ -51,6 +55,8 @@ class Content:
     target: tuple[Direction, int] | None = None
     hovered: str = ""
     thumbnail: Thumbnail | None = None
+    aim: BullsEye | None = None
+    gauge: DepthGauge | None = None
 
 
 class Overlay:
@@ -80,6 +86,8 @@ class Overlay:
         self._show_ring(content.ring)
         self._show_inset(content.inset)
         self._show_target(content.target)
+        self._show_aside("aim", content.aim, paint_bulls_eye, content.inset)
+        self._show_aside("gauge", content.gauge, paint_gauge, content.inset)
         top = self._show_top(content.screen)
         bottom = self._show_bottom(content.screen)
         self._show_menu(content, top, bottom)
@@ -182,6 +190,16 @@ class Overlay:
         if is_shown and outer is not None:
             self._place("inset", outer.left, outer.top)
 
+    def _show_aside(
+        self, name: str, look: Any, paint: Callable[..., np.ndarray], inset: Box | None
+    ) -> None:
+        """Show a panel at the right edge, below the inset."""
+        if not self._paint(name, look, paint, self._brush):
+            return
+        margin = self._brush.px(theme.MARGIN)
+        top = margin if inset is None else inset.top + inset.height + margin
+        self._place(name, self._size[0] - margin - self._slots[name].sprite.size[0], top)
+
     def _show_target(self, target: tuple[Direction, int] | None) -> None:
         if target is None:
             self._slots["target"].hide()
@@ -218,6 +236,8 @@ _SLOTS = (
     *(f"error {side.value}" for side in Side),
     "scrim",
     "target",
+    "aim",
+    "gauge",
     "status",
     "hints",
     *(f"warning{index}" for index in range(MOST_WARNINGS)),

@@ -18,6 +18,8 @@ from rastrainer_simulator.desktop.error_arrows import ErrorArrows
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.overlay import Content, Overlay
+from rastrainer_simulator.desktop.panels.bulls_eye import bulls_eye
+from rastrainer_simulator.desktop.panels.depth_gauge import depth_gauge
 from rastrainer_simulator.desktop.panels.target_arrow import Direction, direction_out_of_sight
 from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, touch_ring
 from rastrainer_simulator.desktop.performance import Quality
@@ -89,6 +91,7 @@ class Picture:
         self._errors = ErrorArrows()
         self._loaded: LoadedScene | None = None
         self._drawn_state: Mapping[str, Any] | None = None
+        self._cleared: tuple[ShownScene | None, bool] = (None, False)
         self._pulse_step = 0
         self._must_draw = True
         self.pointer = Pointer()
@@ -111,6 +114,7 @@ class Picture:
         self.viewports.wants_inset = screen is None or screen.menu is None
         if self._errors.show(() if screen is None else screen.errors):
             self._must_draw = True
+        self._clear_head(screen is not None and screen.is_head_clear)
         self.viewports.prepare(now)
         if self._overlay.show(self._content(now), self._window.size):
             self._must_draw = True
@@ -125,6 +129,24 @@ class Picture:
         """Draw better, or faster."""
         self.viewports.set_quality(quality)
         self._drawn_state = None
+
+    def _clear_head(self, is_clear: bool) -> None:
+        wanted = (self._scene, is_clear)
+        if self._scene is not None and wanted != self._cleared:
+            self._cleared = wanted
+            self._scene.clear_head(is_clear)
+            self._must_draw = True
+
+    def _show_instrument(self, procedure: Mapping[str, Any] | None) -> None:
+        """Show what the tool is in a procedure, and its no-go structures."""
+        assert self._scene is not None
+        assert self._loaded is not None
+        if procedure is None:
+            self._scene.show_instrument("", 0.0, ())
+            return
+        no_go = self._loaded.no_go.get(procedure["name"], ())
+        feed_m = procedure["feedMm"] / MM_PER_M
+        self._scene.show_instrument(procedure["tool"], feed_m, no_go)
 
     def _take_scene(self) -> None:
         loaded = self._inbox.scene
@@ -142,6 +164,7 @@ class Picture:
         if _differs(state, self._drawn_state):
             self._scene.place(state["poses"])
             self._scene.place_ghost(state["ghost"])
+            self._show_instrument(state["procedure"])
             self._must_draw = True
         self._drawn_state = state
         self._choose_camera(state, now)
@@ -180,6 +203,8 @@ class Picture:
         state = self._inbox.state or {}
         is_free = screen.menu is None
         pairing = None if is_free else self._inbox.pairing
+        procedure = state.get("procedure") if is_free else None
+        texts = Texts(LANGUAGES.get(screen.language, {}))
         facts = own_facts(screen.language, self._inbox.holder, pairing)
         return Content(
             screen=replace(screen, status=(*screen.status, *facts)),
@@ -189,6 +214,8 @@ class Picture:
             target=self._target() if is_free and screen.has_arrow else None,
             hovered=self.item_at_pointer(now),
             thumbnail=self._inbox.thumbnails.get(focused_picture(screen.menu)),
+            aim=bulls_eye(procedure, texts),
+            gauge=depth_gauge(screen.ruler, procedure, texts),
         )
 
     def _ring(self) -> TouchRing | None:
@@ -217,5 +244,5 @@ class Picture:
 
 def _differs(state: Mapping[str, Any], other: Mapping[str, Any] | None) -> bool:
     """Return whether two states look different."""
-    names = ("poses", "ghost", "touch", "next", "touched", "camera", "view", "inset")
+    names = ("poses", "ghost", "touch", "next", "touched", "camera", "view", "inset", "procedure")
     return other is None or any(state[name] != other[name] for name in names)

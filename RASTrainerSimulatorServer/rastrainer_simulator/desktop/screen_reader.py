@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rastrainer_simulator.net.views.screen import (
+    DepthRuler,
     ErrorArrow,
     Fact,
     Hint,
@@ -38,6 +39,18 @@ def screen_from_json(value: Json) -> Screen:
         language=str(value["language"]),
         has_arrow=bool(value["has_arrow"]),
         errors=tuple(_error(arrow) for arrow in value["errors"]),
+        is_head_clear=bool(value["is_head_clear"]),
+        ruler=None if value["ruler"] is None else _ruler(value["ruler"]),
+    )
+
+
+def _ruler(value: Json) -> DepthRuler:
+    outer, inner = value["outer"], value["inner"]
+    return DepthRuler(
+        float(value["entry"]),
+        None if outer is None else float(outer),
+        None if inner is None else float(inner),
+        float(value["target"]),
     )
 
 

@@ -75,6 +75,16 @@ _TIPS = {
     TouchStage.NEAR: TIP_NEAR,
     TouchStage.ON_SKIN: TIP_ON_SKIN,
 }
+INSTRUMENTS: Mapping[str, tuple[str, ...]] = {
+    "guide": ("guide", "axis"),
+    "drill": ("guide", "drill"),
+    "electrode": ("guide", "electrode"),
+}
+"""Nodes that are shown with each tool of a procedure; the pointer has none."""
+FED = ("drill", "electrode")
+"""Nodes as long as they are fed; in the file they are 1 m long."""
+NO_GO = "no_go_"
+CLEAR_SKIN = 0.3
 PULSE_COLOR = (1.0, 0.97, 0.75)
 STILL_BODIES = ("", "head", "stand")
 """Do not move during a trial; "" is the room."""
@@ -107,6 +117,9 @@ class ShownScene:
                 self._still[part.body].append((actor, part))
             for name in part.nodes:
                 self._named[name].append(actor)
+        for name in list(self._named):
+            if name in {*FED, "guide", "axis"} or name.startswith(NO_GO):
+                self._set_visible(name, False)
         self._marked: object = None
         self._pulsing: list[vtkActor] = []
         self.finish(is_physical)
@@ -168,6 +181,27 @@ class ShownScene:
                 self._paint(name, state.color)
         self._pulsing = [] if next_point is None else self._named[f"{FIDUCIAL}{next_point}"]
 
+    def show_instrument(self, tool: str, feed_m: float, no_go: Collection[str]) -> None:
+        """Show what a procedure's tool is, how far it is fed, and its no-go structures by name."""
+        shown = INSTRUMENTS.get(tool, ())
+        for name in {*FED, "guide", "axis"}:
+            self._set_visible(name, name in shown and (name not in FED or feed_m > 0.0))
+        for name in FED:
+            for actor in self._named[name]:
+                actor.SetScale(1.0, 1.0, max(feed_m, 1e-6))
+        for name in list(self._named):
+            if name.startswith(NO_GO):
+                self._set_visible(name, bool(shown) and name in no_go)
+
+    def clear_head(self, is_clear: bool) -> None:
+        """Let what is within the head be seen through the skin, or not."""
+        for actor in self._named["skin"]:
+            actor.GetProperty().SetOpacity(CLEAR_SKIN if is_clear else 1.0)
+
+    def _set_visible(self, name: str, is_visible: bool) -> None:
+        for actor in self._named[name]:
+            actor.SetVisibility(is_visible)
+
     def pulse(self, share: float) -> None:
         """Brighten the next fiducial by a share, 0 to 1."""
         color = [
@@ -193,6 +227,7 @@ class ShownScene:
         actor.SetMapper(mapper)
         # As in the page: three.js draws no triangle from behind either.
         actor.GetProperty().BackfaceCullingOn()
+        actor.GetProperty().SetOpacity(part.finish.opacity)
         if part.body:
             actor.SetUserMatrix(self._matrices[part.body])
         return actor

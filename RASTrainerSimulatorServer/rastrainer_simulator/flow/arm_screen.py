@@ -9,7 +9,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.path_arc import direction_words
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, ScreenMessage, Tone
+from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import Vector, distance
@@ -46,9 +46,23 @@ class ArmScreen:
         """The state that the trainee sees."""
         return self._session.state
 
+    @property
+    def has_arrow(self) -> bool:
+        """Whether a view points to a next point that is out of sight."""
+        return False
+
+    @property
+    def is_head_clear(self) -> bool:
+        """Whether the trainee looks into the head."""
+        return False
+
     def errors(self) -> tuple[ErrorArrow, ...]:
         """Return the errors of touches that may be seen: a trial's are told with its score."""
         return ()
+
+    def ruler(self) -> DepthRuler | None:
+        """Return the scale of depths while something is fed; else None."""
+        return None
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
         """Return what is wrong with where the arm is."""

@@ -7,11 +7,16 @@ from dataclasses import replace
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Phase
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.procedure_result import (
+    ProcedureErrorsPage,
+    ProcedureLinesPage,
+)
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
 from rastrainer_simulator.flow.pages.tutorial import TutorialDonePage
+from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.obstacles import needs_tutorial
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
@@ -26,7 +31,7 @@ from rastrainer_simulator.record.view_report import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 
-OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage)
+OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
 
 NOT_RECORDED = "not recorded"
 INTERRUPTED = ("interrupted", "interrupted procedure")
@@ -43,6 +48,7 @@ class Flow:
         self._session = session
         self._control_loop = control_loop
         self._trial_screen = TrialScreen(session)
+        self._procedure_screen = ProcedureScreen(session, self._trial_screen)
         self._tutorial_screen = TutorialScreen(session)
         self._seen = ("", Phase.IDLE)
         self._seen_result: TrialResult | None = None
@@ -78,6 +84,7 @@ class Flow:
             if felt is not None:
                 self._session.happened(felt)
             self._trial_screen.take(event)
+            self._procedure_screen.take(event)
             self._tutorial_screen.take(event)
         self._touch = touch
 
@@ -133,6 +140,7 @@ class Flow:
         session = self._session
         page, menu = session.pages.top, session.pages.menu()
         warnings = (*more_warnings, *self._link_warnings(), *session.notices())
+        work = self._screen_of_work
         shown = None if page is None else page.screen()
         if shown is not None:
             return replace(shown, warnings=(*shown.warnings, *warnings))
@@ -140,11 +148,12 @@ class Flow:
             return Screen(
                 menu=menu,
                 warnings=(*self._pause_warnings(), *warnings),
-                status=self._screen_of_work.status() if self._is_work_open else (),
+                status=work.status() if self._is_work_open else (),
                 hints=self._menu_hints(),
                 language=session.preferences.language,
+                errors=work.errors() if self._procedure_screen.is_open else (),
+                is_head_clear=self._procedure_screen.is_open and work.is_head_clear,
             )
-        work = self._screen_of_work
         return Screen(
             instruction=work.instruction(),
             warnings=(*work.warnings(), *warnings),
@@ -153,6 +162,8 @@ class Flow:
             has_arrow=work.has_arrow,
             language=session.preferences.language,
             errors=work.errors(),
+            is_head_clear=work.is_head_clear,
+            ruler=work.ruler(),
         )
 
     def start_tutorial(self, trainee: str, mode: str) -> Answer:
@@ -181,10 +192,12 @@ class Flow:
         self._session.pages.show(None)
 
     @property
-    def _screen_of_work(self) -> TrialScreen | TutorialScreen:
+    def _screen_of_work(self) -> TrialScreen | ProcedureScreen | TutorialScreen:
         """What is read while the arm is driven."""
-        is_learning = self._session.tutorial is not None
-        return self._tutorial_screen if is_learning else self._trial_screen
+        if self._session.tutorial is not None:
+            return self._tutorial_screen
+        is_at_procedure = self._procedure_screen.is_open
+        return self._procedure_screen if is_at_procedure else self._trial_screen
 
     @property
     def _is_work_open(self) -> bool:

@@ -20,6 +20,7 @@ from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.core.true_head import PlannedBone
 from rastrainer_simulator.loop.loop_statistics import LoopStatistics, Punctuality
 from rastrainer_simulator.loop.precise_clock import (
     precise_timing,
@@ -158,6 +159,11 @@ class ControlLoop:
     def truth(self) -> Truth:
         """Where the head is: for what the trainee is shown; clients learn it with the score."""
         return self._simulation.truth
+
+    @property
+    def planned_bone(self) -> PlannedBone:
+        """Where the planned lines of the present scenario's procedures go through bone."""
+        return self._simulation.planned_bone
 
     @property
     def problems(self) -> tuple[str, ...]:

@@ -106,7 +106,7 @@ def _lamp(aside: float, above: float) -> vtkLight:
 
 
 def _passes(shadows: Shadows) -> vtkRenderPass:
-    """Return the steps of a picture: shadows, within shaded corners, within smoothed edges."""
+    """Return the steps of a picture: shadows and what is seen through, shaded corners, edges."""
     cast = vtkShadowMapPass()
     cast.GetShadowMapBakerPass().SetResolution(shadows.value)
     steps = vtkRenderPassCollection()

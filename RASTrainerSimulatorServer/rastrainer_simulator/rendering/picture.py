@@ -100,7 +100,7 @@ def node_actors(
     for node in nodes:
         pose = poses.get(node.name, np.eye(4))
         for part in node.walk():
-            for shape in part.surfaces:
+            for shape in () if part.is_hidden else part.surfaces:
                 actors.append(_actor(shape, looks.get(part.name, shape.material), pose))
     return actors
 

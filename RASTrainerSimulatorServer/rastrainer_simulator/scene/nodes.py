@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -12,13 +13,17 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Material:
-    """A surface's color (sRGB, 0…1), roughness and metallicity; a `glowing` one needs no light."""
+    """A surface's color (sRGB, 0…1), roughness and metallicity; a `glowing` one needs no light.
+
+    One whose `opacity` is below 1 lets what is behind it be seen.
+    """
 
     name: str
     color: Color
     roughness: float = 0.5
     metallic: float = 0.0
     glowing: bool = False
+    opacity: float = 1.0
 
     @property
     def linear_color(self) -> Color:
@@ -62,6 +67,13 @@ GHOST = Material("ghost", (0.50, 0.34, 0.90))
 GHOST_OPACITY = 0.45
 
 
+GUIDE = Material("guide", (0.86, 0.88, 0.90), 0.3, 0.5)
+AXIS = Material("axis", (0.75, 0.95, 1.0), glowing=True)
+DRILL = Material("drill", (0.55, 0.57, 0.60), 0.3, 0.7)
+ELECTRODE = Material("electrode", (0.35, 0.65, 1.0), glowing=True)
+NO_GO = Material("no_go", (0.86, 0.20, 0.25), 0.6, opacity=0.45)
+
+
 def painted(color: Sequence[float]) -> Material:
     """Return the coating of a robot part: the color its URDF names, a little glossy."""
     red, green, blue = (float(value) for value in color[:3])
@@ -95,18 +107,25 @@ class Node:
         surfaces: at most one of each material.
         children: what moves with it.
         pose: (4, 4) float, to the parent's frame; None for the parent's pose.
+        is_hidden: whether it is left out of a picture unless something asks for it.
     """
 
     name: str
     surfaces: tuple[Surface, ...] = ()
     children: tuple[Node, ...] = ()
     pose: np.ndarray | None = None
+    is_hidden: bool = False
 
     def walk(self) -> Iterator[Node]:
         """Yield this node and all below it, parents first."""
         yield self
         for child in self.children:
             yield from child.walk()
+
+
+def no_go_name(path: Path) -> str:
+    """Return the name of the node of a no-go structure, by its mesh file."""
+    return f"no_go_{path.stem}"
 
 
 def merged(surfaces: list[Surface]) -> tuple[Surface, ...]:

@@ -26,6 +26,7 @@ from rastrainer_simulator.scene.nodes import (
     merged,
     painted,
 )
+from rastrainer_simulator.scene.procedure_nodes import instrument_nodes, plan_node
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
 from rastrainer_simulator.scene.skin import Shape
 from rastrainer_simulator.scene.skin_marks import SkinMark, skin_marks
@@ -68,7 +69,7 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
             (marker if is_marker else place).append(surface)
     nodes = [Node(name, merged(group)) for name, group in surfaces.items() if name != TOOL]
     tip_marker = Node(TIP_MARKER, merged(marker))
-    return [*nodes, Node(TOOL, merged(surfaces[TOOL]), (tip_marker,))]
+    return [*nodes, Node(TOOL, merged(surfaces[TOOL]), (tip_marker, *instrument_nodes()))]
 
 
 def _first_links(robot: RobotModel) -> dict[int, RobotLink]:
@@ -142,7 +143,8 @@ def _material(material: Material) -> PBRMaterial:
     base, glow = (np.zeros(3), color) if material.glowing else (color, np.zeros(3))
     return PBRMaterial(
         name=material.name,
-        baseColorFactor=[*base, 1.0],
+        alphaMode="OPAQUE" if material.opacity == 1.0 else "BLEND",
+        baseColorFactor=[*base, material.opacity],
         metallicFactor=material.metallic,
         roughnessFactor=material.roughness,
         emissiveFactor=glow,
@@ -201,5 +203,6 @@ def scene_nodes(
         head_node(head, task),
         stand_node(scenario.furniture, base),
         table_node(scenario.furniture, base),
+        plan_node(scenario.procedures),
         *room_nodes(),
     ]

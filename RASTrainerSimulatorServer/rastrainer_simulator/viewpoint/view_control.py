@@ -45,11 +45,13 @@ class _Travel:
 class Pictures:
     """What the views draw: the main picture's camera, and that of the inset along the skin.
 
-    The inset is None where no touch is to be judged.
+    The inset is None where no touch is to be judged. `yaw_deg` is where the operator's eyes look,
+    degrees from World's x, in a headset; else None.
     """
 
     main: CameraPose
     inset: CameraPose | None = None
+    yaw_deg: float | None = None
 
 
 class ViewControl:

@@ -22,6 +22,7 @@ import { say, useLanguage } from "./texts";
 import { TouchControls } from "./touch_controls";
 import { TouchRing } from "./touch_ring";
 import { ViewMouse } from "./view_mouse";
+import { GuidingPanel } from "./guiding_panel";
 import { Headset } from "./xr/headset";
 
 export class Page {
@@ -44,6 +45,7 @@ export class Page {
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
   private readonly errors = new ErrorArrows();
   private readonly ghost = new Ghost();
+  private readonly guiding = new GuidingPanel();
   private readonly loading = new Loading();
   private readonly enter = new EnterButton((session) => void this.enterHeadset(session));
   private headset: Headset | null = null;
@@ -220,6 +222,7 @@ export class Page {
       if (frame === undefined) return;
       this.place(model);
       model.mark(state);
+      this.showProcedure(model, state);
       model.pulse(now);
       this.ring?.show(model, state, stage.renderer.xr.getCamera(), this.screen?.menu == null);
       this.headset.draw(now, frame, model);
@@ -235,6 +238,18 @@ export class Page {
     this.ghost.show(model, now);
   }
 
+  /** Show the tool of a procedure, and where it stands. */
+  private showProcedure(model: SceneModel, { procedure }: StateNews): void {
+    model.showInstrument(procedure);
+    model.clearHead(this.screen?.is_head_clear ?? false);
+    const isWorking = this.screen?.menu == null;
+    const aim = isWorking ? (procedure?.aim ?? null) : null;
+    const ruler = isWorking ? (this.screen?.ruler ?? null) : null;
+    const depth = procedure?.feedMm ?? 0;
+    if (this.headset === null) this.guiding.show(aim, ruler, depth);
+    else this.headset.showGuiding(aim, ruler, depth);
+  }
+
   private drawFlat(flat: FlatView, now: number, model: SceneModel, state: StateNews): void {
     if (this.screen?.menu == null) this.mouse.tell();
     flat.choose(state, now);
@@ -243,6 +258,7 @@ export class Page {
     this.isDue = false;
     this.place(model);
     model.mark(state);
+    this.showProcedure(model, state);
     const isWorking = this.screen?.menu == null;
     const inset = isWorking ? flat.insetName : "";
     this.overlay.showInset(inset);

@@ -49,11 +49,19 @@ export interface Hint {
   readonly action: string;
 }
 
-/** From a fiducial toward its touch, in World, m. */
+/** From a fiducial toward its touch, or a line of a procedure, in World, m; equal ends are a ball. */
 export interface ErrorArrow {
   readonly begin: readonly [number, number, number];
   readonly end: readonly [number, number, number];
   readonly tone: Tone;
+}
+
+/** Distances from the tip of the locked guide along its axis, mm, as planned. */
+export interface DepthRuler {
+  readonly entry: number;
+  readonly outer: number | null;
+  readonly inner: number | null;
+  readonly target: number;
 }
 
 export interface Screen {
@@ -66,6 +74,9 @@ export interface Screen {
   readonly is_stepped: boolean;
   readonly has_arrow: boolean;
   readonly errors: readonly ErrorArrow[];
+  /** Whether what is within the head is seen through the skin. */
+  readonly is_head_clear: boolean;
+  readonly ruler: DepthRuler | null;
 }
 
 export type Triple = readonly [number, number, number];
@@ -92,6 +103,24 @@ export interface SceneNews {
   readonly sticks: "camera" | "robot";
   readonly cameras: Readonly<Record<string, CameraPlace>>;
   readonly fiducials: Readonly<Record<string, Triple>>;
+  /** Nodes of the no-go structures of each procedure. */
+  readonly noGo: Readonly<Record<string, readonly string[]>>;
+}
+
+/** How the planned line lies to the guide, seen along its axis: right and up, mm. */
+export interface Aim {
+  readonly entryMm: readonly [number, number];
+  readonly targetMm: readonly [number, number];
+  readonly entryDistanceMm: number;
+  readonly angleDeg: number;
+}
+
+/** What moves in the phases of a procedure. */
+export interface ProcedureNews {
+  readonly name: string;
+  readonly tool: "pointer" | "guide" | "drill" | "electrode";
+  readonly feedMm: number;
+  readonly aim: Aim | null;
 }
 
 /** How the next touch is going; views show the last four in red. */
@@ -120,6 +149,7 @@ export interface StateNews {
   readonly next: string | null;
   readonly touched: readonly string[];
   readonly elapsed: number;
+  readonly procedure: ProcedureNews | null;
 }
 
 export interface ScreenNews {

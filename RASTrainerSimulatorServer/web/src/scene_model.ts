@@ -12,10 +12,21 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 import { batch, ownColor } from "./batch";
-import { isTouchError, type SceneNews, type StateNews, type TouchStage } from "./messages";
+import { isTouchError, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "./messages";
 
 const FIDUCIAL = "fiducial_";
 const FURNITURE = ["table", "floor", "room"];
+/** Nodes that are shown with each tool of a procedure. */
+const INSTRUMENTS: Readonly<Record<ProcedureNews["tool"], readonly string[]>> = {
+  pointer: [],
+  guide: ["guide", "axis"],
+  drill: ["guide", "drill"],
+  electrode: ["guide", "electrode"],
+};
+/** Nodes as long as they are fed; in the file they are 1 m long. */
+const FED = ["drill", "electrode"];
+const AT_THE_TOOL = ["guide", "axis", ...FED];
+const CLEAR_SKIN = 0.3;
 const PULSE_S = 1.4;
 const PULSE_COLOR = new Color(1, 0.97, 0.75);
 
@@ -44,6 +55,8 @@ export class SceneModel {
   private markedNext: string | null = "";
   private markedTouches = -1;
   private pulses = false;
+  private readonly skin = new MeshStandardMaterial({ roughness: 0.6 });
+  private readonly noGo: Object3D[] = [];
 
   constructor(
     file: Object3D,
@@ -81,6 +94,33 @@ export class SceneModel {
     }
   }
 
+  /** Show what the tool is in a procedure, how far it is fed, and its no-go structures. */
+  showInstrument(procedure: ProcedureNews | null): void {
+    const shown = procedure === null ? [] : INSTRUMENTS[procedure.tool];
+    const fed = procedure === null ? 0 : procedure.feedMm / 1000;
+    for (const name of AT_THE_TOOL) {
+      const node = this.named.get(name);
+      if (node === undefined) continue;
+      const isFed = FED.includes(name);
+      node.visible = shown.includes(name) && (!isFed || fed > 0);
+      if (isFed) node.scale.z = Math.max(fed, 1e-6);
+    }
+    const names = procedure === null ? [] : (this.news.noGo[procedure.name] ?? []);
+    for (const node of this.noGo) {
+      const name = (node.userData.name as string) ?? node.name;
+      node.visible = shown.length > 0 && names.includes(name);
+    }
+  }
+
+  /** Let what is within the head be seen through the skin, or not. */
+  clearHead(isClear: boolean): void {
+    if (this.skin.transparent === isClear) return;
+    this.skin.transparent = isClear;
+    this.skin.opacity = isClear ? CLEAR_SKIN : 1;
+    this.skin.depthWrite = !isClear;
+    this.skin.needsUpdate = true;
+  }
+
   /** Brighten and darken the next fiducial; return whether it changes the picture at `now` (s). */
   pulse(now: number): boolean {
     const share = 0.5 - 0.5 * Math.cos((2 * Math.PI * now) / PULSE_S);
@@ -102,9 +142,13 @@ export class SceneModel {
     const none = new Set<Object3D>();
     for (const name of FURNITURE) this.batchNode(name, "matt", none);
     const tip = this.named.get("tip_marker");
+    const apart = [tip, ...AT_THE_TOOL.map((name) => this.named.get(name))];
+    const kept = new Set(apart.filter((node) => node !== undefined));
     for (const name of bodies) {
-      if (name !== "head") this.batchNode(name, "glossy", new Set(tip ? [tip] : []));
+      if (name !== "head" && name !== "plan") this.batchNode(name, "glossy", kept);
     }
+    this.noGo.push(...(this.named.get("plan")?.children ?? []));
+    this.showInstrument(null);
     if (tip instanceof Mesh) tip.material = this.tip;
     this.prepareHead();
   }
@@ -126,8 +170,8 @@ export class SceneModel {
     head.add(marks);
     batch(marks, "matt", new Set());
     if (skin instanceof Mesh) {
-      const color = ownColor(skin).color;
-      skin.material = new MeshStandardMaterial({ color, roughness: 0.6 });
+      this.skin.color.copy(ownColor(skin).color);
+      skin.material = this.skin;
     }
   }
 

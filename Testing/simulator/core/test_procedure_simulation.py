@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
@@ -17,6 +18,8 @@ from Testing.simulator.core.test_simulation import Driver
 from Testing.simulator.planned_procedures import INNER_MM, OUTER_MM
 
 SEED = 4
+IDENTITY = Rotation.identity()
+MANY_LINES = 20
 RIGHT = OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad")
 TURN = OperatorInput(rotation=(1.0, 0.0), operator="gamepad")
 IN = OperatorInput(translation=(0.0, 0.0, -1.0), operator="gamepad")
@@ -36,8 +39,8 @@ class Surgeon(Driver):
         """The true registration, (4, 4) float, mm."""
         return transforms.inverse(self.simulation.truth.head_to_world)
 
-    def to(self, phase, procedure="dbs", shift_mm=(0.0, 0.0, 0.0)):
-        """Begin a trial and go to a phase of its procedure."""
+    def to(self, phase, procedure="dbs", shift_mm=(0.0, 0.0, 0.0), turn=IDENTITY):
+        """Begin a trial and go to a phase of its procedure, by a registration so far off."""
         self.do(CommandName.ABORT)
         start = {"task": "task-1", "trainee": "P01", "seed": SEED, "procedure": procedure}
         self.must(CommandName.START_TASK, **start)
@@ -45,7 +48,8 @@ class Surgeon(Driver):
             self.must(CommandName.CAPTURE)
         self.must(CommandName.REGISTER)
         registration = self.exact
-        registration[:3, 3] += shift_mm
+        registration[:3, :3] = turn.as_matrix() @ registration[:3, :3]
+        registration[:3, 3] = turn.apply(registration[:3, 3]) + shift_mm
         self.must(
             CommandName.USE_REGISTRATION,
             trialId=self.state.training.trial_id,
@@ -142,6 +146,26 @@ def test_the_robot_aligns_the_guide_on_the_plan_that_the_registration_shows(surg
     world_shift = surgeon.simulation.truth.head_to_world[:3, :3] @ np.array(shift_mm)
     expected = world_shift - np.dot(world_shift, axis.direction) * np.array(axis.direction)
     np.testing.assert_allclose(MM_PER_M * aside, expected, atol=0.01)
+
+
+def test_the_robot_is_as_exact_on_many_lines_from_wherever_the_guide_is(surgeon):
+    random = np.random.default_rng(SEED)
+    worst_mm = worst_deg = 0.0
+    for number in range(MANY_LINES):
+        shift_mm, degrees = random.normal(0.0, 3.0, 3), random.normal(0.0, 2.0, 3)
+        turn = Rotation.from_rotvec(degrees, degrees=True)
+        surgeon.to(Phase.ALIGNING, ("dbs", "seeg")[number % 2], shift_mm, turn)
+        sticks = random.uniform(-1.0, 1.0, 5).tolist()
+        for _ in range(60):
+            surgeon.step(OperatorInput(tuple(sticks[:3]), tuple(sticks[3:])))
+        stand_off_mm = float(random.uniform(15.0, 60.0))
+        assert surgeon.align(stand_off_mm) == "reached"
+        shown = surgeon.state.alignment
+        off = abs(MM_PER_M * shown.stand_off - stand_off_mm)
+        worst_mm = max(worst_mm, MM_PER_M * shown.entry_distance, off)
+        worst_deg = max(worst_deg, np.degrees(shown.angle))
+    assert worst_mm <= 0.05
+    assert worst_deg <= 0.05
 
 
 def test_the_stick_takes_the_guide_over_from_the_robot(surgeon):

@@ -70,6 +70,7 @@ def state_text(**changes):
         "phase": "running",
         "next": "2",
         "touched": ["1"],
+        "procedure": None,
         **changes,
     }
     members["poses"] = [members["poses"][body] for body in BODIES]

@@ -14,6 +14,8 @@ from rastrainer_simulator.flow.pages import (
     errors,
     experiment,
     introduction,
+    procedure,
+    procedure_result,
     result,
     start,
     trial,
@@ -25,6 +27,7 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
 from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
 
@@ -36,6 +39,53 @@ SCORED = TrainingState(
     mode="desktop",
     trial_id="none",
     result=TrialResult(FinalRegistration((1.0,) * 16, 1.25, 1.5), 1.4, 81.0, {"ctps": 62.5}),
+)
+
+AT_PROCEDURE = replace(
+    SCORED, phase=Phase.ALIGNING, result=None, procedure=ProcedureState("biopsy", Phase.VERIFYING)
+)
+PROCEDURE_SCORED = replace(
+    SCORED,
+    procedure=ProcedureState(
+        "biopsy",
+        Phase.REGISTERED,
+        trajectories=(TrajectoryState(PlannedLine("Lesion", (0.5, 0.0, 0.4), (0.5, 0.0, 0.3))),),
+    ),
+    result=replace(
+        SCORED.result,
+        details={
+            "procedure": {
+                "score": 42.0,
+                "acceptable": True,
+                "targetRmsMm": 2.31,
+                "targetByRegistrationRmsMm": 1.98,
+                "targetByHandRmsMm": 0.95,
+                "trajectories": [
+                    {
+                        "name": "Right frontal lesion",
+                        "targetMm": 2.31,
+                        "byRegistrationMm": 1.98,
+                        "byHandMm": 0.95,
+                        "entryMm": 1.2,
+                        "entryByRegistrationMm": 1.1,
+                        "entryByHandMm": 0.4,
+                        "radialMm": 1.6,
+                        "radialByRegistrationMm": 1.5,
+                        "radialByHandMm": 0.3,
+                        "depthMm": -1.7,
+                        "depthByRegistrationMm": -0.9,
+                        "depthByHandMm": -0.8,
+                        "angleDeg": 1.4,
+                        "angleByRegistrationDeg": 1.1,
+                        "angleByHandDeg": 0.6,
+                        "plungeMm": 6.25,
+                        "nearest": "Superior sagittal sinus (schematic)",
+                        "keptMm": 7.5,
+                    }
+                ],
+            }
+        },
+    ),
 )
 
 LEARNED = TutorialOutcome("P07", "gamepad", "desktop", 112.0, 2.34, (1.2, 0.8, 0.6))
@@ -85,6 +135,12 @@ def _pages(session) -> Iterator[SessionPage]:
     yield result.WaitingPage(session)
     yield result.ResultPage(session)
     yield errors.ErrorsPage(session)
+    session.state = replace(session.state, training=AT_PROCEDURE)
+    yield procedure.ProcedurePage(session)
+    session.state = replace(session.state, training=PROCEDURE_SCORED)
+    yield procedure_result.ProcedureErrorsPage(session)
+    yield procedure_result.ProcedureLinesPage(session)
+    session.state = replace(session.state, training=SCORED)
     yield tutorial.TutorialPage(session)
     yield tutorial.TutorialDonePage(session, LEARNED)
     yield ReplayPage(session, _Loading(), begins_at_worst=False)

@@ -9,6 +9,7 @@ import pytest
 
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
+from rastrainer.protocol import Phase
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
@@ -16,6 +17,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.net.views.screen import Tone
 from rastrainer_simulator.ops.texts.german import GERMAN
+from rastrainer_simulator.procedure_state import Tool
 
 OWN = "This score is the simulator's own and is not stored in a study."
 A_MICROMETRE = 1e-3
@@ -122,3 +124,81 @@ def test_a_slicer_that_comes_back_within_seconds_finds_the_trial_unscored(traine
 def test_the_page_says_it_in_german_too():
     for key in ("waiting.own", "waiting.problem", "result.own"):
         assert key in GERMAN
+
+
+def commands_of(outside, trial_id, name):
+    (path,) = journals_of(outside.services.records, trial_id)
+    return [entry for entry in read_journal(path).of_kind("command") if entry["name"] == name]
+
+
+def do(trainee, command, **arguments):
+    answer = trainee.submit(command, **arguments)
+    assert answer.ok, answer.message
+
+
+def to_verifying(trainee):
+    """Touch Task 1 of a trial with a biopsy and register it; return the trial's UUID."""
+    trainee.start("task-1", procedure="biopsy")
+    trainee.play("task-1")
+    do(trainee, "Register")
+    trainee.until(lambda: trainee.state.training.phase is Phase.VERIFYING, "the verification")
+    return trainee.state.training.trial_id
+
+
+def is_in_use(trainee):
+    procedure = trainee.state.training.procedure
+    return procedure is not None and procedure.registration is not None
+
+
+def feed(trainee, to_mm):
+    """Feed what is in the guide until the screen's state shows it so deep."""
+    tool = trainee.state.tool
+    while trainee.state.tool is tool and 1000 * trainee.state.feed < to_mm:
+        do(trainee, "Feed", velocityMmS=10.0, durationS=2.0)
+        trainee.step(100)
+
+
+def test_without_a_slicer_the_simulator_registers_for_a_procedure_and_scores_it(trainee, outside):
+    # That a study is led keeps it from scoring alone: registering reveals nothing.
+    outside.services.study.take(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
+    trial = to_verifying(trainee)
+    trainee.until(lambda: is_in_use(trainee), "a registration in use")
+    (used,) = commands_of(outside, trial, "UseRegistration")
+    assert used["sender"] == "simulator"
+    do(trainee, "AcceptRegistration")
+    do(trainee, "AlignGuide", standOffMm=20.0)
+    trainee.until(lambda: trainee.state.alignment.is_exact, "the guide on the plan")
+    do(trainee, "LockGuide")
+    trainee.until(lambda: trainee.state.tool is Tool.DRILL, "the drill")
+    feed(trainee, 45.0)
+    do(trainee, "StartInsertion")
+    trainee.until(lambda: trainee.state.tool is Tool.ELECTRODE, "the needle")
+    feed(trainee, 60.0)
+    do(trainee, "ReleaseInstrument")
+    trainee.until_menu("waiting")
+    trainee.step(300)
+    assert entries_of(outside, trial, "registration") == []
+    outside.services.study.take(StudyStep("P07"))
+    trainee.until_menu("result")
+    (submitted,) = entries_of(outside, trial, "registration")
+    assert submitted == used["arguments"]
+    (own,) = entries_of(outside, trial, "scored")
+    (line,) = own["details"]["procedure"]["trajectories"]
+    assert line["name"] == "Right frontal lesion"
+    assert line["targetMm"] > 1.0
+
+
+def test_while_slicer_is_connected_it_registers_for_a_procedure(trainee, outside):
+    outside.has_slicer = True
+    trial = to_verifying(trainee)
+    trainee.step(300)
+    assert not is_in_use(trainee)
+    assert commands_of(outside, trial, "UseRegistration") == []
+    outside.has_slicer = False
+    trainee.until(lambda: is_in_use(trainee), "a registration in use")
+    do(trainee, "RegisterAgain")
+    trainee.play("task-1")
+    do(trainee, "Register")
+    trainee.until(lambda: is_in_use(trainee), "a registration of the second attempt")
+    assert len(commands_of(outside, trial, "UseRegistration")) == 2
+    do(trainee, "Abort")

@@ -157,9 +157,10 @@ class Trainee:
         self.until(future.done, f"the answer to {name}")
         return future.result()
 
-    def start(self, task: str, trainee: str = "P07") -> None:
+    def start(self, task: str, trainee: str = "P07", procedure: str = "") -> None:
         """Begin a task as Slicer would, and wait for its screen."""
-        assert self.submit("StartTask", task=task, trainee=trainee).ok
+        start = {"task": task, "trainee": trainee, "procedure": procedure}
+        assert self.submit("StartTask", **start).ok
         self.until_menu(None)
 
     def touch(self, point: np.ndarray, center: np.ndarray) -> None:

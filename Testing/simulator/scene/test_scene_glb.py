@@ -15,6 +15,7 @@ from rastrainer_simulator.scene.scene_glb import scene_glb
 from Testing.simulator.scene.glb_reader import Glb
 
 MOVED = [*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand"]
+AT_THE_TOOL = {"guide", "axis", "drill", "electrode"}
 STANDING = ["table", "floor", "room"]
 
 
@@ -36,7 +37,8 @@ def test_it_is_small_enough_for_a_headset(content, glb):
 
 
 def test_what_the_stream_moves_hangs_at_the_root_which_turns_z_up_into_y_up(glb):
-    assert glb.children("world") == [*MOVED, *STANDING]
+    table, *others = STANDING
+    assert glb.children("world") == [*MOVED, table, "plan", *others]
     assert glb.parent("world") is None
     turned = glb.matrix("world")
     assert turned @ [0, 0, 1, 1] == pytest.approx([0, 1, 0, 1]), "up"
@@ -87,7 +89,9 @@ def test_the_links_stand_where_the_robots_meshes_are(glb, setup):
             expected.setdefault(name, []).append(vertices)
     assert set(expected) == {*MOVED} - {"head", "stand"}
     for name, parts in expected.items():
-        posed = glb.vertices(name) @ poses[name][:3, :3].T + poses[name][:3, 3]
+        shown = [child for child in glb.children(name) if child not in AT_THE_TOOL]
+        vertices = np.concatenate([glb.vertices(child) for child in shown or [name]])
+        posed = vertices @ poses[name][:3, :3].T + poses[name][:3, 3]
         whole = np.concatenate(parts)
         assert posed.min(axis=0) == pytest.approx(whole.min(axis=0), abs=1e-5)
         assert posed.max(axis=0) == pytest.approx(whole.max(axis=0), abs=1e-5)
@@ -183,3 +187,26 @@ def test_vtk_reads_it(content, glb, tmp_path):
         for index in range(actors.GetNumberOfItems())
     )
     assert count == sum(len(part[2]) for part in glb.primitives("world"))
+
+
+def test_the_tools_of_a_procedure_stand_on_the_axis_and_end_or_begin_at_the_tip(glb):
+    guide, axis = glb.vertices("guide"), glb.vertices("axis")
+    assert guide[:, 2].max() == pytest.approx(0.0, abs=1e-6)
+    assert axis[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    for name in ("drill", "electrode"):
+        fed = glb.vertices(name)
+        assert fed[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+        assert fed[:, 2].max() == pytest.approx(1.0), "views scale it by how far it is fed"
+        assert np.abs(fed[:, :2].mean(axis=0)) == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_the_no_go_structures_lie_in_the_plan_and_can_be_seen_through(glb, scenario):
+    paths = {each.mesh for procedure in scenario.procedures for each in procedure.no_go}
+    assert set(glb.children("plan")) == {f"no_go_{path.stem}" for path in paths}
+    for path in paths:
+        vertices = glb.vertices(f"no_go_{path.stem}")
+        mesh = read_head_mesh(path)
+        assert vertices.min(axis=0) == pytest.approx(mesh.vertices.min(axis=0) / 1000, abs=1e-6)
+    (material,) = [each for each in glb.json["materials"] if each["name"] == "no_go"]
+    assert material["alphaMode"] == "BLEND"
+    assert material["pbrMetallicRoughness"]["baseColorFactor"][3] < 1.0

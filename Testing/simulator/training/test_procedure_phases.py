@@ -244,7 +244,7 @@ def test_so_many_attempts_and_checks_are_kept_that_a_record_can_hold_them(scenar
     ("skin_m", "words"),
     [
         (None, "does not meet the head"),
-        (0.0801, "80 mm from the skin along its axis: LockGuide needs at most 80 mm"),
+        (0.0801, "80 mm from the skin along its axis: lock it within 80 mm"),
     ],
 )
 def test_a_guide_that_cannot_be_drilled_through_is_not_locked(scenario, skin_m, words):

@@ -93,15 +93,24 @@ def procedure_outcome(
 
 def _summary(errors: TrajectoryErrors) -> dict[str, Any]:
     nearest = min(errors.kept_mm, key=errors.kept_mm.__getitem__, default=None)
+    depth, depth_by_registration, depth_by_hand = errors.depth
     return {
         "name": errors.trajectory.name,
         "targetMm": errors.target.length_mm,
         "byRegistrationMm": errors.target.registration_mm,
         "byHandMm": errors.target.hand_mm,
         "entryMm": errors.entry.length_mm,
+        "entryByRegistrationMm": errors.entry.registration_mm,
+        "entryByHandMm": errors.entry.hand_mm,
         "radialMm": errors.radial.length_mm,
-        "depthMm": errors.depth[0],
+        "radialByRegistrationMm": errors.radial.registration_mm,
+        "radialByHandMm": errors.radial.hand_mm,
+        "depthMm": depth,
+        "depthByRegistrationMm": depth_by_registration,
+        "depthByHandMm": depth_by_hand,
         "angleDeg": errors.angle_deg,
+        "angleByRegistrationDeg": errors.registration_angle_deg,
+        "angleByHandDeg": errors.hand_angle_deg,
         "plungeMm": errors.plunge_mm,
         "nearest": nearest,
         "keptMm": None if nearest is None else errors.kept_mm[nearest],

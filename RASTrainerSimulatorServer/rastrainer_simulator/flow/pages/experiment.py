@@ -52,7 +52,8 @@ class ExperimentPage(SessionPage):
             help=self.say("experiment.trainee help"),
         )
         mode = self.choice("mode", self.say(f"mode.{session.mode}"))
-        choices = (trainee, mode, self.button("scenario", value=session.scenario.title))
+        scenario = self.button("scenario", value=session.scenario.title)
+        choices = (trainee, mode, scenario, *self._procedure())
         tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
         step = self._step()
         is_asked = step is not None and step.kind == StepKind.QUESTIONNAIRE
@@ -89,11 +90,15 @@ class ExperimentPage(SessionPage):
             self.session.start_task(item)
 
     def step(self, item: str, direction: int) -> None:
-        """Change the mode."""
+        """Change the mode, or what follows the touches."""
         if item == "mode":
             modes = [mode.value for mode in Mode]
             place = (modes.index(self.session.mode) + direction) % len(modes)
             self.session.mode = modes[place]
+        elif item == "procedure":
+            names = ["", *(each.name for each in self.session.scenario.procedures)]
+            present = self.session.procedure if self.session.procedure in names else ""
+            self.session.procedure = names[(names.index(present) + direction) % len(names)]
 
     def write(self, item: str, value: str) -> None:
         """Take the trainee's ID."""
@@ -109,6 +114,18 @@ class ExperimentPage(SessionPage):
         told = ", ".join(f"{score:.0f}" for score in scores)
         mark = PASS_MARK if self._step() is None else 0.0
         return ScoreTrend(self.say("experiment.scores", scores=told), scores, mark)
+
+    def _procedure(self) -> tuple[MenuItem, ...]:
+        """Return the choice of what follows the touches; none where the head has no procedures."""
+        session = self.session
+        if not session.scenario.procedures:
+            return ()
+        step = self._step()
+        names = [each.name for each in session.scenario.procedures]
+        chosen = session.procedure if session.procedure in names else ""
+        value = session.procedure_title(chosen if step is None else step.procedure)
+        help_ = self.say("experiment.procedure help")
+        return (self.choice("procedure", value, is_enabled=step is None, help=help_),)
 
     def _tutorial(self) -> tuple[MenuItem, ...]:
         """Return the tutorial's button; none where there is no tutorial."""

@@ -14,6 +14,11 @@ from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.trial_feedback import MAX_SHORT
 from rastrainer_simulator.flow.pages.errors import GOOD_MM, POOR_MM, ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.procedure_result import (
+    ProcedureErrorsPage,
+    procedure_details,
+    procedure_facts,
+)
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE
@@ -109,14 +114,23 @@ class ResultPage(FinishedPage):
                 self.say("result.interval note"),
                 *self._what_comes_next(),
             ),
-            (*self._facts_of_result(result), *_facts_of_trial(self.session)),
+            (
+                *procedure_facts(self.session, result),
+                *self._facts_of_result(result),
+                *_facts_of_trial(self.session),
+            ),
             self.items(),
         )
 
     def items(self) -> tuple[MenuItem, ...]:
         """Return where one can go, and what can be shown again."""
         items = {item.name: item for item in super().items()}
-        shown = (self.button("errors"), self.button("worst"), self.button("replay"))
+        has_procedure = bool(procedure_details(self.session.training.result))
+        shown = tuple(
+            self.button(name)
+            for name in ("procedure", "errors", "worst", "replay")
+            if name != "procedure" or has_procedure
+        )
         onward = [items.pop("next")] if "next" in items else []
         return (*onward, *shown, *items.values())
 
@@ -126,6 +140,8 @@ class ResultPage(FinishedPage):
             self._show_again(begins_at_worst=item == "worst")
         elif item == "errors":
             self.session.pages.open(ErrorsPage(self.session))
+        elif item == "procedure":
+            self.session.pages.open(ProcedureErrorsPage(self.session))
         else:
             super().accept(item)
 
@@ -154,7 +170,7 @@ class ResultPage(FinishedPage):
         key = "result.unacceptable score" if is_unacceptable else "result.of 100"
         tone = _tone_of_score(result)
         facts = [
-            Fact(self.say("result.score"), self.say(key, score=result.score), tone),
+            Fact(self._score_label(result), self.say(key, score=result.score), tone),
             self._error("result.fre", result.registration.fre_mm),
             self._error("result.expected tre", result.registration.expected_tre_mm),
             self._error("result.true tre", result.true_tre_mm),
@@ -178,6 +194,11 @@ class ResultPage(FinishedPage):
                 Fact(self.say("result.ctps"), self.say("result.points", points=float(ctps)))
             )
         return facts
+
+    def _score_label(self, result: TrialResult) -> str:
+        """Return what the score is of: a procedure has one of its own."""
+        has_procedure = bool(procedure_details(result))
+        return self.say("procedure-errors.touches" if has_procedure else "result.score")
 
     def _error(self, key: str, error_mm: float) -> Fact:
         tone = Tone.GOOD if error_mm <= GOOD_MM else Tone.PLAIN

@@ -39,6 +39,7 @@ class Preferences:
         axes: whose right, forward and up the sticks follow.
         direction: who decides the tool's direction.
         touch: whether a touch has to be on the skin.
+        self_alignment: whether the robot may align a procedure's guide by itself.
         view: when the view goes to each next point automatically: "practice" is outside of a study.
         guidance: how the trainee is guided to the next point, unless a study says otherwise.
         ghost: which earlier trial is shown beside the arm, outside of studies.
@@ -55,6 +56,7 @@ class Preferences:
     axes: str = AxesChoice.CAMERA.value
     direction: str = ToolDirection.CLEAR.value
     touch: str = TouchRule.ON_SKIN.value
+    self_alignment: bool = True
     view: str = "practice"
     guidance: str = Guidance.FADING.value
     ghost: str = GhostRule.OFF.value
@@ -74,6 +76,7 @@ class Preferences:
             settings,
             axes=AxesChoice(self.axes),
             training=dataclasses.replace(settings.training, touch_rule=TouchRule(self.touch)),
+            procedure=dataclasses.replace(settings.procedure, self_alignment=self.self_alignment),
             teleoperation=dataclasses.replace(
                 teleoperation,
                 coarse_speed=self.coarse / MM_PER_M,
@@ -95,6 +98,7 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
     "axes": tuple(choice.value for choice in AxesChoice),
     "direction": tuple(choice.value for choice in ToolDirection),
     "touch": tuple(rule.value for rule in TouchRule),
+    "self_alignment": (True, False),
     "view": ("practice", "always", "never"),
     "guidance": tuple(choice.value for choice in Guidance),
     "ghost": tuple(rule.value for rule in GhostRule),
@@ -102,7 +106,7 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
 }
 
 EXPERT = "expert"
-OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch")
+OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch", "self_alignment")
 OF_INSTRUCTORS = ("order", "tutorial")
 """Preferences that are changed in the file: who trains does not decide what they may leave out."""
 OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance", "ghost")

@@ -12,6 +12,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
+from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import (
     OPEN_PHASES,
     TRIAL_RUN,
@@ -101,6 +102,7 @@ class TrainingSession:
     Attributes:
         trainee: what was typed as the trainee's ID.
         mode: "desktop" or "hmd".
+        procedure: name of the one that is to follow the touches; "" for the touches alone.
         has_read_introduction: whether the pages before the experiment menu can be skipped.
         preferences: what is chosen in the settings.
         texts: say everything in the chosen language.
@@ -129,6 +131,7 @@ class TrainingSession:
     ) -> None:
         self.trainee = ""
         self.mode = Mode.DESKTOP.value
+        self.procedure = ""
         self.has_read_introduction = False
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
@@ -306,7 +309,19 @@ class TrainingSession:
     def start_task(self, task: str) -> None:
         """Have a trial of a task begun by the trainee, in the chosen mode."""
         trainee = self.trainee.strip()
-        self.do(CommandName.START_TASK, {"task": task, "trainee": trainee, "mode": self.mode})
+        start = {"task": task, "trainee": trainee, "mode": self.mode}
+        self.do(CommandName.START_TASK, {**start, "procedure": self.procedure_of(task)})
+
+    def procedure_of(self, task: str) -> str:
+        """Return the name of the procedure that follows the touches of a task; "" for none.
+
+        A study says which; else it is the one that the trainee has chosen. The trial run has none.
+        """
+        step = self.study.step_of(self.trainee.strip())
+        if step is not None:
+            return step.procedure
+        names = [each.name for each in self.scenario.procedures]
+        return self.procedure if self.procedure in names and task != TRIAL_RUN else ""
 
     def prefer(self, preferences: Preferences) -> None:
         """Take on other preferences and save them."""
@@ -322,8 +337,18 @@ class TrainingSession:
 
     def fiducial(self, label: str) -> Vector:
         """Return where a fiducial of the present trial is, World, m: only after the score."""
-        truth = self._control_loop.truth
-        return vector((truth.in_world(truth.fiducials[label]) / MM_PER_M).tolist())
+        return self.truly_in_world(self._control_loop.truth.fiducials[label])
+
+    def truly_in_world(self, point: np.ndarray) -> Vector:
+        """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
+        return vector((self._control_loop.truth.in_world(point) / MM_PER_M).tolist())
+
+    @property
+    def planned_bone(self) -> tuple[BoneAhead | None, ...]:
+        """Where the lines of the present trial's procedure go through bone, as planned."""
+        procedure = self.training.procedure
+        assert procedure is not None, "the trial has a procedure"
+        return self._control_loop.planned_bone.get(procedure.name, ())
 
     def use_scenario(self, name: str) -> None:
         """Continue with another scenario, as soon as it is loaded."""
@@ -394,6 +419,11 @@ class TrainingSession:
             return self.texts.say(key)
         titles = {task.name: task.title for task in self.scenario.tasks}
         return titles.get(name, name)
+
+    def procedure_title(self, name: str) -> str:
+        """Return what people call a procedure; "" is the touches alone."""
+        titles = {each.name: each.title for each in self.scenario.procedures}
+        return titles.get(name, name) if name else self.texts.say("experiment.touches alone")
 
     def step_sentence(self, step: StudyStep) -> str:
         """Return the sentence about a study's step."""

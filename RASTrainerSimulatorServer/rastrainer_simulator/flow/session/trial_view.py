@@ -92,9 +92,10 @@ class TrialView:
         main = self.control.pose(cameras[now.camera])
         view = self._view_of(now)
         if view is None or view.beside is None:
-            return Pictures(main)
+            return Pictures(main, yaw_deg=self.yaw_deg)
         tip = vector(now.tool_tip_to_world[:3, 3].tolist())
-        return Pictures(main, along_skin(view.beside, view.fiducial, view.normal, tip))
+        beside = along_skin(view.beside, view.fiducial, view.normal, tip)
+        return Pictures(main, beside, self.yaw_deg)
 
     def look_along(self, camera: Camera, yaw_deg: float | None) -> None:
         """Have the sticks follow the picture, or eyes that look to `yaw_deg` from World's x."""

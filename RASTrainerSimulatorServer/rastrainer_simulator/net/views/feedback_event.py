@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from rastrainer.protocol import Phase, Proximity
+from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
 from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
+from rastrainer_simulator.training.feed import FeedLayer
 
 
 class FeedbackEvent(str, Enum):
@@ -26,6 +27,10 @@ class FeedbackEvent(str, Enum):
     ACCEPT = "accept"
     TEST = "test"
     STEP = "step"
+    CHECKPOINT = "checkpoint"
+    BONE = "bone"
+    THROUGH = "through"
+    BLOCKED = "blocked"
 
 
 @dataclass(frozen=True)
@@ -57,7 +62,19 @@ FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
     FeedbackEvent.ACCEPT: FeedbackEffect("accept"),
     FeedbackEvent.TEST: FeedbackEffect("", 0.6, 0.2),
     FeedbackEvent.STEP: FeedbackEffect("accept", 0.3, 0.12),
+    FeedbackEvent.CHECKPOINT: FeedbackEffect("touch", 0.5, 0.12),
+    FeedbackEvent.BONE: FeedbackEffect("proximity", 0.5, 0.3),
+    FeedbackEvent.THROUGH: FeedbackEffect("contact", 1.0, 0.4),
+    FeedbackEvent.BLOCKED: FeedbackEffect("error", 0.7, 0.3),
 }
+
+
+_OF_A_LAYER = {
+    FeedLayer.BONE.value: FeedbackEvent.BONE,
+    FeedLayer.THROUGH.value: FeedbackEvent.THROUGH,
+    FeedLayer.BLOCKED.value: FeedbackEvent.BLOCKED,
+}
+"""What a hand feels of a drill or an instrument; skin and scalp are not felt."""
 
 
 def feedback_event(
@@ -74,12 +91,18 @@ def feedback_event(
         return FeedbackEvent.UNDO
     if event.kind is EventKind.REJECTED:
         return FeedbackEvent.ERROR
+    if event.kind is EventKind.CHECKPOINT:
+        return FeedbackEvent.CHECKPOINT
+    if event.kind is EventKind.FEED:
+        return _OF_A_LAYER.get(event.data["layer"])
     if event.kind is EventKind.PROXIMITY:
         return _of_proximity(Proximity(event.data["from"]), Proximity(event.data["to"]), touch)
     if event.kind is EventKind.PHASE and not_recorded:
         return FeedbackEvent.ERROR
     if event.kind is EventKind.PHASE and event.data["phase"] == Phase.REGISTERED:
         return FeedbackEvent.FINISH
+    if event.kind is EventKind.PHASE and event.data["phase"] in PROCEDURE_PHASES:
+        return FeedbackEvent.STEP
     return None
 
 

@@ -14,8 +14,12 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.messages import PROTOCOL
 from rastrainer_simulator.net.views.presenter import Control, Feedback
 from rastrainer_simulator.net.views.screen import Screen, screen_to_json
+from rastrainer_simulator.procedure_state import Tool
+from rastrainer_simulator.scene.nodes import no_go_name
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.axes import AxesChoice
+from rastrainer_simulator.training.registered_plan import RegisteredPlan
+from rastrainer_simulator.viewpoint.aim import aim
 from rastrainer_simulator.viewpoint.orbit import CameraPose, camera_pose
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
@@ -27,7 +31,7 @@ EVENT = "event"
 CONTROL = "control"
 PAIRING = "pairing"
 
-BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand")
+BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand", "plan")
 GHOST_LINKS = (7,)
 """The links of the arm that are shown of a ghost, by the number of joints before each."""
 GHOST_BODIES = (*(f"link_{joint}" for joint in GHOST_LINKS), "tool")
@@ -48,8 +52,18 @@ def scene(sha256: str, scenario: Scenario, task: str, axes: AxesChoice) -> str:
         chosen = scenario.task(task)
         points = (chosen.fiducials / MM_PER_M).tolist()
         fiducials = dict(zip(chosen.labels, points, strict=True))
-    url = f"/scene/{sha256}.glb"
-    return _text(SCENE, url=url, task=task, sticks=axes.value, cameras=cameras, fiducials=fiducials)
+    return _text(
+        SCENE,
+        url=f"/scene/{sha256}.glb",
+        task=task,
+        sticks=axes.value,
+        cameras=cameras,
+        fiducials=fiducials,
+        noGo={
+            procedure.name: [no_go_name(each.mesh) for each in procedure.no_go]
+            for procedure in scenario.procedures
+        },
+    )
 
 
 def state(
@@ -68,6 +82,7 @@ def state(
         now.tool_tip_to_world,
         now.head_to_world,
         now.stand_to_world,
+        _plan_to_world(now),
     )
     return _text(
         STATE,
@@ -87,6 +102,7 @@ def state(
         elapsed=round(now.elapsed, DECIMALS),
         plannedTarget=None if planned is None else planned.position,
         delayed=delayed,
+        procedure=_procedure(now, pictures),
     )
 
 
@@ -116,6 +132,44 @@ def control(now: Control, view: int) -> str:
 def pairing(code: str, addresses: Sequence[str]) -> str:
     """Return how another view is paired; for this computer's own views only."""
     return _text(PAIRING, code=code, addresses=addresses)
+
+
+def _plan_to_world(now: SimulationState) -> np.ndarray:
+    """Return where the registration in use puts the MRI, (4, 4) float, m; else World's origin."""
+    procedure = now.training.procedure
+    used = None if procedure is None else procedure.registration
+    plan = None if used is None else RegisteredPlan.of(used.matrix)
+    pose = np.eye(4)
+    if plan is not None:
+        pose[:3, :3] = np.transpose(plan.rows)
+        pose[:3, 3] = plan.in_world((0.0, 0.0, 0.0))
+    return pose
+
+
+def _procedure(now: SimulationState, pictures: Pictures) -> dict[str, Any] | None:
+    """Return what moves in a procedure's phases: by the registration in use, never the truth."""
+    procedure, alignment, line = now.training.procedure, now.alignment, now.plan_in_world
+    if procedure is None:
+        return None
+    seen = None
+    if alignment is not None and line is not None and now.tool is Tool.GUIDE:
+        beside = aim(now.guide_axis, line, pictures)
+        seen = {
+            "entryMm": _millimetres(beside.entry),
+            "targetMm": _millimetres(beside.target),
+            "entryDistanceMm": round(MM_PER_M * alignment.entry_distance, 2),
+            "angleDeg": round(math.degrees(alignment.angle), 2),
+        }
+    return {
+        "name": procedure.name,
+        "tool": now.tool.value,
+        "feedMm": round(MM_PER_M * now.feed, 3),
+        "aim": seen,
+    }
+
+
+def _millimetres(values: Sequence[float]) -> list[float]:
+    return [round(MM_PER_M * value, 2) for value in values]
 
 
 def _camera(pose: CameraPose) -> dict[str, Any]:

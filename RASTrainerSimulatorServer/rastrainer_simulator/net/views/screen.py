@@ -113,16 +113,33 @@ class ScreenMessage:
 
 @dataclasses.dataclass(frozen=True)
 class ErrorArrow:
-    """The error of one touch, drawn in the scene in the color of its tone.
+    """The error of one touch, or a line of a procedure, drawn in the scene in its tone's color.
 
     Attributes:
-        begin, end: (x, y, z) in World, m; drawn longer than it is.
-        tone: how large the error is.
+        begin, end: (x, y, z) in World, m, with a ball at the end; equal for the ball alone. Errors
+            of touches are drawn longer than they are.
+        tone: how large the error is, or which line it is.
     """
 
     begin: tuple[float, float, float]
     end: tuple[float, float, float]
     tone: Tone
+
+
+@dataclasses.dataclass(frozen=True)
+class DepthRuler:
+    """A scale along the axis of the locked guide: distances from its tip, mm, as planned.
+
+    Attributes:
+        entry: of the planned entry.
+        outer, inner: of the tables of the skull; None where the line does not meet them.
+        target: of the planned target.
+    """
+
+    entry: float
+    outer: float | None
+    inner: float | None
+    target: float
 
 
 @dataclasses.dataclass(frozen=True)
@@ -148,6 +165,8 @@ class Screen:
             is shown again.
         has_arrow: whether a view shows an arrow toward a next point that is out of sight.
         errors: arrows that are drawn in the scene.
+        is_head_clear: whether the skin is drawn so that what is within the head is seen.
+        ruler: while a drill or an instrument is in the guide; else None.
     """
 
     menu: Menu | None = None
@@ -159,6 +178,8 @@ class Screen:
     is_stepped: bool = False
     has_arrow: bool = False
     errors: tuple[ErrorArrow, ...] = ()
+    is_head_clear: bool = False
+    ruler: DepthRuler | None = None
 
 
 def focused_picture(menu: Menu | None) -> str:

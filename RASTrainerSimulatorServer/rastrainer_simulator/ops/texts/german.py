@@ -168,19 +168,19 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "RegisterAgain.",
         "not rigid": "UseRegistration braucht eine starre Transformation: WorldToHead, Zeile für "
         "Zeile, in mm.",
-        "off the head": "Die Achse der Führung trifft den Kopf nicht: Richte sie vor LockGuide auf "
-        "den Kopf.",
+        "off the head": "Die Achse der Führung trifft den Kopf nicht: Richte sie auf den Kopf, "
+        "bevor du sie arretierst.",
         "too far to lock": "Die Spitze der Führung ist entlang ihrer Achse {distance:.0f} mm von "
-        "der Haut entfernt: LockGuide braucht höchstens {limit:.0f} mm.",
+        "der Haut entfernt: Arretiere sie im Abstand von höchstens {limit:.0f} mm.",
         "no self-alignment": "In dieser Einstellung richtet der Roboter die Führung nicht selbst "
         "aus: Bringe sie von Hand auf die Linie.",
         "line out of reach": "Der Roboter kann die Führung auf dieser Linie im Abstand von "
         "{stand_off:g} mm nicht halten: Wähle einen anderen Abstand oder bewege sie von Hand.",
-        "bone is cut": "Der Bohrer hat Knochen abgetragen: Das Loch bleibt, wo es ist. Feed für "
-        "den Bohrer, dann StartInsertion.",
-        "nothing drilled": "Noch ist nichts gebohrt: Vor StartInsertion kommt Feed für den Bohrer.",
-        "still in the guide": "Das Instrument ist noch in der Führung: Vor ReleaseInstrument kommt "
-        "Feed.",
+        "bone is cut": "Der Bohrer hat Knochen abgetragen: Das Loch bleibt, wo es ist. Bohre "
+        "weiter, dann führe das Instrument ein.",
+        "nothing drilled": "Noch ist nichts gebohrt: Bohre, bevor du das Instrument einführst.",
+        "still in the guide": "Das Instrument ist noch in der Führung: Schiebe es vor, bevor du es "
+        "löst.",
         # Touches that do not count.
         "too far": "Zu weit von Punkt {point}: Eine Berührung zählt bis {radius:g} mm.",
         "above the skin": "{height:.1f} mm über der Haut: Senke die Spitze auf Punkt {point}.",
@@ -329,6 +329,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "Bestehen, {mark:.0f}.",
         "experiment.trend in study": "Deine Punktzahlen in diesem Modus.",
         "experiment.scores": "Punktzahlen, die älteste zuerst: {scores}.",
+        "experiment.procedure": "Nach den Berührungen",
+        "experiment.procedure help": "Was auf die Registrierung folgt: nichts, oder eine Prozedur, "
+        "in der nach ihr ein Instrument gesetzt wird. Der Probelauf hat keine.",
+        "experiment.touches alone": "Nichts: nur Berührungen",
         "experiment.scenario": "Kopf",
         "experiment.answer": "Den Fragebogen beantworten",
         "questionnaire.text": "{trainee}, beantworte jede Zeile: {lowest} bedeutet {low}, "
@@ -422,6 +426,53 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "result.again": "Noch einmal: {task}",
         "result.replay": "Versuch noch einmal zeigen",
         "result.errors": "Fehler am Kopf zeigen",
+        "result.procedure": "Fehler der Prozedur",
+        "procedure.title.verifying": "Registrierung prüfen",
+        "procedure.title.aligning": "Führung ausrichten",
+        "procedure.title.drilling": "Bohren",
+        "procedure.title.inserting": "Instrument einführen",
+        "procedure.accept": "Registrierung annehmen",
+        "procedure.accept help": "Von da an zeigt sie den Plan.",
+        "procedure.again": "Neu registrieren",
+        "procedure.again help": "Berühre alle fünfzehn Punkte noch einmal.",
+        "procedure.waits": "Die Punkte werden noch registriert.",
+        "procedure.lock": "Führung arretieren",
+        "procedure.lock help": "Von da an steht der Arm, und der Bohrer ist in der Führung.",
+        "procedure.align": "Führung vom Roboter ausrichten lassen",
+        "procedure.align help": "Er bringt sie auf die geplante Linie, wie deine Registrierung "
+        "sie zeigt. Ein Stick hält ihn an.",
+        "procedure.insert": "Instrument einführen",
+        "procedure.insert help": "Der Bohrer wird herausgezogen; das Instrument beginnt an der "
+        "Spitze der Führung.",
+        "procedure.retract": "Bohrer zurückziehen und neu ausrichten",
+        "procedure.retract help": "Möglich, bis der Bohrer Knochen abgetragen hat.",
+        "procedure.release": "Instrument lösen",
+        "procedure.release help": "Es bleibt, wo es ist; dann folgt die nächste Linie oder die "
+        "Punktzahl.",
+        "procedure.work": "Zurück an die Arbeit",
+        "procedure-errors.title": "Fehler: {name}",
+        "procedure-errors.text": "Gegen die Wahrheit. In Klammern: Anteil der Registrierung / "
+        "Anteil der Hand. Diese Längen addieren sich nicht: Beide können sich aufheben.",
+        "procedure-errors.trajectory": "Linie",
+        "procedure-errors.lines": "Linien im Kopf zeigen",
+        "procedure-errors.back": "Zurück",
+        "procedure-errors.score": "Punktzahl der Prozedur",
+        "procedure-errors.rms": "Fehler am Zielpunkt (RMS)",
+        "procedure-errors.target": "Fehler am Zielpunkt",
+        "procedure-errors.entry": "Fehler am Eintrittspunkt",
+        "procedure-errors.radial": "Radialer Fehler",
+        "procedure-errors.depth": "Tiefenfehler",
+        "procedure-errors.angle": "Winkelabweichung",
+        "procedure-errors.plunge": "Durchbruchtiefe",
+        "procedure-errors.touches": "Punktzahl der Berührungen",
+        "procedure-errors.split mm": "{error:.2f} mm ({registration:.2f} / {hand:.2f})",
+        "procedure-errors.split deg": "{error:.1f}° ({registration:.1f} / {hand:.1f})",
+        "procedure-errors.no inner table": "neben der Innentafel",
+        "procedure-errors.kept": "{distance:.1f} mm entfernt",
+        "procedure-errors.hit": "getroffen",
+        "procedure-lines.title": "Grün: der Plan. Gelb: der Plan nach deiner Registrierung. Blau: "
+        "was du gesetzt hast.",
+        "procedure-lines.back": "Zurück",
         "errors.title": "Dein Fehler an jedem Punkt, {longer:.0f}-mal so lang: grün bis "
         "{good:.0f} mm, rot ab {poor:.0f} mm",
         "errors.back": "Zurück",
@@ -514,6 +565,11 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.touch": "Eine Berührung zählt",
         "settings.touch help": "Nur auf der Haut oder überall im Umkreis von 10 mm um den Punkt, "
         "wie in der veröffentlichten Studie. Die Aufzeichnung hält fest, was galt.",
+        "settings.self_alignment": "Führung vom Roboter ausgerichtet",
+        "settings.self_alignment help": "Ob der Roboter die Führung einer Prozedur selbst auf die "
+        "geplante Linie bringen darf, wie es klinische Roboter tun.",
+        "settings.self_alignment.yes": "Auf Wunsch",
+        "settings.self_alignment.no": "Nie",
         "settings.touch.on skin": "Auf der Haut",
         "settings.touch.within radius": "Im Umkreis von 10 mm",
         "settings.view": "Beste Ansicht des nächsten Punkts",
@@ -700,6 +756,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "warning.obstacle.links": "Der Arm ist am Kopf: Komm von einer anderen Seite.",
         "warning.obstacle.self": "Der Arm ist an sich selbst: Nimm einen anderen Weg.",
         "warning.obstacle.table": "Der Arm ist am Tisch: Komm von oben.",
+        "warning.nobody registers": "Hier registriert niemand die Punkte: Verbinde 3D Slicer.",
+        "felt.bone": "Der Bohrer ist im Knochen.",
+        "felt.through": "Der Bohrer ist durch den Knochen: Halte an.",
+        "felt.blocked": "Das Instrument steht auf Knochen, der nicht durchbohrt ist.",
         "warning.slicer": "Die Verbindung zu 3D Slicer ist verloren. Mach weiter: Alles wird hier "
         "aufgezeichnet und später bewertet.",
         "warning.unplugged": "Das Gamepad {name} ist ausgesteckt: Der Roboter steht still. Steck "
@@ -718,6 +778,17 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "window.refused": "Es sind so viele Ansichten offen wie möglich: Schließ eine.",
         "window.pairing": "Browser oder Headset koppeln: Code {code} auf {addresses}",
         "status.points": "{kept} von {count} Punkten",
+        "status.line": "Linie {number} von {count}",
+        "status.checkpoint": "{name}: {error:.1f} mm daneben",
+        "status.entry": "Eintritt: {distance:.1f} mm neben der Achse",
+        "status.angle": "Winkel: {angle:.1f}°",
+        "status.stand off": "Abstand: {distance:.0f} mm",
+        "status.to inner": "{left:.1f} mm bis zur Innentafel",
+        "status.past inner": "{past:.1f} mm hinter der Innentafel",
+        "status.to target": "{left:.1f} mm bis zum Ziel",
+        "status.past target": "{past:.1f} mm hinter dem Ziel",
+        "panel.mm": "{value:.1f} mm",
+        "panel.deg": "{value:.1f}°",
         "status.left": "noch {time}",
         "status.toward": "Punkt {point}: {distance} mm {direction}",
         "way.left": "links",
@@ -744,6 +815,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "hint.seek": "5 s zurück, vor",
         "hint.worst": "Schlechteste",
         "hint.end": "Beenden",
+        "hint.checkpoint": "Kontrollpunkt berühren",
+        "hint.next step": "Weiter",
+        "hint.feed": "Vor, zurück",
+        "hint.turn": "Führung drehen",
         "hint.result": "Ergebnis",
         "replay.title": "{task} von {trainee}, noch einmal gezeigt",
         "replay.worst": "Punkt {point}, die schlechteste Berührung, in halber Geschwindigkeit",

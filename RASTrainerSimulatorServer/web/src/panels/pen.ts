@@ -64,6 +64,25 @@ export class Pen {
     this.context.stroke();
   }
 
+  /** Draw a circle, or fill it where no line width is told. */
+  circle(x: number, y: number, radius: number, color: string, lineWidth = 0): void {
+    this.context.beginPath();
+    this.context.arc(x, y, radius, 0, 2 * Math.PI);
+    this.context.strokeStyle = this.context.fillStyle = color;
+    this.context.lineWidth = lineWidth;
+    if (lineWidth > 0) this.context.stroke();
+    else this.context.fill();
+  }
+
+  stroke(x: number, y: number, toX: number, toY: number, color: string, lineWidth: number): void {
+    this.context.strokeStyle = color;
+    this.context.lineWidth = lineWidth;
+    this.context.beginPath();
+    this.context.moveTo(x, y);
+    this.context.lineTo(toX, toY);
+    this.context.stroke();
+  }
+
   /** Paint a picture in the middle of a box, as large as fits. */
   picture(image: HTMLImageElement, x: number, y: number, width: number, height: number): void {
     const factor = Math.min(width / image.naturalWidth, height / image.naturalHeight);

@@ -2,8 +2,9 @@
 
 import { Group, Vector3 } from "three";
 
-import type { ControlNews, Menu, Message, Screen } from "../messages";
+import type { Aim, ControlNews, DepthRuler, Menu, Message, Screen } from "../messages";
 import { Board, type Region } from "../panels/board";
+import { GUIDING_HEIGHT, GUIDING_WIDTH, guidingContent, paintGuiding } from "../panels/guiding_painter";
 import { paintMenu } from "../panels/menu_painter";
 import { controlsPicture, inputsOf, PICTURE_HEIGHT, PICTURE_WIDTH } from "../panels/controls_picture";
 import { BANNERS, COLORS, type Pen } from "../panels/pen";
@@ -29,6 +30,8 @@ const PICTURE: Seat = { aside: -0.4, above: 0, away: 0.55 };
 const WORK: Seat = { aside: 0.6, above: 0.05, away: 1.1 };
 /** Like a picture that lies on the table beside the head: the arm is seldom before it. */
 const CLOSE_UP: Seat = { aside: 0.72, above: -0.5, away: 0.85 };
+/** Between the head and what is read at work, near enough to be seen beside the guide. */
+const GUIDING: Seat = { aside: 0.28, above: 0.3, away: 0.85 };
 /** Below a menu. While the arm is driven, so far above the head's top that no point of it is covered. */
 const WARNING_AT_MENU: Seat = { aside: 0, above: -0.54, away: 0.55 };
 const WARNING_AWAY = 1;
@@ -40,6 +43,7 @@ const WIDE = 0.86;
 const PICTURE_WIDE = 0.8;
 const CLOSE_UP_WIDE = 0.72;
 const WARNING_WIDE = 0.66;
+const GUIDING_WIDE = 0.34;
 /** Order of drawing; what points at a board comes after it. */
 const ON_TOP = 10;
 const BUTTON = { size: 32, color: COLORS.text, isBold: true };
@@ -62,6 +66,7 @@ export class Boards {
   /** What is drawn on `picture`; it is there a moment later than its address. */
   private readonly drawing = new Image();
   private readonly warning = new Board(1024, 256, WARNING_WIDE);
+  private readonly guiding = new Board(GUIDING_WIDTH, GUIDING_HEIGHT, GUIDING_WIDE);
   private screen: Screen | null = null;
   private seating: Seating | null = null;
   private control: ControlNews | null = null;
@@ -70,10 +75,12 @@ export class Boards {
   private mayGrab = true;
 
   constructor() {
-    const boards = [this.menu, this.work, this.actions, this.picture, this.warning];
+    const boards = [this.menu, this.work, this.actions, this.picture, this.warning, this.guiding];
+    this.guiding.mesh.visible = false;
     this.room.add(...boards.map((board) => board.mesh), this.closeUp.mesh);
     this.drawing.onload = () => this.paint();
-    for (const [order, board] of [this.menu, this.actions, this.picture, this.warning].entries()) {
+    const before = [this.menu, this.actions, this.picture, this.warning, this.guiding];
+    for (const [order, board] of before.entries()) {
       // The arm may stand before them.
       board.mesh.material.depthTest = false;
       board.mesh.renderOrder = ON_TOP + order;
@@ -102,7 +109,7 @@ export class Boards {
     const { eyes, focus } = seating;
     const top = Math.atan2(focus.y + HEAD_ABOVE_M - eyes.y, Math.hypot(focus.x - eyes.x, focus.z - eyes.z));
     const overHead = { aside: 0, above: top + WARNING_OVER_HEAD, away: WARNING_AWAY };
-    const { menu, actions, picture, work, closeUp, warning } = this;
+    const { menu, actions, picture, work, closeUp, warning, guiding } = this;
     const side = sideWithoutRobot(seating);
     const seats = [
       [menu, { ...MENU, aside }],
@@ -110,6 +117,7 @@ export class Boards {
       [picture, PICTURE],
       [work, { ...WORK, aside: side * WORK.aside }],
       [closeUp, { ...CLOSE_UP, aside: side * CLOSE_UP.aside }],
+      [guiding, { ...GUIDING, aside: side * GUIDING.aside }],
       [warning, this.isMenu ? WARNING_AT_MENU : overHead],
     ] as const;
     for (const [{ mesh }, seat] of seats) {
@@ -130,6 +138,13 @@ export class Boards {
   showControl(control: ControlNews): void {
     this.control = control;
     this.paint();
+  }
+
+  /** Show the bull's-eye or the depth ruler; nothing where there is neither. */
+  showGuiding(aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
+    const { guiding } = this;
+    guiding.mesh.visible = aim !== null || ruler !== null;
+    if (guiding.mesh.visible) guiding.show(guidingContent(aim, ruler, depth), (pen) => paintGuiding(pen, aim, ruler, depth));
   }
 
   setNotice(text: string): void {
@@ -153,7 +168,7 @@ export class Boards {
   }
 
   dispose(): void {
-    for (const board of [this.menu, this.work, this.actions, this.picture, this.warning]) board.dispose();
+    for (const board of [this.menu, this.work, this.actions, this.picture, this.warning, this.guiding]) board.dispose();
     this.closeUp.dispose();
     this.room.removeFromParent();
   }

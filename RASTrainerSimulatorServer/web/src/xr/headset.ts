@@ -4,7 +4,7 @@ import { PerspectiveCamera, Vector3 } from "three";
 
 import type { Connection } from "../connection";
 import type { FrameCount } from "../frame_count";
-import type { ControlNews, EventNews, Hello, SceneNews, Screen } from "../messages";
+import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen } from "../messages";
 import type { SceneModel } from "../scene_model";
 import type { Sounds } from "../sounds";
 import type { Stage } from "../stage";
@@ -92,6 +92,10 @@ export class Headset {
 
   showControl(control: ControlNews): void {
     this.boards.showControl(control);
+  }
+
+  showGuiding(aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
+    this.boards.showGuiding(aim, ruler, depth);
   }
 
   setNotice(text: string): void {

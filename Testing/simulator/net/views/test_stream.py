@@ -12,7 +12,7 @@ from rastrainer_simulator.net.views.screen import Hint, Menu, MenuItem, Screen, 
 from Testing.domain.scenario.made_up_scenario import png
 from Testing.simulator.net.views.served import request
 
-BODIES = [*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand"]
+BODIES = [*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand", "plan"]
 SCREEN = Screen(
     menu=Menu("start", "RASTrainer", items=(MenuItem("go", "Begin"),), focus="go"),
     instruction=ScreenMessage("Touch 3", Tone.GOOD),
@@ -44,6 +44,7 @@ def test_poses_are_where_the_simulation_has_them(served, connect, control_loop):
     state = view.next("state")
     now = control_loop.latest
     matrices = [*now.link_to_world, now.tool_tip_to_world, now.head_to_world, now.stand_to_world]
+    matrices.append(np.eye(4))
     assert len(state["poses"]) == len(BODIES)
     for (x, y, z, qx, qy, qz, qw), expected in zip(state["poses"], matrices, strict=True):
         told = quaternion_matrix([qw, qx, qy, qz])

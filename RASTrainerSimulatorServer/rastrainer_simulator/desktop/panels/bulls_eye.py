@@ -1,0 +1,115 @@
+"""The bull's-eye: the planned line as it is seen along the guide's axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rastrainer_simulator.desktop.panels import theme
+from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.ops.texts.texts import Texts
+
+WIDTH, HEIGHT = 360, 420
+RADIUS = 156
+RINGS_MM = (1.0, 5.0, 20.0)
+FARTHEST_MM, NEAR_MM = 60.0, 0.6
+"""What the outer edge stands for, and where the scale turns from even to logarithmic."""
+GOOD_MM, GOOD_DEG = 0.5, 0.5
+"""So near, a hand is on the line."""
+DOT, RING = 9, 15
+
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class BullsEye:
+    """What is drawn: right and up of the guide's axis, mm.
+
+    Attributes:
+        entry, target: of the planned line.
+        entry_mm: distance of the entry from the axis.
+        angle_deg: between the line and the axis.
+        figures: both, as they are written.
+    """
+
+    entry: Place
+    target: Place
+    entry_mm: float
+    angle_deg: float
+    figures: tuple[str, str]
+
+    @property
+    def is_good(self) -> bool:
+        """Whether the guide is on the line, as far as a hand can bring it."""
+        return self.entry_mm <= GOOD_MM and self.angle_deg <= GOOD_DEG
+
+
+def bulls_eye(procedure: Mapping[str, Any] | None, texts: Texts) -> BullsEye | None:
+    """Return what a state's procedure says; None while no guide is aligned."""
+    aim = None if procedure is None else procedure["aim"]
+    if aim is None:
+        return None
+    entry_mm, angle_deg = round(aim["entryDistanceMm"], 1), round(aim["angleDeg"], 1)
+    figures = (texts.say("panel.mm", value=entry_mm), texts.say("panel.deg", value=angle_deg))
+    return BullsEye(_place(aim["entryMm"]), _place(aim["targetMm"]), entry_mm, angle_deg, figures)
+
+
+def shown_radius(distance_mm: float) -> float:
+    """Return where a distance is drawn, as a share of the radius: near ones are spread."""
+    share = math.log1p(distance_mm / NEAR_MM) / math.log1p(FARTHEST_MM / NEAR_MM)
+    return min(1.0, share)
+
+
+def paint_bulls_eye(look: BullsEye, brush: Brush) -> np.ndarray:
+    """Return the panel: rings of 1, 5 and 20 mm, a dot for the entry and a ring for the target."""
+    canvas = Canvas(brush.px(WIDTH), brush.px(HEIGHT))
+    whole = Box(0, 0, canvas.width, canvas.height)
+    canvas.box(whole, theme.GLASS, brush.px(theme.RADIUS))
+    middle = canvas.width / 2
+    for ring_mm in (*RINGS_MM, FARTHEST_MM):
+        _circle(canvas, (middle, middle), brush.px(RADIUS) * shown_radius(ring_mm), theme.EDGE, 3)
+    cross = brush.px(RADIUS)
+    for along, across in ((1, 0), (0, 1)):
+        ends = [(middle - s * cross * along, middle - s * cross * across) for s in (1, -1)]
+        canvas.stroke(ends, brush.px(2), theme.EDGE)
+    color = theme.ON_SKIN if look.is_good else theme.TARGET
+    entry, target = (_shown(place, middle, brush) for place in (look.entry, look.target))
+    canvas.stroke([entry, target], brush.px(4), color)
+    _circle(canvas, target, brush.px(RING), color, brush.px(5))
+    dot = brush.px(DOT)
+    canvas.box(Box(round(entry[0]) - dot, round(entry[1]) - dot, 2 * dot, 2 * dot), color, dot)
+    _write(canvas, look, brush)
+    return canvas.pixels()
+
+
+def _place(values: Any) -> Place:
+    right, up = values
+    return round(float(right), 1), round(float(up), 1)
+
+
+def _shown(place: Place, middle: float, brush: Brush) -> tuple[float, float]:
+    distance = math.hypot(*place)
+    if distance == 0.0:
+        return middle, middle
+    far = brush.px(RADIUS) * shown_radius(distance) / distance
+    return middle + far * place[0], middle - far * place[1]
+
+
+def _circle(
+    canvas: Canvas, middle: tuple[float, float], radius: float, color: theme.Color, thickness: int
+) -> None:
+    left, top, wide = (round(v) for v in (middle[0] - radius, middle[1] - radius, 2 * radius))
+    canvas.frame(Box(left, top, wide, wide), color, radius, thickness)
+
+
+def _write(canvas: Canvas, look: BullsEye, brush: Brush) -> None:
+    top = brush.px(WIDTH) + brush.px(theme.STEP) // 2
+    pad = brush.px(theme.PAD)
+    right = canvas.width - pad - brush.width(look.figures[1], theme.HEADING)
+    for text, left in zip(look.figures, (pad, right), strict=True):
+        brush.write(canvas, text, theme.HEADING, theme.TEXT, left, top)

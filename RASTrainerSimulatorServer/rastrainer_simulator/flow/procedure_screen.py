@@ -1,0 +1,202 @@
+"""What the trainee reads from the registration to the placed instrument, and the controls."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.flow.arm_screen import ArmScreen
+from rastrainer_simulator.flow.pages.procedure import ProcedurePage
+from rastrainer_simulator.flow.session.plan_marks import checkpoint_marks, depth_ruler, plan_marks
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.trial_screen import TrialScreen
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Hint, ScreenMessage, Tone
+from rastrainer_simulator.procedure_state import ProcedureState
+from rastrainer_simulator.state import Event, EventKind
+from rastrainer_simulator.training.feed import FeedLayer
+
+FED = (Phase.DRILLING, Phase.INSERTING)
+_TURN = (
+    ControlName.TURN_UP,
+    ControlName.TURN_LEFT,
+    ControlName.TURN_DOWN,
+    ControlName.TURN_RIGHT,
+)
+_FELT: Mapping[str, Tone] = {
+    FeedLayer.BONE.value: Tone.PLAIN,
+    FeedLayer.THROUGH.value: Tone.WARNING,
+    FeedLayer.BLOCKED.value: Tone.ERROR,
+}
+"""What a hand feels of the drill or the instrument, and how it is said."""
+
+
+class ProcedureScreen(ArmScreen):
+    """The instructions, the figures and the controls of the phases after the touches."""
+
+    def __init__(self, session: TrainingSession, trial_screen: TrialScreen) -> None:
+        """`trial_screen` is that of the touches; the trial's menu is its own."""
+        super().__init__(session)
+        self._trial_screen = trial_screen
+        self._was_refused = False
+        self._layer = ""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the trial is in one of its phases, or paused in one."""
+        training = self._session.training
+        stage = None if training.procedure is None else training.procedure.stage
+        return training.phase in PROCEDURE_PHASES or (
+            training.phase is Phase.PAUSED and stage in PROCEDURE_PHASES
+        )
+
+    def take(self, event: Event) -> None:
+        """Take note of what happened."""
+        super().take(event)
+        if event.kind in (EventKind.CHECKPOINT, EventKind.REJECTED, EventKind.PHASE):
+            self._was_refused = event.kind is EventKind.REJECTED
+        if event.kind is EventKind.FEED:
+            self._layer = event.data["layer"]
+        elif event.kind is EventKind.PHASE:
+            self._layer = ""
+
+    def pressed(self, control: ControlName) -> None:
+        """Do what a control is for: Undo opens the phase's menu, and so does Touch but at first."""
+        session = self._session
+        is_verifying = session.training.phase is Phase.VERIFYING
+        if control is ControlName.CAMERA:
+            self._change_camera()
+        elif control is ControlName.TOUCH and is_verifying:
+            session.do(CommandName.CAPTURE)
+        elif control in (ControlName.TOUCH, ControlName.UNDO):
+            session.pages.open(ProcedurePage(session))
+        else:
+            self._trial_screen.pressed(control)
+
+    def open_menu(self) -> None:
+        """Open the trial's menu, which pauses it."""
+        self._trial_screen.open_menu()
+
+    def instruction(self) -> ScreenMessage:
+        """Return what to do now."""
+        session = self._session
+        text = session.texts.again(session.training.instruction)
+        return ScreenMessage(text, Tone.WARNING if self._was_refused else Tone.GOOD)
+
+    def warnings(self) -> tuple[ScreenMessage, ...]:
+        """Return what is wrong, and what is felt of the drill or the instrument."""
+        session, say = self._session, self._session.texts.say
+        training = session.training
+        if training.phase is Phase.VERIFYING and self._procedure.registration is None:
+            return self._why_not_registered()
+        if training.phase not in FED:
+            return super().warnings()
+        if self._layer not in _FELT:
+            return ()
+        return (ScreenMessage(say(f"felt.{self._layer}"), _FELT[self._layer]),)
+
+    def status(self) -> tuple[str, ...]:
+        """Return the short facts at the edge."""
+        session, say = self._session, self._session.texts.say
+        procedure = self._procedure
+        facts = [session.task_title(session.training.task)]
+        if procedure.present is not None:
+            number, count = procedure.trajectory + 1, len(procedure.trajectories)
+            facts.append(say("status.line", number=number, count=count))
+        if procedure.checkpoints and procedure.stage is Phase.VERIFYING:
+            last = procedure.checkpoints[-1]
+            error_mm = MM_PER_M * last.error
+            facts.append(say("status.checkpoint", name=last.name, error=error_mm))
+        facts.append(session.duration(session.state.elapsed))
+        return (*facts, *self._figures())
+
+    def hints(self) -> tuple[Hint, ...]:
+        """Return the controls that matter."""
+        session, say = self._session, self._session.texts.say
+        phase = session.training.phase
+        names = {
+            ControlName.TOUCH: "hint.checkpoint" if phase is Phase.VERIFYING else "hint.next step",
+            ControlName.UNDO: "hint.next step",
+            ControlName.FINE: "hint.fine",
+            ControlName.CAMERA: "hint.front",
+            ControlName.MENU: "hint.menu",
+        }
+        if phase is not Phase.VERIFYING:
+            del names[ControlName.UNDO]
+        return (
+            *self._stick_hints(phase),
+            *(Hint(session.label(control), say(key)) for control, key in names.items()),
+        )
+
+    def errors(self) -> tuple[ErrorArrow, ...]:
+        """Return the plan by the registration, and checkpoints as marks on the skin."""
+        session, procedure = self._session, self._procedure
+        if procedure.stage is Phase.VERIFYING:
+            checkpoints = session.scenario.procedure(procedure.name).checkpoints
+            places = {each.name: session.truly_in_world(each.position) for each in checkpoints}
+            return checkpoint_marks(procedure, places)
+        return plan_marks(procedure, session.planned_bone)
+
+    @property
+    def is_head_clear(self) -> bool:
+        """Whether the trainee looks into the head: from the alignment on."""
+        return self._procedure.present is not None
+
+    def ruler(self) -> DepthRuler | None:
+        """Return the scale of depths while something is fed."""
+        procedure = self._procedure
+        if procedure.stage not in FED or procedure.present is None:
+            return None
+        bone = self._session.planned_bone
+        number = procedure.trajectory
+        return depth_ruler(procedure.present, bone[number] if number < len(bone) else None)
+
+    @property
+    def _procedure(self) -> ProcedureState:
+        procedure = self._session.training.procedure
+        assert procedure is not None, "the screen is of a procedure"
+        return procedure
+
+    def _figures(self) -> tuple[str, ...]:
+        """Return where the guide or what is in it stands, by the registration."""
+        state, say = self._session.state, self._session.texts.say
+        alignment, ruler = state.alignment, self.ruler()
+        if ruler is not None:
+            depth = MM_PER_M * state.feed
+            is_drill = self._procedure.stage is Phase.DRILLING
+            goal = ruler.inner if is_drill and ruler.inner is not None else ruler.target
+            to = "inner" if is_drill and ruler.inner is not None else "target"
+            if depth > goal:
+                return (say(f"status.past {to}", past=depth - goal),)
+            return (say(f"status.to {to}", left=goal - depth),)
+        if alignment is None:
+            return ()
+        return (
+            say("status.entry", distance=MM_PER_M * alignment.entry_distance),
+            say("status.angle", angle=math.degrees(alignment.angle)),
+            say("status.stand off", distance=MM_PER_M * alignment.stand_off),
+        )
+
+    def _stick_hints(self, phase: Phase) -> tuple[Hint, ...]:
+        """Return what the sticks do; in a headset they are drawn in the hands."""
+        session, say = self._session, self._session.texts.say
+        up_and_down = session.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
+        if phase in FED:
+            return (Hint(up_and_down, say("hint.feed")),)
+        if session.is_typing_possible((SourceKind.XR,)):
+            return ()
+        turn = (Hint(session.stick_label(_TURN), say("hint.turn")),)
+        return (*self._movement_hints(), *(turn if phase is Phase.ALIGNING else ()))
+
+    def _why_not_registered(self) -> tuple[ScreenMessage, ...]:
+        """Return why the touches are not registered yet, if that will not change by itself."""
+        session, say = self._session, self._session.texts.say
+        own = session.own_score
+        if own is not None and own.problem:
+            return (ScreenMessage(say("waiting.problem", reason=own.problem), Tone.ERROR),)
+        if own is None and not session.is_slicer_connected():
+            return (ScreenMessage(say("warning.nobody registers"), Tone.WARNING),)
+        return ()

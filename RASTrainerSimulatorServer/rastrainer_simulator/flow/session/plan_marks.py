@@ -1,0 +1,113 @@
+"""The plan of a procedure as it is drawn: by the trainee's own registration, until the score.
+
+Checkpoints are marks on the patient's skin, as fiducials are: they are drawn where they truly are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rastrainer.procedure.geometry import BoneAhead
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Tone
+from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
+from rastrainer_simulator.vectors import Vector, add, dot, scale, subtract
+
+BEFORE_ENTRY_M = 0.05
+"""So far outside of the head the line at hand begins: the guide is brought onto it there."""
+PLANNED, SHOWN, PLACED = Tone.GOOD, Tone.WARNING, Tone.PLAIN
+"""Colors of the lines after the score: of the plan, as it was shown, and of what was placed."""
+
+
+def plan_marks(
+    procedure: ProcedureState, bone: Sequence[BoneAhead | None]
+) -> tuple[ErrorArrow, ...]:
+    """Return the lines of a plan as they are drawn, by the registration; () before it is accepted.
+
+    Args:
+        procedure: how far it is.
+        bone: where its lines go through bone.
+    """
+    return () if procedure.present is None else tuple(_line_marks(procedure, bone))
+
+
+def checkpoint_marks(
+    procedure: ProcedureState, places: Mapping[str, Vector]
+) -> tuple[ErrorArrow, ...]:
+    """Return the checkpoints as marks on the skin; those touched by this registration are green.
+
+    Args:
+        procedure: how far it is.
+        places: of the checkpoints by name, World, m.
+    """
+    touched = {each.name for each in procedure.checkpoints}
+    return tuple(
+        ball(place, Tone.GOOD if name in touched else Tone.WARNING)
+        for name, place in places.items()
+    )
+
+
+def depth_ruler(trajectory: TrajectoryState, bone: BoneAhead | None) -> DepthRuler | None:
+    """Return the scale along the axis of a locked guide; None before it is locked.
+
+    Args:
+        trajectory: at hand.
+        bone: on its planned line.
+    """
+    guide, line = trajectory.guide, trajectory.line
+    if guide is None:
+        return None
+
+    def along(point: Vector) -> float:
+        return MM_PER_M * dot(subtract(point, guide.tip), guide.direction)
+
+    inner = None if bone is None else bone.inner_mm
+    return DepthRuler(
+        along(line.entry),
+        None if bone is None else along(_on(line, bone.outer_mm)),
+        None if inner is None else along(_on(line, inner)),
+        along(line.target),
+    )
+
+
+def placed_line(trajectory: TrajectoryState) -> PlannedLine | None:
+    """Return the line from the guide's tip to the tip of the placed instrument; None before."""
+    guide, depth = trajectory.guide, trajectory.instrument_depth
+    if guide is None or depth is None:
+        return None
+    end = add(guide.tip, scale(guide.direction, depth))
+    return PlannedLine(trajectory.line.name, guide.tip, end)
+
+
+def drawn(line: PlannedLine, tone: Tone, before_m: float = 0.0) -> ErrorArrow:
+    """Return a line as it is drawn, from so far before its entry to its target."""
+    begin = add(line.entry, scale(line.direction, -before_m))
+    return ErrorArrow(begin, line.target, tone)
+
+
+def ball(place: Vector, tone: Tone) -> ErrorArrow:
+    """Return a ball in the scene."""
+    return ErrorArrow(place, place, tone)
+
+
+def _line_marks(
+    procedure: ProcedureState, bone: Sequence[BoneAhead | None]
+) -> Iterator[ErrorArrow]:
+    """Yield the lines; that at hand with its entry and the tables of the skull on it."""
+    for number, trajectory in enumerate(procedure.trajectories):
+        line = trajectory.line
+        if number != procedure.trajectory:
+            yield drawn(line, Tone.PLAIN)
+            continue
+        yield drawn(line, PLANNED, BEFORE_ENTRY_M)
+        yield ball(line.entry, PLANNED)
+        tables = bone[number] if number < len(bone) else None
+        depths = () if tables is None else (tables.outer_mm, tables.inner_mm)
+        for depth_mm in depths:
+            if depth_mm is not None:
+                yield ball(_on(line, depth_mm), SHOWN)
+
+
+def _on(line: PlannedLine, depth_mm: float) -> Vector:
+    """Return the point of a line that is so deep below its entry."""
+    return add(line.entry, scale(line.direction, depth_mm / MM_PER_M))

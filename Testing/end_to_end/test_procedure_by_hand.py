@@ -1,0 +1,151 @@
+"""A biopsy from the menu to the result, by gamepad alone and by the window's keyboard alone.
+
+No Slicer is there: the simulator registers the points and scores the procedure itself.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer.journal.journal_file import read_journal
+from Testing.end_to_end.hands import GamepadHands, KeyHands
+from Testing.end_to_end.lab import Lab
+from Testing.end_to_end.procedure_trainee import ALIGNED_DEG, ALIGNED_MM, ProcedureTrainee
+from Testing.end_to_end.test_gamepad_session import type_by_gamepad
+from Testing.end_to_end.test_keyboard_session import SMALL
+
+# Fifteen touches and a whole procedure by hand take minutes.
+pytestmark = pytest.mark.soak
+
+SPEED = {"gamepad": "3", "keyboard": "1.5"}
+TRAINEE = "P7"
+TITLE = "Biopsy of a frontal lesion"
+PAST_INNER_MM = 1.0
+D_PAD_FROM = 0.3
+TURNS = (("KeyJ", "KeyL"), ("KeyK", "KeyI"))
+
+
+class TurningGamepad(GamepadHands):
+    """Turns the guide by the right stick to the sides, by the D-pad up and down."""
+
+    def turn(self, right: float, up: float, fine: bool) -> None:
+        self._simulator.move(rightx=right, righttrigger=1.0 if fine else 0.0)
+        for button, sign in (("dpup", 1.0), ("dpdown", -1.0)):
+            self._simulator.press(button, sign * up > D_PAD_FROM)
+
+
+class TurningKeys(KeyHands):
+    """Turns the guide by the keys J, L, K and I."""
+
+    def turn(self, right: float, up: float, fine: bool) -> None:
+        wanted = {"ShiftLeft"} if fine else set()
+        longest = max(abs(right), abs(up))
+        for value, (below, above) in zip((right, up), TURNS, strict=True):
+            if abs(value) > 0.5 * longest > 0.0:
+                wanted.add(above if value > 0.0 else below)
+        for code in sorted(self._held - wanted):
+            self.keyboard.hold(code, False)
+        for code in sorted(wanted - self._held):
+            self.keyboard.hold(code, True)
+        self._held = wanted
+
+
+@pytest.fixture(scope="module", params=["gamepad", "keyboard"])
+def operated(tmp_path_factory, request) -> dict:
+    """Carry the biopsy out; return what came of it."""
+    device = request.param
+    folder = tmp_path_factory.mktemp(device)
+    options = () if device == "gamepad" else ("--no-gamepad",)
+    with Lab(folder, "--speed", SPEED[device], "--seed", "11", *options) as lab:
+        if device == "keyboard":
+            lab.open_window("window", *SMALL)
+        hands = TurningGamepad(lab.simulator) if device == "gamepad" else TurningKeys(lab.keyboard)
+        return operate(ProcedureTrainee(lab.view, hands), lab, device)
+
+
+def operate(trainee: ProcedureTrainee, lab: Lab, device: str) -> dict:
+    begin(trainee, device)
+    for number in range(1, 16):
+        trainee.touch(str(number))
+    trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")
+    trainee.until_menu("complete")
+    trainee.choose("register")
+    trainee.until(lambda: "FRE" in trainee.view.screen.instruction.text, "a registration")
+    trainee.touch("checkpoint")
+    seen = {"checked": trainee.view.screen}
+    trainee.next_step("accept", "aligning")
+    trainee.align_by_hand()
+    seen["aligned"] = trainee.procedure["aim"]
+    trainee.next_step("lock", "drilling")
+    trainee.until(lambda: trainee.view.screen.ruler is not None, "the ruler")
+    trainee.feed_to(trainee.ruler.inner + PAST_INNER_MM)
+    trainee.next_step("insert", "inserting")
+    trainee.feed_to(trainee.ruler.target)
+    seen["inserted"] = trainee.procedure, trainee.ruler
+    trainee.next_step("release", "registered")
+    trainee.until_menu("result")
+    seen["result"] = trainee.menu
+    trainee.choose("procedure")
+    trainee.until_menu("procedure-errors")
+    seen["errors"] = trainee.menu
+    trainee.choose("lines")
+    trainee.until(lambda: len(trainee.view.screen.errors) == 3, "the lines")
+    (journal,) = lab.records.glob("*.journal")
+    reading = read_journal(journal)
+    seen["scored"] = reading.of_kind("scored")[-1]["arguments"]["details"]["procedure"]
+    seen["operators"] = {each["operator"] for each in reading.of_kind("input")} - {""}
+    return seen | {"device": device, "events": [each["kind"] for each in lab.view.events]}
+
+
+def begin(trainee: ProcedureTrainee, device: str) -> None:
+    """Choose the biopsy beside Task 1, which is touched first."""
+    trainee.until_menu("start")
+    trainee.choose("train")
+    trainee.until_menu("introduction")
+    trainee.read_on("controls")
+    trainee.choose("next")
+    trainee.until_menu("experiment")
+    if device == "gamepad":
+        type_by_gamepad(trainee, TRAINEE)
+    else:
+        trainee.focus("trainee")
+        trainee.hands.type(TRAINEE)
+    trainee.focus("procedure")
+    while trainee.value("procedure") != TITLE:
+        before = trainee.value("procedure")
+        trainee.press("right", lambda b=before: trainee.value("procedure") != b, "another one")
+    trainee.begin_task("task-1")
+
+
+def test_the_whole_procedure_is_carried_out_by_that_device_alone(operated):
+    assert operated["operators"] == {operated["device"]}
+
+
+def test_a_checkpoint_is_touched_and_its_error_told(operated):
+    texts = operated["checked"].status
+    assert any("mm off" in text for text in texts)
+    assert "checkpoint" in operated["events"]
+
+
+def test_a_hand_brings_the_guide_onto_the_line_by_the_bulls_eye(operated):
+    aim = operated["aligned"]
+    assert aim["entryDistanceMm"] <= ALIGNED_MM
+    assert aim["angleDeg"] <= ALIGNED_DEG
+    (line,) = operated["scored"]["trajectories"]
+    assert line["angleByHandDeg"] <= ALIGNED_DEG + 0.1
+    assert line["radialByHandMm"] <= 3.0
+
+
+def test_the_ruler_brings_drill_and_needle_to_their_depths(operated):
+    procedure, ruler = operated["inserted"]
+    assert procedure["feedMm"] == pytest.approx(ruler.target, abs=1.0)
+    assert {"bone", "through"} <= set(operated["events"])
+    assert "blocked" not in operated["events"]
+    (line,) = operated["scored"]["trajectories"]
+    assert abs(line["depthByHandMm"]) <= 1.5
+
+
+def test_the_simulator_scores_it_and_shows_the_errors(operated):
+    labels = [fact.label for fact in operated["result"].facts]
+    assert labels[:2] == ["Score of the procedure", "Target point error (RMS)"]
+    assert "Target point error" in [fact.label for fact in operated["errors"].facts]

@@ -1,0 +1,344 @@
+"""A procedure by the keyboard alone: what is read, drawn, heard and chosen in its phases."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.protocol import Phase
+from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.procedure_outcome import procedure_outcome
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.procedure_state import Tool
+from Testing.simulator.flow.conftest import Outside
+from Testing.simulator.flow.trainee import Keys, Trainee
+from Testing.simulator.planned_procedures import ENTRIES, TARGETS, procedure_setup
+from Testing.without_tutorial import WITHOUT_TUTORIAL
+
+OFF_MM = (2.0, -1.0, 1.5)
+"""The registration is off by so much, as one by biased touches is."""
+DRILLED_M, MICROMETRE = 0.052, 1e-6
+
+
+class Operation:
+    """The keyboard's trainee, and what was seen after each step."""
+
+    def __init__(self, trainee: Trainee, outside: Outside):
+        self.trainee, self.outside = trainee, outside
+        self.seen: dict = {}
+
+    def keep(self, name: str) -> None:
+        """Keep the screen, and what views receive beside it."""
+        trainee = self.trainee
+        trainee.step(30)
+        shown = trainee.presenter.shown.latest
+        pictures = trainee.presenter.pictures(shown)
+        told = outgoing._procedure(shown, pictures)
+        self.seen[name] = trainee.presenter.screen, told, shown
+
+    def next_step(self, item: str, tool: Tool) -> None:
+        """Choose what leads to the next phase, which brings another tool."""
+        trainee = self.trainee
+        trainee.tap("touch")
+        trainee.until_menu("procedure")
+        self.seen[f"menu {item}"] = trainee.menu
+        trainee.choose(item)
+        self.until_tool(tool)
+
+    def until_tool(self, tool: Tool) -> None:
+        """Wait until the robot holds another tool, and its screen is there."""
+        trainee = self.trainee
+        trainee.until(lambda: trainee.state.tool is tool, tool.value)
+        trainee.step(3)
+
+    def feed(self, to_m: float) -> None:
+        """Hold the key that feeds until the tip is so deep."""
+        trainee = self.trainee
+        trainee.presenter.on_key(1, "KeyF", True, "")
+        trainee.until(lambda: trainee.state.feed >= to_m, f"a depth of {to_m} m")
+        trainee.presenter.on_key(1, "KeyF", False, "")
+        trainee.step(3)
+
+
+@pytest.fixture(scope="module")
+def operation(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("procedure")
+    outside = Outside(folder)
+    outside.has_slicer = True
+    simulation = Simulation(procedure_setup(folder / "scenario"), 3)
+    with ControlLoop(simulation, folder / "records", speed=None) as loop:
+        preferences = Preferences(**{**WITHOUT_TUTORIAL, "order": "any"})
+        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+        trainee = Trainee(loop, presenter, Keys)
+        try:
+            operation = Operation(trainee, outside)
+            perform(operation)
+            yield operation
+        finally:
+            trainee.close()
+            presenter.close()
+
+
+def perform(operation: Operation) -> None:
+    trainee = operation.trainee
+    begin(operation)
+    trainee.tap("touch")
+    operation.keep("verifying")
+    trainee.tap("undo")
+    trainee.until_menu("procedure")
+    trainee.choose("accept")
+    operation.until_tool(Tool.GUIDE)
+    operation.keep("aligning")
+    for number in range(2):
+        trainee.tap("undo")
+        trainee.until_menu("procedure")
+        trainee.choose("align")
+        trainee.until(is_aligned(trainee), "the guide on the line")
+        operation.keep(f"aligned {number}")
+        operation.next_step("lock", Tool.DRILL)
+        if number == 0:
+            retract(operation)
+        operation.feed(DRILLED_M)
+        operation.keep(f"drilled {number}")
+        operation.next_step("insert", Tool.ELECTRODE)
+        target_m = trainee.presenter.screen.ruler.target / MM_PER_M
+        operation.feed(target_m - 0.001)
+        operation.keep(f"inserted {number}")
+        operation.next_step("release", (Tool.GUIDE, Tool.POINTER)[number])
+    score(operation)
+
+
+def begin(operation: Operation) -> None:
+    """Choose a procedure and a task, touch all points where the tip is, and register them."""
+    trainee = operation.trainee
+    trainee.until_menu("start")
+    trainee.choose("train")
+    trainee.until_menu("introduction")
+    while trainee.menu.name != "controls":
+        trainee.tap("accept")
+    trainee.choose("next")
+    trainee.until_menu("experiment")
+    trainee.focus("trainee")
+    trainee.hands.type("P07")
+    trainee.focus("procedure")
+    operation.seen["procedures"] = [trainee.item("procedure").value]
+    for _ in range(3):
+        trainee.tap("right")
+        operation.seen["procedures"].append(trainee.item("procedure").value)
+    trainee.tap("left", "left")
+    trainee.choose("task-1")
+    trainee.until_menu(None)
+    for kept in range(1, 16):
+        trainee.tap("touch")
+        trainee.until(lambda k=kept: trainee.touched == k, f"touch {kept}")
+    trainee.until(lambda: trainee.state.training.phase is Phase.COMPLETE, "the last touch")
+    trainee.step(2)
+    trainee.tap("touch")
+    trainee.until_menu("complete")
+    trainee.choose("register")
+    trainee.until(lambda: trainee.state.training.phase is Phase.VERIFYING, "the verification")
+    operation.keep("waiting for a registration")
+    trainee.tap("undo")
+    trainee.until_menu("procedure")
+    operation.seen["menu without a registration"] = trainee.menu
+    trainee.choose("work")
+    off = np.eye(4)
+    off[:3, 3] = OFF_MM
+    matrix = off @ transforms.inverse(trainee.loop.truth.head_to_world)
+    operation.registration = {
+        "trialId": trainee.state.training.trial_id,
+        "matrix": matrix.ravel().tolist(),
+        "freMm": 0.9,
+        "expectedTreMm": 1.2,
+    }
+    assert trainee.submit("UseRegistration", **operation.registration).ok
+
+
+def is_aligned(trainee: Trainee):
+    def is_aligned() -> bool:
+        alignment = trainee.state.alignment
+        return alignment.is_exact and abs(alignment.stand_off - 0.03) < MICROMETRE
+
+    return is_aligned
+
+
+def retract(operation: Operation) -> None:
+    """Take the drill out before it has cut anything, and lock the guide once more."""
+    trainee = operation.trainee
+    trainee.tap("undo")
+    trainee.until_menu("procedure")
+    trainee.choose("retract")
+    operation.until_tool(Tool.GUIDE)
+    operation.next_step("lock", Tool.DRILL)
+
+
+def score(operation: Operation) -> None:
+    """Score it as Slicer does, and look at all pages of the result."""
+    trainee = operation.trainee
+    trainee.until_menu("waiting")
+    told = trainee.submit("GetTrial", trialId=operation.registration["trialId"]).data
+    record = TrialRecord.from_json(told["record"])
+    truth = trainee.submit("SubmitRegistration", **operation.registration).data
+    head_to_world = np.reshape(truth["headToWorld"], (4, 4))
+    scenario = trainee.loop.setup.scenario
+    operation.outcome = procedure_outcome(record, scenario, head_to_world)
+    details = {"procedure": operation.outcome.summary()}
+    scored = trainee.submit("TrialScored", trialId=record.trial_id, score=70.0, details=details)
+    assert scored.ok, scored.message
+    trainee.until_menu("result")
+    operation.seen["result"] = trainee.menu
+    trainee.choose("procedure")
+    trainee.until_menu("procedure-errors")
+    operation.seen["errors"] = [trainee.menu]
+    trainee.focus("trajectory")
+    trainee.tap("right")
+    operation.seen["errors"].append(trainee.menu)
+    trainee.choose("lines")
+    trainee.until_menu(None)
+    operation.keep("lines")
+    trainee.tap("back")
+    trainee.until_menu("procedure-errors")
+
+
+def screen_of(operation: Operation, name: str):
+    return operation.seen[name][0]
+
+
+def told_of(operation: Operation, name: str):
+    return operation.seen[name][1]
+
+
+def shown_in_world(operation: Operation, point_ras) -> np.ndarray:
+    """Return where the registration shows a point of the plan, (3,) m."""
+    matrix = np.reshape(operation.registration["matrix"], (4, 4))
+    return transforms.apply(transforms.inverse(matrix), np.array(point_ras)) / MM_PER_M
+
+
+def test_a_procedure_is_chosen_beside_the_tasks(operation):
+    assert operation.seen["procedures"] == ["Nothing: touches alone", "Dbs", "Seeg", "Biopsy"]
+
+
+def test_the_registration_is_accepted_only_once_there_is_one(operation):
+    menu = operation.seen["menu without a registration"]
+    items = {item.name: item.is_enabled for item in menu.items}
+    assert items == {"accept": False, "again": True, "work": True}
+    waiting = screen_of(operation, "waiting for a registration")
+    assert waiting.instruction.text == "P07, your points are being registered."
+
+
+def test_the_error_of_a_checkpoint_is_by_the_registration(operation):
+    screen, _told, state = operation.seen["verifying"]
+    (checked,) = state.training.procedure.checkpoints
+    error_mm = MM_PER_M * checked.error
+    assert f"{checked.name}: {error_mm:.1f} mm off" in screen.status
+    assert [arrow.tone for arrow in screen.errors].count(Tone.GOOD) == 1
+    assert len(screen.errors) == 3
+    assert not screen.is_head_clear
+
+
+@pytest.mark.parametrize(("name", "number"), [("aligning", 0), ("aligned 1", 1)])
+def test_the_line_at_hand_is_drawn_where_the_registration_shows_it(operation, name, number):
+    screen = screen_of(operation, name)
+    assert screen.is_head_clear
+    (line,) = [
+        arrow for arrow in screen.errors if arrow.tone is Tone.GOOD and arrow.begin != arrow.end
+    ]
+    target, entry = (shown_in_world(operation, each[number]) for each in (TARGETS, ENTRIES))
+    assert line.end == pytest.approx(target, abs=MICROMETRE)
+    toward = (target - entry) / np.linalg.norm(target - entry)
+    assert line.begin == pytest.approx(entry - 0.05 * toward, abs=MICROMETRE)
+    tables = [arrow.begin for arrow in screen.errors if arrow.tone is Tone.WARNING]
+    assert len(tables) == 2
+    for table in tables:
+        beside = np.cross(np.array(table) - entry, toward)
+        assert np.linalg.norm(beside) < MICROMETRE
+
+
+def test_the_bulls_eye_agrees_with_the_figures_until_the_guide_is_on_the_line(operation):
+    aim, state = told_of(operation, "aligning")["aim"], operation.seen["aligning"][2]
+    assert math.hypot(*aim["entryMm"]) == pytest.approx(aim["entryDistanceMm"], abs=0.02)
+    assert aim["angleDeg"] == pytest.approx(math.degrees(state.alignment.angle), abs=0.01)
+    apart = np.subtract(aim["targetMm"], aim["entryMm"])
+    length = MM_PER_M * math.dist(*(shown_in_world(operation, e[0]) for e in (ENTRIES, TARGETS)))
+    assert np.linalg.norm(apart) == pytest.approx(
+        length * math.sin(state.alignment.angle), abs=0.02
+    )
+    for number in range(2):
+        aim = told_of(operation, f"aligned {number}")["aim"]
+        assert max(map(abs, (*aim["entryMm"], *aim["targetMm"], aim["angleDeg"]))) <= 0.05
+
+
+def test_the_ruler_measures_from_the_guide_s_tip_by_the_plan(operation):
+    for number in range(2):
+        screen, told, _state = operation.seen[f"drilled {number}"]
+        assert told["tool"] == "drill"
+        assert told["aim"] is None
+        ruler = screen.ruler
+        length_mm = math.dist(ENTRIES[number], TARGETS[number])
+        assert ruler.entry == pytest.approx(30.0, abs=0.1)
+        assert ruler.target == pytest.approx(30.0 + length_mm, abs=0.1)
+        assert ruler.entry < ruler.outer < ruler.inner < ruler.target
+        assert ruler.inner - ruler.outer == pytest.approx(6.0, abs=1.5)
+        inserted = told_of(operation, f"inserted {number}")
+        assert inserted["tool"] == "electrode"
+        assert inserted["feedMm"] == pytest.approx(ruler.target - 1.0, abs=0.5)
+
+
+def test_what_the_drill_meets_is_said_heard_and_felt(operation):
+    kinds = operation.trainee.watcher.kinds
+    assert "checkpoint" in kinds
+    assert kinds.count("bone") == kinds.count("through") == 2
+    warnings = [warning.text for warning in screen_of(operation, "drilled 0").warnings]
+    assert warnings == ["The drill is through the bone: stop."]
+
+
+def test_the_result_splits_the_errors_into_registration_and_hand(operation):
+    each = operation.outcome.analysis.trajectories
+    for menu, errors in zip(operation.seen["errors"], each, strict=True):
+        facts = {fact.label: fact.value for fact in menu.facts}
+        target = errors.target
+        assert facts["Target point error"] == (
+            f"{target.length_mm:.2f} mm ({target.registration_mm:.2f} / {target.hand_mm:.2f})"
+        )
+        assert target.registration_mm == pytest.approx(float(np.linalg.norm(OFF_MM)), abs=0.01)
+        assert facts["Plunge depth"] == f"{errors.plunge_mm:.2f} mm"
+        assert {"Entry point error", "Radial error", "Angular deviation"} <= set(facts)
+    result = operation.seen["result"]
+    score = operation.outcome.score
+    assert result.facts[0].label == "Score of the procedure"
+    assert f"{score.score:.0f} / 100" in result.facts[0].value
+
+
+def test_the_lines_on_the_head_show_plan_registration_and_instrument(operation):
+    screen = screen_of(operation, "lines")
+    assert screen.is_head_clear
+    truth = operation.trainee.loop.truth
+    tones = [arrow.tone for arrow in screen.errors]
+    assert tones == [Tone.GOOD, Tone.WARNING, Tone.PLAIN] * 2
+    for number, errors in enumerate(operation.outcome.analysis.trajectories):
+        planned, shown, placed = screen.errors[3 * number : 3 * number + 3]
+        true_target = truth.in_world(np.array(TARGETS[number])) / MM_PER_M
+        assert planned.end == pytest.approx(true_target, abs=MICROMETRE)
+        assert shown.end == pytest.approx(shown_in_world(operation, TARGETS[number]), abs=1e-6)
+        tip = truth.in_world(errors.tip) / MM_PER_M
+        assert placed.end == pytest.approx(tip, abs=MICROMETRE)
+
+
+def test_the_menu_offers_the_robot_s_alignment_only_where_it_is_allowed(operation):
+    menu = operation.seen["menu lock"]
+    assert [item.name for item in menu.items] == ["lock", "align", "work"]
+    assert [item.name for item in operation.seen["menu insert"].items] == [
+        "insert",
+        "retract",
+        "work",
+    ]
