@@ -1,0 +1,91 @@
+"""The page and the headset draw a procedure: its tools, no-go structures, bull's-eye and ruler."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.net.views.screen import DepthRuler, Screen
+from Testing.simulator.conftest import setup  # noqa: F401
+from Testing.simulator.flow.conftest import loop, shared  # noqa: F401
+from Testing.simulator.net.views.served import ServedViews
+from Testing.web.chromium import enter_headset, open_page, wait_for
+
+RULER = DepthRuler(30.0, 37.0, 44.5, 126.0)
+SEEN = """(procedure) => {
+  const { model } = page.stage;
+  page.showProcedure(model, { ...page.state, procedure });
+  const visible = (names) => names.filter((name) => model.node(name).visible);
+  const noGo = model.node("plan").children.filter((node) => node.visible);
+  return {
+    tools: visible(["guide", "axis", "drill", "electrode"]),
+    fedM: model.node("drill").scale.z,
+    noGo: noGo.map((node) => node.userData.name ?? node.name).sort(),
+    isSeenThrough: noGo.every((node) => node.material.transparent),
+    skin: model.node("skin").material.opacity,
+    panel: !document.getElementById("guiding").hidden,
+    board: page.headset?.boards.guiding.mesh.visible ?? false,
+  };
+}"""
+PAINTED = """(procedure) => {
+  const written = [];
+  const { fillText } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    written.push(text);
+    return fillText.call(this, text, x, y);
+  };
+  page.showProcedure(page.stage.model, { ...page.state, procedure });
+  CanvasRenderingContext2D.prototype.fillText = fillText;
+  return written;
+}"""
+AIM = {
+    "entryMm": [12.0, -3.0],
+    "targetMm": [4.0, 7.0],
+    "entryDistanceMm": 12.37,
+    "angleDeg": 6.48,
+}
+NOTHING = {"tools": [], "noGo": [], "skin": 1.0, "panel": False, "board": False}
+
+
+def at(tool, feed_mm=0.0, aim=None):
+    return {"name": "biopsy", "tool": tool, "feedMm": feed_mm, "aim": aim}
+
+
+@pytest.fixture
+def served(loop, loop_thread):  # noqa: F811
+    served = ServedViews(loop_thread, loop)
+    yield served
+    served.close()
+
+
+def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(served, browser):
+    page = open_page(browser, served.url, served.code, "metaQuest2")
+    served.tell(Screen())
+    wait_for(page, "page.stage.model !== null && page.state !== null")
+    assert page.evaluate(SEEN, at("pointer")).items() >= NOTHING.items()
+    served.tell(Screen(is_head_clear=True, language="de"))
+    wait_for(page, "page.screen.is_head_clear")
+    seen = page.evaluate(SEEN, at("guide", aim=AIM))
+    assert seen["tools"] == ["guide", "axis"]
+    assert seen["noGo"] == ["no_go_right-ventricle", "no_go_sagittal-sinus"]
+    assert seen["isSeenThrough"]
+    assert seen["skin"] < 0.5
+    assert seen["panel"]
+    assert page.evaluate(PAINTED, at("guide", aim={**AIM, "angleDeg": 6.61})) == [
+        "12,4 mm",
+        "6,6°",
+    ]
+    served.tell(Screen(is_head_clear=True, ruler=RULER))
+    wait_for(page, "page.screen.ruler !== null")
+    drilled = page.evaluate(SEEN, at("drill", 41.5))
+    assert drilled["tools"] == ["guide", "drill"]
+    assert drilled["fedM"] == pytest.approx(0.0415)
+    written = page.evaluate(PAINTED, at("electrode", 99.96))
+    assert written[0] == "100.0 mm"
+    assert written[-4:] == ["30", "37", "45", "126"]
+    enter_headset(page)
+    served.tell(Screen(is_head_clear=True, ruler=RULER))
+    wait_for(page, "page.screen.ruler !== null")
+    worn = page.evaluate(SEEN, at("drill", 41.5))
+    assert worn["board"]
+    assert not page.evaluate(SEEN, at("pointer"))["tools"]
+    assert page.problems == []
