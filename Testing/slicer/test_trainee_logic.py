@@ -9,6 +9,7 @@ import pytest
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.slicer.scene.score_board import (
@@ -24,6 +25,7 @@ from rastrainer.slicer.scene.score_board import (
 from rastrainer.slicer.scene.study_plots import showCalibration, showHistory, showLearningCurve
 from rastrainer.study.database.study import Study
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
+from Testing.domain.report.studied_procedures import outcome
 from Testing.domain.trial.trial_records import first_score, gentle_score, second_score
 from Testing.slicer.recorded_trial import scored_analysis
 
@@ -214,6 +216,19 @@ def test_the_score_is_shown_with_its_parts_and_ctps_with_its_warning(add_trial):
     assert rows["… its part for safety"].value == 100 * trial.score.safety_desirability
     assert rows["Unintended contact"].note == "at most 8 s"
     assert ctpsRows(trial, []) == []
+
+
+def test_the_score_of_a_procedure_stands_beside_that_of_the_touches(logic, add_trial):
+    trial = add_trial(1)
+    assert "Score of the procedure" not in {row.title for row in scoreRows(trial)}
+    dbs = outcome(ProcedureKind.DBS)
+    logic.study.add_results(trial.record.trial_id, procedure=dbs)
+    rows = {row.title: row for row in scoreRows(logic.study.trial(trial.record.trial_id))}
+    assert rows["Score"].value == trial.score.score
+    assert rows["Score of the procedure"].value == dbs.score.score
+    assert rows["Score of the procedure"].note == "Version procedure-1"
+    assert rows["… target point error"].note == "registration 0.50 mm, hand 1.20 mm"
+    assert rows["… target point error"].value == dbs.analysis.target_rms_mm
 
 
 def test_a_trial_is_compared_with_own_ones_other_trainees_and_a_reference_group(logic, add_trial):

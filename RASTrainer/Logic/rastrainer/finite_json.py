@@ -11,7 +11,9 @@ from rastrainer.errors import InputError
 MAX_DEPTH = 64
 """Nesting of lists and objects; the interpreter's own limit depends on its version."""
 MAX_MESSAGE_VALUES = 1000
-"""Ours have less than half as many."""
+"""Of a message to the simulator; ours have less than half as many."""
+MAX_RECORD_VALUES = 25_000
+"""Of a message from the simulator: a trial's record, with a procedure at all of its limits."""
 
 
 def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
@@ -33,33 +35,33 @@ def decode_finite_json(text: str, deepest: int = MAX_DEPTH) -> Any:
     return value
 
 
-def decode_message(text: str) -> Any:
+def decode_message(text: str, most: int = MAX_MESSAGE_VALUES) -> Any:
     """Return the decoded JSON of a message, which has a limited number of values.
 
-    Python's decoder blocks all other threads; with more values the control loop would miss a tick.
+    Python's decoder blocks all other threads; with more values than `MAX_MESSAGE_VALUES`, the
+    control loop would miss a tick.
 
     Raises:
-        ValueError: as `decode_finite_json`, or more than `MAX_MESSAGE_VALUES` values.
+        ValueError: as `decode_finite_json`, or more than `most` values.
     """
-    if text.count(",") >= MAX_MESSAGE_VALUES:
+    if text.count(",") >= most:
         raise ValueError("too many values")
     return decode_finite_json(text)
 
 
-def decode_message_object(text: str, what: str) -> dict[str, Any]:
-    """Return the JSON object of a message; `what` starts the error message.
+def decode_message_object(text: str, what: str, most: int = MAX_MESSAGE_VALUES) -> dict[str, Any]:
+    """Return the JSON object of a message of at most `most` values; `what` starts the error.
 
     Raises:
         InputError: not a JSON object, too deep, too many values, or a number is not finite.
     """
     try:
-        value = decode_message(text)
+        value = decode_message(text, most)
     except ValueError:
         value = None
     if not isinstance(value, dict):
         raise InputError(
-            f"{what} must be one JSON object with finite numbers, of at most {MAX_MESSAGE_VALUES} "
-            "values."
+            f"{what} must be one JSON object with finite numbers, of at most {most} values."
         )
     return value
 

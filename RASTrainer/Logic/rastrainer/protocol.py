@@ -11,7 +11,7 @@ from enum import Enum
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_message_object
+from rastrainer.finite_json import MAX_RECORD_VALUES, decode_message_object
 from rastrainer.json_checks import (
     Argument,
     number,
@@ -341,3 +341,12 @@ def decode_json_object(body: str) -> dict[str, Any]:
         InputError: as `rastrainer.finite_json.decode_message_object`.
     """
     return decode_message_object(body or "{}", "The command's body")
+
+
+def decode_told_object(body: str) -> dict[str, Any]:
+    """Return the JSON object in what the simulator tells, such as a trial's record.
+
+    Raises:
+        InputError: as `decode_json_object`; it may hold more values.
+    """
+    return decode_message_object(body or "{}", "The simulator's message", MAX_RECORD_VALUES)

@@ -13,6 +13,7 @@ from rastrainer.export.tidy_csv import (
     aborted_csv,
     aborted_touches_csv,
     answers_csv,
+    procedures_csv,
     scores_csv,
     touches_csv,
     trials_csv,
@@ -86,6 +87,7 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
     if name == "csv":
         write_text(folder / "trials.csv", trials_csv(data.trials))
         write_text(folder / "touches.csv", touches_csv(_stored(data, arguments.study)))
+        write_text(folder / "procedures.csv", procedures_csv(data.trials))
         write_text(folder / "aborted.csv", aborted_csv(data.aborted))
         write_text(folder / "aborted_touches.csv", aborted_touches_csv(data.aborted))
         write_text(folder / "scores.csv", scores_csv(data))

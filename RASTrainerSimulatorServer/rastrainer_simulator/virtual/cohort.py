@@ -151,10 +151,15 @@ def simulate_cohort(
     `on_trial` is called with the number of finished trials.
 
     Raises:
-        InputError: the folder holds something else, a task is not in the scenario, or the engine
-            fails.
+        InputError: the folder holds something else, a task or procedure is not in the scenario,
+            journals are wanted of procedures, or the engine fails.
         WorkerDiedError: several worker processes in turn died at one trial; the study is resumable.
     """
+    if with_journals and protocol.procedures:
+        raise InputError(
+            "The journals of virtual trainees hold the touches alone: leave --records out, or the "
+            "protocol's procedures."
+        )
     if not (folder / DATABASE).is_file():
         make_empty_folder(folder)
     protocol = _virtual(protocol)

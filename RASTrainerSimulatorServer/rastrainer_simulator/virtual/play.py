@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.journal.folder import SUFFIX
+from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.protocol import Mode
+from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
@@ -24,9 +29,16 @@ from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.state import SimulationState, StartingPoint, StepResult
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.virtual.population import TrialJob
+from rastrainer_simulator.virtual.virtual_procedure import (
+    ProcedureHands,
+    ProcedureSetting,
+    carry_out,
+)
 from rastrainer_simulator.virtual.virtual_trial import UnfinishedTrialError, play_virtual_trial
 
 STEP_S = 0.05
+PROCEDURE_STREAM = 21
+"""Of chance, beside that of the touches."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +108,26 @@ def play_job(job: TrialJob, settings: PlaySettings) -> PlayedTrial:
     truth = RevealedTruth(
         tuple(trial.head_to_world.ravel().tolist()), where.target_error_mm(analysis.rigid.matrix)
     )
+    if job.procedure:
+        done = _procedure(job, analysis, scenario, trial.head_to_world)
+        analysis = replace(analysis, record=replace(record, procedure=done))
     return PlayedTrial(job, analysis.scored(scenario, truth, settings.references))
+
+
+def _procedure(
+    job: TrialJob, analysis: TrialAnalysis, scenario: Scenario, head_to_world: np.ndarray
+) -> ProcedureRecord:
+    """Return what the job's hands did after the registration."""
+    procedure, skull = scenario.procedure(job.procedure), scenario.skull_mesh
+    assert skull is not None, "a scenario with procedures has a skull"
+    setting = ProcedureSetting(
+        procedure, _skull(skull), procedure.sha256(skull), np.asarray(head_to_world)
+    )
+    matrix = tuple(float(value) for value in analysis.rigid.matrix.ravel())
+    used = UsedRegistration(matrix, analysis.rigid.fre_mm, analysis.expected_tre.expected_mm)
+    random = np.random.default_rng([job.seed, PROCEDURE_STREAM])
+    hands = ProcedureHands.of(job.skill)
+    return carry_out(setting, used, analysis.record.completion_time_s, hands, random)
 
 
 class _EntryRecorder:
@@ -147,6 +178,12 @@ def _write_journal(folder: Path, entries: list[dict[str, Any]], started: datetim
     journal.write(entries, sync=False)
     journal.close()
     partial.replace(folder / name)
+
+
+@functools.lru_cache(maxsize=1)
+def _skull(path: Path) -> HeadMesh:
+    """Return the skull of this process's scenario, which is read once."""
+    return read_head_mesh(path)
 
 
 @functools.lru_cache(maxsize=1)

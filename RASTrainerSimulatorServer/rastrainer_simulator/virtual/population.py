@@ -33,6 +33,7 @@ class TrialJob:
         skill: Of the hands in this trial.
         seed: Of the head's pose and of the hands.
         started: Its date and time.
+        procedure: That it continues with; "" for the touches alone.
     """
 
     trainee: str
@@ -42,6 +43,7 @@ class TrialJob:
     skill: Skill
     seed: int
     started: datetime
+    procedure: str = ""
 
     @property
     def trial_id(self) -> str:
@@ -68,6 +70,7 @@ def trial_jobs(
                 skill=population.skill_of(place, step.mode, number, seed),
                 seed=int(source.generate_state(1, np.uint64)[0] >> 1),
                 started=FIRST_DAY + timedelta(days=place, minutes=10 * number),
+                procedure=step.procedure,
             )
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from rastrainer.report.report import report_html
 from rastrainer.study.study_data import read_study_data
+from Testing.domain.report.studied_procedures import with_procedures
 from Testing.domain.report.test_aborted_in_report import path  # noqa: F401
 from Testing.domain.report.test_report import PUBLISHED, cohort
 from Testing.domain.statistics.test_variation import drawn
@@ -16,6 +17,7 @@ WORDS = {
     ("Metric", "Definition", "Source"),
     ("The paper says", "The trials say"),
     ("what", "version"),
+    ("what", "target point error (mm)", "source"),
 }
 """Tables without numbers of trials."""
 FIRST_CELLS = {
@@ -27,6 +29,8 @@ FIRST_CELLS = {
     "Metric",
     "Scale",
     "Group",
+    "Procedure",
+    "Procedure, mean times (s)",
     "trainee",
     "what",
 }
@@ -66,6 +70,7 @@ def drawn_pages():
         read_study_data(PUBLISHED),
         with_intervals(drawn()),
         in_two_groups(cohort(30, tasks=6)),
+        with_procedures(cohort(4)),
     )
     return [report_html(data, "today") for data in studies]
 

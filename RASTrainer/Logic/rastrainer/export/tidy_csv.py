@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.database.values import StoredProcedure, StoredTrial
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
 from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
@@ -33,6 +34,15 @@ ABORTED_COLUMNS = (
 ABORTED_TOUCH_COLUMNS = (
     *("trainee", "mode", "task", "trial_id", "label"),
     *("sim_time_s", "x_mm", "y_mm", "z_mm"),
+)
+PROCEDURE_COLUMNS = (
+    *("trainee", "mode", "task", "number", "trial_id", "procedure", "kind", "trajectory"),
+    *("entry_mm", "entry_by_registration_mm", "entry_by_hand_mm"),
+    *("target_mm", "target_by_registration_mm", "target_by_hand_mm"),
+    *("radial_mm", "depth_mm", "depth_by_registration_mm", "depth_by_hand_mm"),
+    *("angle_deg", "angle_by_registration_deg", "angle_by_hand_deg"),
+    *("plunge_mm", "nearest_no_go", "kept_mm", "alignments"),
+    *("aligning_s", "drilling_s", "inserting_s", "procedure_score", "procedure_score_version"),
 )
 QUESTIONNAIRE_COLUMNS = ("trainee", "mode", "step", "questionnaire")
 
@@ -155,6 +165,53 @@ def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
             for point in stored.record.points
         ]
     return csv_text(TOUCH_COLUMNS, rows)
+
+
+def procedures_csv(trials: Iterable[TrialRow]) -> str:
+    """Return the errors of procedures against the truth as CSV, one trajectory per row.
+
+    Both parts of an error are lengths of vectors, which do not add up; depth errors do. A plunge
+    depth is empty where the instrument missed the skull.
+    """
+    rows = []
+    for trial in trials:
+        done = trial.procedure
+        for errors in () if done is None else done.trajectories:
+            assert done is not None
+            rows.append([*_trial_cells(trial, done), *_error_cells(errors), *_score_cells(done)])
+    return csv_text(PROCEDURE_COLUMNS, rows)
+
+
+def _trial_cells(trial: TrialRow, done: StoredProcedure) -> list[object]:
+    names = [plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)]
+    return [*names, trial.number, trial.trial_id, plain_cell(done.name), done.kind]
+
+
+def _error_cells(errors: Mapping[str, Any]) -> list[str]:
+    entry, target = errors["entryPointError"], errors["targetPointError"]
+    kept = errors["keptMm"]
+    nearest = min(kept, key=kept.get, default="")
+    lengths = [e[key] for e in (entry, target) for key in ("mm", "byRegistrationMm", "byHandMm")]
+    keys = (
+        *("depthErrorMm", "depthErrorByRegistrationMm", "depthErrorByHandMm"),
+        *("angularDeviationDeg", "angularDeviationByRegistrationDeg", "angularDeviationByHandDeg"),
+        "plungeMm",
+    )
+    times = errors["timesS"]
+    return [
+        plain_cell(errors["trajectory"]),
+        *map(_number, lengths),
+        _number(errors["radialError"]["mm"]),
+        *(_number(errors[key]) for key in keys),
+        plain_cell(nearest),
+        _number(kept.get(nearest)),
+        str(errors["alignments"]),
+        *(_number(times.get(phase)) for phase in ("aligning", "drilling", "inserting")),
+    ]
+
+
+def _score_cells(done: StoredProcedure) -> list[str]:
+    return [_number(done.score.score), done.score.version]
 
 
 def scores_csv(data: StudyData) -> str:

@@ -56,6 +56,7 @@ def _trial_json(trial: StoredTrial) -> dict[str, Any]:
         "true_tre_mm": trial.true_tre_mm,
         "head_to_world": trial.head_to_world,
         "motion": trial.motion,
+        "procedure": None if trial.procedure is None else trial.procedure.to_json(),
     }
 
 

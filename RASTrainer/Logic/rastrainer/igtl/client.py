@@ -17,7 +17,7 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName, decode_json_object
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName, decode_told_object
 
 _PIECE_BYTES = 64 * 1024
 
@@ -186,7 +186,7 @@ class Client:
 def _resolve(answer: Future[Reply], content: CommandReply, metadata: Mapping[str, str]) -> None:
     """Pass the answer to the waiting thread; its body is untrusted and checked."""
     try:
-        data = decode_json_object(content.body)
+        data = decode_told_object(content.body)
     except InputError:
         answer.set_exception(LinkError("An answer's body must be a JSON object."))
         return

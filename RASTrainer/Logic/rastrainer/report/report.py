@@ -20,6 +20,7 @@ from rastrainer.report.sections.methods import limits, methods
 from rastrainer.report.sections.mode_comparison import distributions, mode_comparison, motion
 from rastrainer.report.sections.paired_statistics import findings, order_caveat, paired_statistics
 from rastrainer.report.sections.passing import passing, started_trials
+from rastrainer.report.sections.procedures import procedures
 from rastrainer.report.sections.published_tables import paper_notes, published_tables
 from rastrainer.report.sections.trainees import groups, questionnaires
 from rastrainer.report.sections.variation import variation
@@ -89,6 +90,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         variation(data),
         passing(data),
         calibration(data),
+        procedures(data),
         motion(data, described[0] if described else ()),
         questionnaires(data),
         groups(data),

@@ -13,7 +13,7 @@ from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.database.values import StoredProcedure, StoredTrial
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_notes import StudyNotes, read_notes
@@ -37,6 +37,7 @@ class TrialRow:
         score_version: Of our score; "" if none.
         acceptable: Whether it was within all limits of its score; False without a score.
         completed_utc: Time of the last kept touch, ISO 8601; "" if unknown.
+        procedure: Outcome of its procedure; None of touches alone, or if it is not scored.
     """
 
     trainee: str
@@ -50,6 +51,7 @@ class TrialRow:
     score_version: str = ""
     acceptable: bool = False
     completed_utc: str = ""
+    procedure: StoredProcedure | None = None
 
 
 @dataclass(frozen=True)
@@ -236,6 +238,8 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         values |= _score_parts(score)
     if stored.true_tre_mm is not None:
         values["true_tre_mm"] = stored.true_tre_mm
+    if stored.procedure is not None:
+        values |= _procedure_values(stored.procedure)
     return TrialRow(
         trainee=record.trainee,
         mode=record.mode,
@@ -248,7 +252,28 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         score_version="" if score is None else score.version,
         acceptable=score is not None and score.acceptable,
         completed_utc=record.completed_utc,
+        procedure=stored.procedure,
     )
+
+
+def _procedure_values(procedure: StoredProcedure) -> dict[str, float]:
+    """Return the outcomes of a procedure; root mean squares are over its trajectories."""
+    analysis, score = procedure.analysis, procedure.score
+    return {
+        "procedure_score": score.score,
+        "procedure_acceptable": float(score.acceptable),
+        "procedure_trajectories": float(len(procedure.trajectories)),
+        "procedure_duration_s": analysis["durationS"],
+        "procedure_target_rms_mm": analysis["targetPointErrorRmsMm"],
+        "procedure_target_by_registration_rms_mm": analysis["targetPointErrorByRegistrationRmsMm"],
+        "procedure_target_by_hand_rms_mm": analysis["targetPointErrorByHandRmsMm"],
+        "procedure_entry_rms_mm": analysis["entryPointErrorRmsMm"],
+        "procedure_angle_rms_deg": analysis["angularDeviationRmsDeg"],
+        "procedure_alignments": float(analysis["alignments"]),
+        "procedure_attempts": float(analysis["attempts"]),
+        "procedure_plunge_mm": score.measures.plunge_mm,
+        "procedure_hits": float(score.measures.hits),
+    }
 
 
 def _score_parts(score: TrialScore) -> dict[str, float]:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import DeviceName, decode_json_object
+from rastrainer.protocol import DeviceName, decode_told_object
 from rastrainer.slicer.scene.control_points import labelOf
 from rastrainer.slicer.scene.link_nodes import (
     capturedPointsNode,
@@ -88,7 +88,7 @@ class Arrivals:
 
     def _emitContent(self, text: str | bytes, name: str, signal: Signal) -> None:
         try:
-            value = decode_json_object(decodedText(text))
+            value = decode_told_object(decodedText(text))
         except InputError as error:
             logging.error("What came as %s cannot be read: %s", name, error)
             return

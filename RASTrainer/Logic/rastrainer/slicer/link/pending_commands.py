@@ -10,7 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import decode_json_object
+from rastrainer.protocol import decode_told_object
 from rastrainer.slicer.scene.link_nodes import decodedText, shownText
 from rastrainer.slicer.signal import ErrorGuard
 from rastrainer.slicer.translation import _
@@ -141,6 +141,6 @@ def _answer(command: Any) -> Reply:
         sentence = shownText(command.GetErrorMessage())
         return Reply(False, sentence or _("The simulator refused without giving a reason."))
     try:
-        return Reply(True, "", decode_json_object(decodedText(command.GetResponseContent())))
+        return Reply(True, "", decode_told_object(decodedText(command.GetResponseContent())))
     except InputError:
         return Reply(False, _("The simulator's answer cannot be read."))

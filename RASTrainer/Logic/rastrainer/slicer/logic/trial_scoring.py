@@ -106,7 +106,9 @@ class TrialScoring:
     def _scored(self, analysis: TrialAnalysis, truth: RevealedTruth) -> TrialAnalysis:
         with self._openStudy() as study:
             scored = self._score(analysis, study, truth)
-            study.add_results(scored.record.trial_id, score=scored.score)
+            study.add_results(
+                scored.record.trial_id, score=scored.score, procedure=scored.procedure
+            )
             return with_progress(scored, study)
 
     def _keepTruth(self, record: TrialRecord, truth: RevealedTruth) -> None:

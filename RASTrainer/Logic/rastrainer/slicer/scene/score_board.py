@@ -16,7 +16,7 @@ from rastrainer.slicer.scene.scene import Role
 from rastrainer.slicer.scene.tables import Column, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.database.values import StoredProcedure, StoredTrial
 from rastrainer.trial.analysis import published_score
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import (
@@ -99,10 +99,29 @@ def scoreRows(trial: StoredTrial) -> list[Row]:
                 INTERVAL_NOTE,
             ),
         ]
+    rows += [] if trial.procedure is None else _procedureRows(trial.procedure)
     rows.append(
         Row(_("True TRE at the target"), trial.true_tre_mm, "mm", _("only a simulator knows it"))
     )
     return rows
+
+
+def _procedureRows(procedure: StoredProcedure) -> list[Row]:
+    """Return the score of a procedure, beside that of the touches, and its errors."""
+    score, analysis = procedure.score, procedure.analysis
+    version = _("Version {v}") if score.acceptable else _("not acceptable; version {v}")
+    split = _("registration {registration} mm, hand {hand} mm").format(
+        registration=fixed(analysis["targetPointErrorByRegistrationRmsMm"], 2),
+        hand=fixed(analysis["targetPointErrorByHandRmsMm"], 2),
+    )
+    over = _("RMS over {count} lines").format(count=len(procedure.trajectories))
+    return [
+        Row(_("Score of the procedure"), score.score, "/ 100", version.format(v=score.version)),
+        Row(_("… target point error"), analysis["targetPointErrorRmsMm"], "mm", split, over),
+        Row(_("… entry point error"), analysis["entryPointErrorRmsMm"], "mm", over),
+        Row(_("… angular deviation"), analysis["angularDeviationRmsDeg"], "°", over),
+        Row(_("… deepest plunge"), score.measures.plunge_mm, "mm", _("past the inner table")),
+    ]
 
 
 def _parts(score: TrialScore) -> list[Row]:

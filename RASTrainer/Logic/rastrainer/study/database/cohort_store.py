@@ -126,6 +126,7 @@ class CohortStore:
                     analysis.fits.values(),
                     analysis.target_errors,
                     analysis.score,
+                    analysis.procedure,
                 )
                 study_trials.set_truth(
                     connection, record.trial_id, truth.true_tre_mm, truth.head_to_world

@@ -154,4 +154,18 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         ) WITHOUT ROWID
         """,
     ),
+    (
+        # The errors and the score of the procedure that a trial continued with.
+        """
+        CREATE TABLE procedure_outcomes (
+            id INTEGER PRIMARY KEY,
+            trial_id TEXT NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            score REAL NOT NULL,
+            version TEXT NOT NULL,
+            outcome_json TEXT NOT NULL,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX procedure_outcomes_of_trial ON procedure_outcomes (trial_id)",
+    ),
 )

@@ -20,6 +20,7 @@ from rastrainer.study.database.database import LockWait, StudyDatabase
 from rastrainer.study.database.reading import ReadOnlyStudyDatabase
 from rastrainer.study.database.values import StoredTrial, Trainee, TrialOutcome
 from rastrainer.trial.ctps import Trial
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 from rastrainer.trial.trainee_progress import PastTrial
@@ -190,6 +191,7 @@ class Study:
         registrations: Iterable[Registration] = (),
         target_errors: Mapping[str, TargetError] | None = None,
         score: TrialScore | None = None,
+        procedure: ProcedureOutcome | None = None,
     ) -> None:
         """Add results of a stored trial; the latest ones count.
 
@@ -198,7 +200,7 @@ class Study:
         """
         with self._database.writing() as connection:
             study_trials.add_results(
-                connection, trial_id, registrations, target_errors or {}, score
+                connection, trial_id, registrations, target_errors or {}, score, procedure
             )
 
     def set_truth(self, trial_id: str, true_tre_mm: float, head_to_world: Sequence[float]) -> None:

@@ -16,8 +16,15 @@ from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
-from rastrainer.study.database.values import StoredRegistration, StoredTrial, TrialOutcome, utc_now
+from rastrainer.study.database.values import (
+    StoredProcedure,
+    StoredRegistration,
+    StoredTrial,
+    TrialOutcome,
+    utc_now,
+)
 from rastrainer.trial.ctps import Trial
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 from rastrainer.trial.trainee_progress import PastTrial
@@ -34,6 +41,8 @@ _STAMPED_TRIALS = f"""
     SELECT trial_id, rowid, stored_utc,
         (SELECT max(id) FROM registrations WHERE registrations.trial_id = trials.trial_id),
         (SELECT max(id) FROM scores WHERE scores.trial_id = trials.trial_id),
+        (SELECT max(id) FROM procedure_outcomes
+            WHERE procedure_outcomes.trial_id = trials.trial_id),
         (SELECT stored_utc FROM truths WHERE truths.trial_id = trials.trial_id),
         (SELECT stored_utc FROM motions WHERE motions.trial_id = trials.trial_id)
     FROM trials WHERE trainee_id = ({TRAINEE_ID}) ORDER BY started_utc, rowid
@@ -89,6 +98,7 @@ def add_results(
     registrations: Iterable[Registration],
     target_errors: Mapping[str, TargetError],
     score: TrialScore | None,
+    procedure: ProcedureOutcome | None = None,
 ) -> None:
     """Add results that were computed from a trial."""
     _check_exists(connection, trial_id)
@@ -104,6 +114,14 @@ def add_results(
             "INSERT INTO scores (trial_id, score, version, score_json, stored_utc) "
             "VALUES (?, ?, ?, ?, ?)",
             (trial_id, score.score, score.version, json_text(score.to_json()), utc_now()),
+        )
+    if procedure is not None:
+        stored_outcome = json_text(StoredProcedure.of(procedure).to_json())
+        of_procedure = procedure.score
+        connection.execute(
+            "INSERT INTO procedure_outcomes (trial_id, score, version, outcome_json, stored_utc) "
+            "VALUES (?, ?, ?, ?, ?)",
+            (trial_id, of_procedure.score, of_procedure.version, stored_outcome, utc_now()),
         )
 
 
@@ -178,6 +196,10 @@ def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
     motion = connection.execute(
         "SELECT motion_json FROM motions WHERE trial_id = ?", (trial_id,)
     ).fetchone()
+    procedure = connection.execute(
+        "SELECT outcome_json FROM procedure_outcomes WHERE trial_id = ? ORDER BY id DESC",
+        (trial_id,),
+    ).fetchone()
     return StoredTrial(
         record=record,
         registrations={
@@ -187,6 +209,7 @@ def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
         true_tre_mm=None if truth is None else truth[0],
         head_to_world=None if truth is None else decoded(truth[1], tuple),
         motion={} if motion is None else decoded(motion[0], dict),
+        procedure=None if procedure is None else decoded(procedure[0], StoredProcedure.from_json),
     )
 
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from typing import Any
 
 import numpy as np
 
+from rastrainer.procedure.score import ProcedureScore
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.trial.analysis import RevealedTruth
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 
@@ -122,6 +125,48 @@ class TrialOutcome:
 
 
 @dataclass(frozen=True)
+class StoredProcedure:
+    """The stored outcome of a procedure.
+
+    Attributes:
+        analysis: Its errors, as `ProcedureAnalysis.to_json`.
+        score: From them.
+    """
+
+    analysis: Mapping[str, Any]
+    score: ProcedureScore
+
+    @classmethod
+    def of(cls, outcome: ProcedureOutcome) -> StoredProcedure:
+        """Return an outcome for storage."""
+        return cls(outcome.analysis.to_json(), outcome.score)
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the JSON object that `from_json` reads."""
+        return {"analysis": dict(self.analysis), "score": self.score.to_json()}
+
+    @classmethod
+    def from_json(cls, value: Mapping[str, Any]) -> StoredProcedure:
+        """Return the outcome that `to_json` described."""
+        return cls(dict(value["analysis"]), ProcedureScore.from_json(value["score"]))
+
+    @property
+    def name(self) -> str:
+        """Name of the procedure in its scenario."""
+        return str(self.analysis["procedure"])
+
+    @property
+    def kind(self) -> str:
+        """A `ProcedureKind`."""
+        return str(self.analysis["kind"])
+
+    @property
+    def trajectories(self) -> tuple[Mapping[str, Any], ...]:
+        """The errors of each trajectory, as `TrajectoryErrors.to_json`."""
+        return tuple(self.analysis["trajectories"])
+
+
+@dataclass(frozen=True)
 class StoredTrial:
     """A trial with its latest results.
 
@@ -132,6 +177,7 @@ class StoredTrial:
         true_tre_mm: True error at the target; None until revealed.
         head_to_world: 16 numbers row by row, RAS to `World`, mm; None until revealed.
         motion: Motion metrics by name, with units; may be empty.
+        procedure: Outcome of the procedure; None until scored, or of touches alone.
     """
 
     record: TrialRecord
@@ -140,6 +186,7 @@ class StoredTrial:
     true_tre_mm: float | None
     head_to_world: tuple[float, ...] | None
     motion: dict[str, float] = field(default_factory=dict)
+    procedure: StoredProcedure | None = None
 
     @property
     def truth(self) -> RevealedTruth | None:

@@ -1,0 +1,314 @@
+"""Procedures: how much of the target point error the registration and the hands caused."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rastrainer.number_text import counted, fixed, percent
+from rastrainer.report.elements.markup import bullets, figure, heading, paragraph, section, table
+from rastrainer.report.elements.svg import FAINT, INK, Sheet, axis_over, number, y_grid
+from rastrainer.statistics.estimates import mean
+from rastrainer.study.study_data import StudyData, TrialRow
+
+KINDS = {
+    "biopsy": ("Biopsy", "#1b6ca8"),
+    "dbs": ("DBS", "#c2571a"),
+    "seeg": ("SEEG", "#3f8f4f"),
+}
+"""Title and color of each kind."""
+PUBLISHED = (
+    ("phantoms: RONNA G3, ROSA, Leksell", "0.43, 0.53, 0.72", "10.3389/fnbot.2022.762317"),
+    ("patients, DBS", "1.91", "10.1093/neuros/nyaa428"),
+    ("patients, SEEG", "2.34", "10.1093/neuros/nyaa428"),
+)
+HEADER = (
+    *("Procedure", "n", "lines", "trainees", "target, RMS (mm)", "by registration (mm)"),
+    *("by hand (mm)", "entry, RMS (mm)", "angle, RMS (°)", "deepest plunge (mm)", "hits"),
+    "acceptable",
+)
+PHASES = {
+    "running": "touching",
+    "verifying": "verifying",
+    "aligning": "aligning",
+    "drilling": "drilling",
+    "inserting": "inserting",
+}
+"""Title of each phase."""
+TIME_HEADER = (
+    *("Procedure, mean times (s)", "n", "whole", *PHASES.values()),
+    "alignments a line",
+)
+TRAINEE_HEADER = (
+    *("trainee", "n", "lines", "target, RMS (mm)", "by registration (mm)", "by hand (mm)"),
+    "score, mean",
+)
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Procedures that are reported together.
+
+    Attributes:
+        trials: That continued with one.
+        lines: The errors of all their trajectories, as `TrajectoryErrors.to_json`.
+    """
+
+    trials: tuple[TrialRow, ...]
+    lines: tuple[Mapping[str, Any], ...]
+
+    @classmethod
+    def of(cls, trials: Sequence[TrialRow]) -> _Group:
+        """Return the group of trials that all have a procedure."""
+        lines = [
+            line for trial in trials if trial.procedure for line in trial.procedure.trajectories
+        ]
+        return cls(tuple(trials), tuple(lines))
+
+    def lengths(self, error: str, part: str = "mm") -> np.ndarray:
+        """Return lengths of an error, or of one of its parts, one per trajectory, mm."""
+        return np.array([line[error][part] for line in self.lines])
+
+    def rms(self, error: str, part: str = "mm") -> float:
+        """Return the root mean square of an error, or of one of its parts, mm."""
+        return _rms(self.lengths(error, part))
+
+    @property
+    def angle_deg(self) -> float:
+        """Root mean square of the angular deviations."""
+        return _rms(np.array([line["angularDeviationDeg"] for line in self.lines]))
+
+    @property
+    def scores(self) -> list[float]:
+        """Of the procedures."""
+        return [trial.procedure.score.score for trial in self.trials if trial.procedure]
+
+    @property
+    def acceptable(self) -> int:
+        """How many are acceptable."""
+        return sum(trial.procedure.score.acceptable for trial in self.trials if trial.procedure)
+
+    @property
+    def hits(self) -> int:
+        """How many times an instrument hit a no-go structure."""
+        return sum(distance <= 0 for line in self.lines for distance in line["keptMm"].values())
+
+    @property
+    def plunge_mm(self) -> float:
+        """The deepest that a drill was past an inner table."""
+        return max((line["plungeMm"] or 0.0 for line in self.lines), default=0.0)
+
+    @property
+    def trainees(self) -> tuple[str, ...]:
+        """Who carried them out."""
+        return tuple(dict.fromkeys(trial.trainee for trial in self.trials))
+
+
+def procedures(data: StudyData) -> str:
+    """Return the section; "" without procedures that were scored.
+
+    Raises:
+        InputError: scipy is missing.
+    """
+    done = [trial for trial in data.trials if trial.procedure is not None]
+    if not done:
+        return ""
+    everything = _Group.of(done)
+    kinds = {
+        kind: _Group.of([t for t in done if t.procedure is not None and t.procedure.kind == kind])
+        for kind in KINDS
+        if any(t.procedure is not None and t.procedure.kind == kind for t in done)
+    }
+    rows = [_row(KINDS[kind][0], group) for kind, group in kinds.items()]
+    if len(rows) > 1:
+        rows.append(_row("all", everything))
+    caption = (
+        "Every trajectory: how far the registration alone put its target, and how far the hand "
+        "ended from there. Below the line, the hand caused the larger part."
+    )
+    return section(
+        "Procedures: from the registration to the target",
+        bullets(_sentences(everything, len(data.trials))),
+        table([list(HEADER)], rows, "wide"),
+        paragraph(_explanation(), "small"),
+        figure([split_chart(kinds)], caption),
+        table([list(TIME_HEADER)], [_time_row(KINDS[kind][0], kinds[kind]) for kind in kinds]),
+        heading("Trainees"),
+        table([list(TRAINEE_HEADER)], _trainee_rows(done)),
+        heading("Published figures, for orientation"),
+        table(
+            [["what", "target point error (mm)", "source"]],
+            [[what, errors, f"doi:{doi}"] for what, errors, doi in PUBLISHED],
+        ),
+        paragraph(
+            "They are no pass marks: patients, images and definitions differ between studies, and "
+            "a simulator has no brain shift and no resistance of tissue.",
+            "small",
+        ),
+    )
+
+
+def _sentences(group: _Group, trials: int) -> list[str]:
+    registration = group.rms("targetPointError", "byRegistrationMm")
+    hand = group.rms("targetPointError", "byHandMm")
+    found = [
+        f"{len(group.trials)} of {counted(trials, 'trial')} continued with a procedure: "
+        f"{counted(len(group.lines), 'line')} in all, by "
+        f"{counted(len(group.trainees), 'trainee')}. The target point error was "
+        f"{fixed(group.rms('targetPointError'), 2)} mm (RMS over all lines); the part that the "
+        f"registration caused was {fixed(registration, 2)} mm, that of the hands "
+        f"{fixed(hand, 2)} mm.",
+        _difference_sentence(group),
+        f"{group.acceptable} of {len(group.trials)} procedures were acceptable "
+        f"({percent(group.acceptable / len(group.trials))}); "
+        f"{_hits(group.hits)}.",
+    ]
+    return [sentence for sentence in found if sentence]
+
+
+def _hits(count: int) -> str:
+    if count == 0:
+        return "no instrument hit a no-go structure"
+    return f"{counted(count, 'time')} an instrument hit a no-go structure"
+
+
+def _difference_sentence(group: _Group) -> str:
+    """Return whether registration or hand caused more, over the trainees; "" for too few."""
+    pairs = [
+        (
+            _Group.of([t for t in group.trials if t.trainee == name]).rms(
+                "targetPointError", "byRegistrationMm"
+            ),
+            _Group.of([t for t in group.trials if t.trainee == name]).rms(
+                "targetPointError", "byHandMm"
+            ),
+        )
+        for name in group.trainees
+    ]
+    if len(pairs) < 3:
+        return ""
+    found = mean(np.array([registration - hand for registration, hand in pairs]))
+    low, high = found.interval
+    verdict = "it cannot be said which of both caused more"
+    if low > 0:
+        verdict = "the registration caused more than the hands"
+    elif high < 0:
+        verdict = "the hands caused more than the registration"
+    return (
+        f"Over {len(pairs)} trainees, {verdict}: registration minus hands, as RMS of each trainee, "
+        f"was {fixed(found.value, 2)} mm on average [95 %: {fixed(low, 2)}, {fixed(high, 2)}]."
+    )
+
+
+def _row(title: str, group: _Group) -> list[str]:
+    return [
+        title,
+        str(len(group.trials)),
+        str(len(group.lines)),
+        str(len(group.trainees)),
+        fixed(group.rms("targetPointError"), 2),
+        fixed(group.rms("targetPointError", "byRegistrationMm"), 2),
+        fixed(group.rms("targetPointError", "byHandMm"), 2),
+        fixed(group.rms("entryPointError"), 2),
+        fixed(group.angle_deg, 2),
+        fixed(group.plunge_mm, 1),
+        str(group.hits),
+        f"{group.acceptable} of {len(group.trials)}",
+    ]
+
+
+def _time_row(title: str, group: _Group) -> list[str]:
+    analyses = [trial.procedure.analysis for trial in group.trials if trial.procedure]
+    means = [
+        float(np.mean([analysis["phaseTimesS"].get(phase, 0.0) for analysis in analyses]))
+        for phase in PHASES
+    ]
+    alignments = sum(analysis["alignments"] for analysis in analyses) / len(group.lines)
+    return [
+        title,
+        str(len(group.trials)),
+        fixed(float(np.mean([analysis["durationS"] for analysis in analyses])), 0),
+        *(fixed(value, 0) for value in means),
+        fixed(alignments, 2),
+    ]
+
+
+def _trainee_rows(done: Sequence[TrialRow]) -> list[list[str]]:
+    rows = []
+    for name in sorted({trial.trainee for trial in done}):
+        group = _Group.of([trial for trial in done if trial.trainee == name])
+        rows.append(
+            [
+                name,
+                str(len(group.trials)),
+                str(len(group.lines)),
+                fixed(group.rms("targetPointError"), 2),
+                fixed(group.rms("targetPointError", "byRegistrationMm"), 2),
+                fixed(group.rms("targetPointError", "byHandMm"), 2),
+                fixed(float(np.mean(group.scores)), 1),
+            ]
+        )
+    return rows
+
+
+def _explanation() -> str:
+    return (
+        "n counts procedures. RMS are over all lines, which are not independent: those of one "
+        "procedure share a registration. The trainee saw the plan where their own registration put "
+        "it; the error of each target is the sum of two vectors, from the plan to where it was "
+        "shown, and from there to the instrument's tip. Their lengths do not add up: the two parts "
+        "may cancel out. The same angular deviation misses a deeper target by more. Geometry is "
+        "rigid, and depths of drilling are for training."
+    )
+
+
+WIDTH, HEIGHT = 660, 360
+LEFT, RIGHT, TOP, BOTTOM = 52, 640, 52, 306
+
+
+def split_chart(kinds: Mapping[str, _Group]) -> str:
+    """Return the chart of both parts of the target point errors; both axes start at 0."""
+    title = "What caused the target point error (mm)"
+    sheet = Sheet(WIDTH, HEIGHT, title)
+    sheet.text(10, 16, title, 12.5, INK, weight="600")
+    points = {
+        kind: (
+            group.lengths("targetPointError", "byRegistrationMm"),
+            group.lengths("targetPointError", "byHandMm"),
+        )
+        for kind, group in kinds.items()
+    }
+    largest = max(float(values.max()) for both in points.values() for values in both)
+    up = axis_over([0.0, largest], BOTTOM, TOP, from_zero=True)
+    along = axis_over([0.0, largest], LEFT, RIGHT, from_zero=True)
+    y_grid(sheet, up, LEFT, RIGHT)
+    for tick in along.ticks(8):
+        x = along.at(tick)
+        sheet.line(x, BOTTOM, x, BOTTOM + 4, FAINT)
+        sheet.text(x, BOTTOM + 17, number(tick), 10, FAINT, "middle")
+    end = min(along.high, up.high)
+    sheet.line(along.at(0.0), up.at(0.0), along.at(end), up.at(end), INK, 1.3, "5 4")
+    count = sum(len(both[0]) for both in points.values())
+    radius = 3.4 if count <= 150 else 2.2
+    for kind, (by_registration, by_hand) in points.items():
+        for x, y in zip(by_hand, by_registration, strict=True):
+            sheet.dot(along.at(float(x)), up.at(float(y)), radius, KINDS[kind][1], 0.75)
+    x = float(LEFT)
+    for kind in points:
+        name, color = KINDS[kind]
+        sheet.dot(x + 5, 34, 3.6, color, 0.85)
+        sheet.text(x + 14, 38, name, 11)
+        x += 36 + 6 * len(name)
+    sheet.line(x, 34, x + 22, 34, INK, 1.3, "5 4")
+    sheet.text(x + 28, 38, "both parts equal", 11)
+    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 12, "by the hand (mm)", 11, INK, "middle")
+    sheet.text(16, (TOP + BOTTOM) / 2, "by the registration (mm)", 11, INK, "middle", turn=-90)
+    return sheet.svg()
+
+
+def _rms(values: np.ndarray) -> float:
+    return math.sqrt(float(np.mean(np.square(values))))

@@ -1,0 +1,210 @@
+"""A procedure that virtual hands carry out by a registration, for cohorts: errors without physics.
+
+The touches are played with the whole simulation; what follows is drawn. The guide is beside the
+line that the registration shows, the drill stops past the true inner table, the instrument beside
+its depth. Scatter and pace of the hands are in proportion to those of the touches.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.procedure.geometry import bone_ahead
+from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
+from rastrainer.procedure.record import (
+    DEPTH_LIMIT_MM,
+    PlacedInstrument,
+    ProcedureRecord,
+    RecordedAttempt,
+    TouchedCheckpoint,
+    UsedRegistration,
+)
+from rastrainer.procedure.score import (
+    ALIGNING_S,
+    DRILLING_S,
+    HANDLING_S,
+    INSERTION_MM_S,
+    STAND_OFF_MM,
+    VERIFYING_S,
+)
+from rastrainer.protocol import Phase
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+
+MISSED_BONE_MM = 20.0
+"""How far the drill goes past the entry where it meets no bone."""
+MOST_CHECKPOINTS = 3
+TIME_SD = 0.15
+"""Of the logarithm of the times of aligning, drilling and inserting."""
+
+
+@dataclass(frozen=True)
+class ProcedureHands:
+    """How exactly hands carry a procedure out; our own convention.
+
+    Attributes:
+        entry_sd_mm: Of the guide's axis at the entry, along each of two axes.
+        angle_sd_deg: Of its direction, about each of two axes.
+        depth_sd_mm: Of the instrument's depth.
+        plunge_mm: Mean of how far the drill goes past the inner table (exponential).
+        check_sd_mm: Of the touch of a checkpoint, along each of three axes.
+        pace: Times are those of the score's reference, divided by this.
+    """
+
+    entry_sd_mm: float = 0.4
+    angle_sd_deg: float = 0.5
+    depth_sd_mm: float = 0.6
+    plunge_mm: float = 0.7
+    check_sd_mm: float = 0.8
+    pace: float = 1.0
+
+    @classmethod
+    def of(cls, skill: Skill) -> ProcedureHands:
+        """Return hands whose scatter and pace are to the typical ones as those of a skill."""
+        typical, usual = Skill(), cls()
+        scatter = skill.aim_sd_mm / typical.aim_sd_mm
+        return cls(
+            scatter * usual.entry_sd_mm,
+            scatter * usual.angle_sd_deg,
+            scatter * usual.depth_sd_mm,
+            scatter * usual.plunge_mm,
+            skill.aim_sd_mm,
+            skill.speed_mm_s / typical.speed_mm_s,
+        )
+
+
+@dataclass(frozen=True)
+class ProcedureSetting:
+    """Where a procedure is carried out.
+
+    Attributes:
+        procedure: The plan.
+        skull: Its mesh, RAS mm.
+        sha256: Of the plan, from `Procedure.sha256`.
+        head_to_world: (4, 4) float, mm, the true pose.
+    """
+
+    procedure: Procedure
+    skull: HeadMesh
+    sha256: str
+    head_to_world: np.ndarray
+
+
+def carry_out(
+    setting: ProcedureSetting,
+    used: UsedRegistration,
+    touching_s: float,
+    hands: ProcedureHands,
+    random: np.random.Generator,
+) -> ProcedureRecord:
+    """Return the record of a procedure.
+
+    Args:
+        setting: Plan, skull and true pose.
+        used: The registration by which the plan is shown.
+        touching_s: How long the touches took.
+        hands: Of the trainee.
+        random: Of the draws.
+    """
+    instruments = tuple(
+        _placed(each, setting, used, hands, random) for each in setting.procedure.trajectories
+    )
+    verifying_s = VERIFYING_S / hands.pace * _spread(random)
+    each_s = sum(sum(one.times_s.values()) for one in instruments)
+    return ProcedureRecord(
+        procedure=setting.procedure.name,
+        kind=setting.procedure.kind,
+        sha256=setting.sha256,
+        duration_s=touching_s + verifying_s + each_s,
+        attempts=(RecordedAttempt((), used, _checked(setting, used, touching_s, hands, random)),),
+        instruments=instruments,
+        phase_times_s={Phase.RUNNING.value: touching_s, Phase.VERIFYING.value: verifying_s}
+        | {
+            phase.value: sum(one.times_s[phase.value] for one in instruments)
+            for phase in (Phase.ALIGNING, Phase.DRILLING, Phase.INSERTING)
+        },
+    )
+
+
+def _placed(
+    plan: ProcedureTrajectory,
+    setting: ProcedureSetting,
+    used: UsedRegistration,
+    hands: ProcedureHands,
+    random: np.random.Generator,
+) -> PlacedInstrument:
+    to_world = transforms.inverse(used.world_to_head)
+    entry, target = (transforms.apply(to_world, point) for point in (plan.entry, plan.target))
+    line = (target - entry) / np.linalg.norm(target - entry)
+    across = _across(line)
+    tilt = np.tan(np.radians(hands.angle_sd_deg * random.normal(size=2)))
+    direction = line + tilt @ across
+    direction /= np.linalg.norm(direction)
+    tip = entry + hands.entry_sd_mm * random.normal(size=2) @ across - STAND_OFF_MM * direction
+    to_head = transforms.inverse(setting.head_to_world)
+    bone = bone_ahead(
+        setting.skull,
+        transforms.apply(to_head, tip),
+        to_head[:3, :3] @ direction,
+        DEPTH_LIMIT_MM,
+    )
+    stop = STAND_OFF_MM + MISSED_BONE_MM
+    if bone is not None and bone.inner_mm is not None:
+        stop = bone.inner_mm
+    depth = STAND_OFF_MM + plan.length_mm + hands.depth_sd_mm * float(random.normal())
+    inserting_s = (STAND_OFF_MM + plan.length_mm) / INSERTION_MM_S + HANDLING_S
+    times = {
+        Phase.ALIGNING.value: ALIGNING_S,
+        Phase.DRILLING.value: DRILLING_S,
+        Phase.INSERTING.value: inserting_s,
+    }
+    return PlacedInstrument(
+        trajectory=plan.name,
+        entry_ras=_triple(plan.entry),
+        target_ras=_triple(plan.target),
+        diameter_mm=plan.diameter_mm,
+        guide_tip_mm=_triple(tip),
+        guide_direction=_triple(direction),
+        alignments=1,
+        drill_depth_mm=stop + float(random.exponential(hands.plunge_mm)),
+        instrument_depth_mm=depth,
+        times_s={name: s / hands.pace * _spread(random) for name, s in times.items()},
+    )
+
+
+def _checked(
+    setting: ProcedureSetting,
+    used: UsedRegistration,
+    touching_s: float,
+    hands: ProcedureHands,
+    random: np.random.Generator,
+) -> tuple[TouchedCheckpoint, ...]:
+    """Return the touches of the first checkpoints, a few seconds apart."""
+    touched = []
+    for number, checkpoint in enumerate(setting.procedure.checkpoints[:MOST_CHECKPOINTS], start=1):
+        place = transforms.apply(setting.head_to_world, checkpoint.position)
+        place = place + hands.check_sd_mm * random.normal(size=3)
+        error = np.linalg.norm(transforms.apply(used.world_to_head, place) - checkpoint.position)
+        time_s = touching_s + 4.0 * number
+        touched.append(TouchedCheckpoint(checkpoint.name, _triple(place), float(error), time_s))
+    return tuple(touched)
+
+
+def _across(direction: np.ndarray) -> np.ndarray:
+    """Return two unit vectors across a direction, (2, 3) float."""
+    helper = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    first = np.cross(direction, helper)
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(direction, first)])
+
+
+def _spread(random: np.random.Generator) -> float:
+    return float(np.exp(TIME_SD * random.normal()))
+
+
+def _triple(values: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in values)
+    return x, y, z

@@ -1,0 +1,94 @@
+"""A procedure at all of its limits still fits into the messages, the study and the score."""
+
+import json
+
+import numpy as np
+
+from rastrainer.finite_json import MAX_MESSAGE_VALUES, MAX_RECORD_VALUES
+from rastrainer.procedure.plan import MAX_TRAJECTORIES, ProcedureKind
+from rastrainer.procedure.record import (
+    MAX_ALIGNMENTS,
+    MAX_ATTEMPTS,
+    MAX_FEED_METRICS,
+    MAX_TOUCHED_CHECKPOINTS,
+)
+from rastrainer.protocol import (
+    FIDUCIAL_COUNT,
+    PROCEDURE_PHASES,
+    CommandName,
+    check_arguments,
+    decode_json_object,
+    decode_told_object,
+)
+from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES
+from rastrainer.trial.record import TrialRecord
+from Testing.domain.trial.trial_records import make_record
+
+DIGITS = 123.45678901234567
+PHASES = ["running", *(phase.value for phase in PROCEDURE_PHASES)]
+
+
+def largest_record():
+    """The record of a trial whose procedure reaches every limit, with all digits."""
+    turned = [*np.eye(4).ravel().tolist()]
+    checked = {"name": "C" * 60, "positionMm": [DIGITS] * 3, "errorMm": DIGITS, "simTime": DIGITS}
+    per_attempt, more = divmod(MAX_TOUCHED_CHECKPOINTS, MAX_ATTEMPTS)
+    assert more == 0
+    attempt = {
+        "touches": [
+            {"label": str(number + 1), "positionMm": [DIGITS] * 3}
+            for number in range(FIDUCIAL_COUNT)
+        ],
+        "registration": {"matrix": turned, "freMm": DIGITS, "expectedTreMm": DIGITS},
+        "checkpoints": [checked] * per_attempt,
+    }
+    instruments = [
+        {
+            "trajectory": f"Line {number} {'x' * 50}",
+            "entryRas": [DIGITS] * 3,
+            "targetRas": [DIGITS] * 3,
+            "diameterMm": 1.3,
+            "guideTipMm": [DIGITS] * 3,
+            "guideDirection": [0.0, 0.0, -1.0],
+            "alignments": MAX_ALIGNMENTS,
+            "drillDepthMm": DIGITS,
+            "instrumentDepthMm": DIGITS,
+            "selfAligned": True,
+            "timesS": dict.fromkeys(PHASES, DIGITS),
+            "feed": {f"metric_{metric}": DIGITS for metric in range(MAX_FEED_METRICS)},
+        }
+        for number in range(MAX_TRAJECTORIES)
+    ]
+    return make_record(
+        procedure={
+            "procedure": "p" * 40,
+            "kind": ProcedureKind.SEEG.value,
+            "sha256": "0" * 64,
+            "durationS": 9999.0,
+            "attempts": [attempt] * MAX_ATTEMPTS,
+            "instruments": instruments,
+            "phaseTimesS": dict.fromkeys(PHASES, DIGITS),
+        }
+    )
+
+
+def test_slicer_accepts_the_record_of_the_longest_procedure_and_a_study_stores_it():
+    record = largest_record()
+    text = json.dumps(record)
+    assert MAX_MESSAGE_VALUES < text.count(",") < MAX_RECORD_VALUES
+    read = TrialRecord.from_json(decode_told_object(text)).procedure
+    assert len(read.attempts) == MAX_ATTEMPTS
+    assert sum(len(attempt.checkpoints) for attempt in read.attempts) == MAX_TOUCHED_CHECKPOINTS
+    assert len(read.instruments) == MAX_TRAJECTORIES
+    assert len(text) < RECORD_LIMIT_BYTES
+
+
+def test_the_simulator_accepts_the_score_of_the_longest_procedure():
+    """Twelve values for each line, as `ProcedureOutcome.summary` has them."""
+    line = {"name": "x" * 60, "nearest": "y" * 60, "plungeMm": None} | {
+        f"value{number}Mm": DIGITS for number in range(9)
+    }
+    details = {"procedure": {"score": DIGITS, "trajectories": [line] * MAX_TRAJECTORIES}}
+    trial_id = make_record()["trialId"]
+    told = json.dumps({"trialId": trial_id, "score": 50.0, "details": details})
+    assert check_arguments(CommandName.TRIAL_SCORED, decode_json_object(told))["score"] == 50.0

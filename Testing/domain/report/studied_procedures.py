@@ -1,0 +1,53 @@
+"""Procedures for the trials of a study in tests: errors by a registration and by hands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.procedure.plan import ProcedureKind
+from rastrainer.procedure.score import ProcedureMeasures, score_procedure
+from rastrainer.study.database.values import StoredProcedure
+from rastrainer.study.study_data import StudyData
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
+from Testing.domain.procedure.procedure_records import recorded
+
+SHIFT_MM = np.array([0.3, 0.4, 0.0])
+"""By which a registration moves the whole plan: 0.5 mm."""
+TOO_DEEP_MM = 1.2
+
+
+def outcome(kind: ProcedureKind, number: int = 0) -> ProcedureOutcome:
+    """Return the outcome of a procedure whose lines are shifted, and its instruments too deep.
+
+    `number` makes the shift larger, and the hands stay the same.
+    """
+    procedure = replace(made_up_procedure(), name=kind.value, kind=kind)
+    shift = transforms.rigid(np.eye(3), SHIFT_MM * (1 + number))
+    done = recorded(procedure, shift, drill=15.0)
+    deeper = tuple(
+        replace(one, instrument_depth_mm=one.instrument_depth_mm + TOO_DEEP_MM)
+        for one in done.instruments
+    )
+    done = replace(done, instruments=deeper)
+    analysis = analyze_procedure(done, procedure, made_up_meshes(), np.eye(4))
+    return ProcedureOutcome(analysis, score_procedure(ProcedureMeasures.of(analysis), 300.0))
+
+
+def with_procedures(data: StudyData) -> StudyData:
+    """Return a study whose trials continued with a procedure, of each kind in turn."""
+    kinds = list(ProcedureKind)
+    return replace(
+        data,
+        trials=tuple(
+            replace(
+                trial,
+                procedure=StoredProcedure.of(outcome(kinds[row % len(kinds)], row % 4)),
+            )
+            for row, trial in enumerate(data.trials)
+        ),
+    )

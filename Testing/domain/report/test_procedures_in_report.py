@@ -1,0 +1,41 @@
+"""The report tells what of the target point error the registration and the hands caused."""
+
+import re
+
+import pytest
+
+from rastrainer.report.report import report_html
+from rastrainer.report.sections.procedures import procedures
+from Testing.domain.report.studied_procedures import TOO_DEEP_MM, with_procedures
+from Testing.domain.report.test_report import cohort
+
+
+@pytest.fixture(scope="module")
+def words():
+    text = re.sub(r"<[^>]+>", " ", procedures(with_procedures(cohort(4))))
+    return " ".join(text.replace("\N{NO-BREAK SPACE}", " ").split())
+
+
+def test_the_split_is_told_over_all_kinds_and_for_each(words):
+    assert "24 of 24 trials continued with a procedure: 48 lines in all, by 4 trainees." in words
+    assert f"that of the hands {TOO_DEEP_MM:.2f} mm" in words
+    # Shifts of 0.5, 1.0, 1.5 and 2.0 mm in turn: RMS 1.37 mm.
+    assert "the part that the registration caused was 1.37 mm" in words
+    for kind in ("Biopsy 8 16 4", "DBS 8 16 4", "SEEG 8 16 4", "all 24 48 4"):
+        assert kind in words
+
+
+def test_whether_registration_or_hands_caused_more_is_said_with_its_interval(words):
+    assert re.search(r"registration minus hands, as RMS of each trainee, was −?\d\.\d\d mm", words)
+    assert re.search(r"\[95 %: −?\d\.\d\d, −?\d\.\d\d\]", words)
+
+
+def test_published_figures_are_for_orientation_with_their_sources(words):
+    assert "phantoms: RONNA G3, ROSA, Leksell 0.43, 0.53, 0.72 doi:10.3389/fnbot.2022" in words
+    assert "patients, DBS 1.91 doi:10.1093/neuros/nyaa428" in words
+    assert "They are no pass marks" in words
+
+
+def test_a_study_of_touches_alone_has_no_such_section():
+    assert procedures(cohort(2)) == ""
+    assert "from the registration to the target" not in report_html(cohort(2), "today")

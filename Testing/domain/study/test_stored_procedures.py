@@ -1,0 +1,80 @@
+"""The outcome of a procedure is stored with its trial, and counts for the step that asks for it."""
+
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.procedure.plan import ProcedureKind
+from rastrainer.procedure.score import PROCEDURE_SCORE_VERSION
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredProcedure
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.trial.record import TrialRecord
+from Testing.domain.report.studied_procedures import TOO_DEEP_MM, outcome
+from Testing.domain.trial.trial_records import gentle_score, make_record
+
+DBS = outcome(ProcedureKind.DBS)
+
+
+@pytest.fixture
+def study(tmp_path):
+    with Study.open(tmp_path / "study.db") as opened:
+        yield opened
+
+
+def record(number, procedure=None):
+    value = make_record(
+        trialId=f"00000000-0000-0000-0000-00000000000{number}",
+        startedUtc=f"2999-01-01T10:0{number}:00Z",
+        completedUtc=f"2999-01-01T10:0{number}:30Z",
+    )
+    if procedure is not None:
+        value["procedure"] = procedure.to_json()
+    return TrialRecord.from_json(value)
+
+
+def test_an_outcome_is_stored_beside_the_score_of_the_touches(study):
+    trial = record(1, DBS.analysis.record)
+    study.add_trial(trial)
+    assert study.trial(trial.trial_id).procedure is None
+    assert study.history(trial.trainee)[0].procedure is None
+    study.add_results(trial.trial_id, score=gentle_score(110.0, 0.5), procedure=DBS)
+    stored = study.trial(trial.trial_id)
+    assert stored.procedure.score == DBS.score
+    assert stored.procedure.score.version == PROCEDURE_SCORE_VERSION
+    assert stored.score.version != PROCEDURE_SCORE_VERSION
+    assert (stored.procedure.name, stored.procedure.kind) == ("dbs", "dbs")
+    first = stored.procedure.trajectories[0]
+    assert first["targetPointError"]["byRegistrationMm"] == pytest.approx(0.5)
+    assert first["depthErrorByHandMm"] == pytest.approx(TOO_DEEP_MM)
+    # What was read before is read again.
+    assert study.history(trial.trainee)[0].procedure == stored.procedure
+    assert StoredProcedure.from_json(stored.procedure.to_json()) == stored.procedure
+
+
+def test_the_outcome_goes_with_its_trainee(study):
+    trial = record(1, DBS.analysis.record)
+    study.add_trial(trial)
+    study.add_results(trial.trial_id, procedure=DBS)
+    study.delete_trainee(trial.trainee)
+    with study.database.reading() as connection:
+        count = connection.execute("SELECT count(*) FROM procedure_outcomes").fetchone()[0]
+    assert count == 0
+
+
+def test_only_a_trial_with_the_procedure_counts_for_a_step_that_asks_for_it(study):
+    protocol = StudyProtocol(
+        "p", "P", ("desktop",), "fixed", ("task-2",), "fixed", procedures={"task-2": "dbs"}
+    )
+    progress = StudyProgress(study)
+    progress.set_protocol(protocol)
+    trainee = record(1).trainee
+    study.create_trainee(trainee)
+    progress.enroll(trainee)
+    played = {"task": "task-2", "mode": "desktop"}
+    for number, procedure in enumerate([None, outcome(ProcedureKind.SEEG), DBS], start=1):
+        done = None if procedure is None else procedure.analysis.record
+        study.add_trial(replace(record(number, done), **played))
+        counted = progress.count_played(trainee).counted_trials
+        assert counted == ((record(3).trial_id,) if number == 3 else ())

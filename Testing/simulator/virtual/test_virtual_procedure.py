@@ -1,0 +1,82 @@
+"""Virtual trainees carry procedures out: a split that is known, and a study that has it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
+from rastrainer.report.sections.procedures import procedures
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.virtual.cohort import simulate_cohort
+from rastrainer_simulator.virtual.play import PlaySettings
+from rastrainer_simulator.virtual.scripted_trainee import Skill
+from rastrainer_simulator.virtual.virtual_procedure import (
+    ProcedureHands,
+    ProcedureSetting,
+    carry_out,
+)
+
+SCENARIO = load_scenario(asset_path("scenarios", "colin27"))
+SEEG = SCENARIO.procedure("seeg")
+TRUTH = SCENARIO.perturbed_head_to_world(3)
+OFF = transforms.rigid(np.eye(3), np.array([1.0, 0.0, 0.0]))
+
+
+@pytest.fixture(scope="module")
+def meshes():
+    return read_procedure_meshes(SEEG, SCENARIO.skull_mesh)
+
+
+def analyzed(meshes, hands, seed=1):
+    """Errors of SEEG by a registration that moves the plan by 1 mm."""
+    setting = ProcedureSetting(SEEG, meshes.skull, "0" * 64, TRUTH)
+    matrix = transforms.inverse(TRUTH @ OFF)
+    used = UsedRegistration(tuple(float(value) for value in matrix.ravel()), 0.5, 0.4)
+    done = carry_out(setting, used, 100.0, hands, np.random.default_rng(seed))
+    assert ProcedureRecord.from_json(done.to_json()) == done
+    return done, analyze_procedure(done, SEEG, meshes, TRUTH)
+
+
+def test_steady_hands_leave_the_error_of_the_registration_alone(meshes):
+    hands = ProcedureHands(0.0, 0.0, 0.0, 0.0, 0.0)
+    done, analysis = analyzed(meshes, hands)
+    for errors in analysis.trajectories:
+        assert errors.target.registration_mm == pytest.approx(1.0, abs=1e-6)
+        assert errors.target.hand_mm == pytest.approx(0.0, abs=1e-6)
+        assert errors.plunge_mm == pytest.approx(0.0, abs=1e-6)
+    (attempt,) = done.attempts
+    assert [check.error_mm for check in attempt.checkpoints] == pytest.approx([1.0] * 3, abs=1e-6)
+
+
+def test_the_scatter_of_hands_is_that_of_their_skill(meshes):
+    hands = ProcedureHands.of(replace(Skill(), aim_sd_mm=2.0 * Skill().aim_sd_mm))
+    assert hands.depth_sd_mm == pytest.approx(2.0 * ProcedureHands().depth_sd_mm)
+    found = [analyzed(meshes, hands, seed)[1] for seed in range(40)]
+    by_hand = [each.depth[2] for one in found for each in one.trajectories]
+    assert np.std(by_hand) == pytest.approx(hands.depth_sd_mm, rel=0.15)
+    plunges = [each.plunge_mm for one in found for each in one.trajectories]
+    assert np.mean(plunges) == pytest.approx(hands.plunge_mm, rel=0.2)
+
+
+def test_a_cohort_whose_protocol_names_a_procedure_is_reported_with_the_split(
+    protocol, population, tmp_path
+):
+    asked = replace(protocol, modes=("desktop",), procedures={"task-1": "dbs"})
+    settings = PlaySettings()
+    with pytest.raises(InputError, match="hold the touches alone"):
+        simulate_cohort(asked, population, 1, 7, tmp_path / "x", settings, with_journals=True)
+    run = simulate_cohort(asked, population, 1, 7, tmp_path / "study", settings, workers=1)
+    assert (run.played, run.stuck) == (1, 0)
+    data = read_study_data(tmp_path / "study" / "study.db")
+    (trial,) = data.trials
+    assert trial.procedure.name == "dbs"
+    assert trial.values["procedure_target_rms_mm"] > 0.0
+    assert trial.values["procedure_score"] == trial.procedure.score.score
+    assert "1 of 1 trial continued with a procedure: 2 lines in all" in procedures(data)
