@@ -108,6 +108,7 @@ class ProcedureTrainee(StreamTrainee):
 
     def _turn_along(self) -> None:
         """Turn the guide by the second stick until it is parallel to the line."""
+        self.hands.push(0.0, 0.0, 0.0, False)
         while self.procedure["aim"]["angleDeg"] > 0.6 * ALIGNED_DEG:
             entry, target = self.line
             wanted = (target - entry) / np.linalg.norm(target - entry)

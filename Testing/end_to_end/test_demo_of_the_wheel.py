@@ -8,7 +8,15 @@ from email.parser import HeaderParser
 
 import pytest
 
-NAMES = ("robot.png", "residuals.png", "trial.mrb", "study.db", "records", "results.jsonl")
+NAMES = (
+    "robot.png",
+    "residuals.png",
+    "procedure.png",
+    "trial.mrb",
+    "study.db",
+    "records",
+    "results.jsonl",
+)
 WITHOUT_SLICER = """
 import sys
 sys.modules["slicer"] = None

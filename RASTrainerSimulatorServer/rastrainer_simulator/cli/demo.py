@@ -1,5 +1,7 @@
 """`rastrainer demo`: simulator, Slicer's side and a virtual trainee play two trials.
 
+After the touches of the second one, two electrodes are placed by its registration.
+
 Each is a separate process; they communicate by OpenIGTLink.
 """
 
@@ -24,8 +26,9 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import DEFAULT_HOST, FIDUCIAL_COUNT, TRIAL_RUN, Proximity
 from rastrainer.python_environment import python_words
 from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.demo_summary import trial_summary
+from rastrainer_simulator.cli.demo_summary import procedure_summary, trial_summary
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 
 
@@ -49,6 +52,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 TASKS = (TRIAL_RUN, "task-1")
+PROCEDURES = {"task-1": "dbs"}
+"""What follows the touches of a task."""
 TRAINEE = "trainee-01"
 BAR_WIDTH = 30
 SLICER_TIMEOUT_S = 60.0
@@ -70,14 +75,17 @@ def play_demo(output: Path, seed: int, speed: float) -> None:
     output.mkdir(parents=True)
     scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
     with _simulator(output, seed, speed) as port, _slicer(output, port) as slicer:
-        states = _play(port, scenario, seed, speed)
+        states, record = _play(port, scenario, seed, speed)
         print("Slicer's side registers, scores, stores and draws ...", flush=True)
         _wait_for(slicer, output / "slicer.log")
     lines = (output / "results.jsonl").read_text(encoding="utf-8").splitlines()
     trials = [json.loads(line) for line in lines]
     _draw_robot(output / "robot.png", scenario, states[-1], trials[-1])
+    head_to_world = np.array(trials[-1]["truth"]["head_to_world"])
+    _draw_procedure(output / "procedure.png", scenario, record, head_to_world)
     for trial in trials:
         print("\n" + trial_summary(trial, scenario.task(trial["task"]).title))
+    print("\n" + procedure_summary(record, scenario, head_to_world))
     print(f"\nWritten to {output} in {time.monotonic() - started:.0f} s: {_listing(output)}.")
 
 
@@ -146,21 +154,35 @@ def _process(words: list[str], log: TextIO, stdout: Any) -> Iterator[subprocess.
             process.wait()
 
 
-def _play(port: int, scenario: Scenario, seed: int, speed: float) -> list[dict[str, Any]]:
+def _play(
+    port: int, scenario: Scenario, seed: int, speed: float
+) -> tuple[list[dict[str, Any]], TrialRecord]:
+    """Play the tasks; return the states at their last touches, and the record with a procedure."""
+    from rastrainer_simulator.virtual.scripted_procedure import play_procedure
     from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
 
-    states = []
+    states, records = [], []
     with Client(DEFAULT_HOST, port) as client:
         say_hello(client, "scripted trainee")
         for number, name in enumerate(TASKS):
             title = scenario.task(name).title
             print(f"{TRAINEE} plays {title} ({speed:g} times faster than real time)")
+            procedure = PROCEDURES.get(name, "")
             trial = play_trial(
-                client, scenario, name, TRAINEE, seed + number, on_progress=_Bar(title)
+                *(client, scenario, name, TRAINEE, seed + number),
+                on_progress=_Bar(title),
+                procedure=procedure,
             )
             print()
             states.append(trial.last_state)
-    return states
+            if procedure:
+                print(scenario.procedure(procedure).title, flush=True)
+                records.append(play_procedure(client, scenario, trial.trial_id, _tell))
+    return states, records[-1]
+
+
+def _tell(done: str) -> None:
+    print(f"  {done}", flush=True)
 
 
 class _Bar:
@@ -217,6 +239,18 @@ def _draw_robot(
         scenario.cameras["far"],
         inset=scenario.cameras["close-up"],
     )
+
+
+def _draw_procedure(
+    path: Path, scenario: Scenario, record: TrialRecord, head_to_world: np.ndarray
+) -> None:
+    """Draw the planned, the registered and the placed lines in the head."""
+    from rastrainer_simulator.rendering.procedure_picture import draw_procedure, procedure_lines
+
+    assert record.procedure is not None, "it was carried out"
+    procedure = scenario.procedure(record.procedure.procedure)
+    lines = procedure_lines(record.procedure, procedure, head_to_world)
+    draw_procedure(path, read_head_mesh(scenario.head_mesh), procedure, lines)
 
 
 def _listing(folder: Path) -> str:

@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from rastrainer.registration.target_error import INTERVAL_NOTE
+from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.ctps import CTPS_WARNING
+from rastrainer.trial.procedure_outcome import procedure_outcome
+from rastrainer.trial.record import TrialRecord
 
 
 def trial_summary(trial: Mapping[str, Any], title: str) -> str:
@@ -35,6 +40,27 @@ def trial_summary(trial: Mapping[str, Any], title: str) -> str:
         *_residuals(trial["labels"], rigid["residuals_mm"]),
     ]
     lines += [f"  Warning: {warning['message']}" for warning in rigid["warnings"]]
+    return "\n".join(lines)
+
+
+def procedure_summary(record: TrialRecord, scenario: Scenario, head_to_world: np.ndarray) -> str:
+    """Return a summary of the errors of a trial's procedure against the truth, for people.
+
+    `head_to_world` is the true pose, (4, 4) float, mm.
+    """
+    outcome = procedure_outcome(record, scenario, head_to_world)
+    assert outcome is not None, "the trial has a procedure"
+    procedure = scenario.procedure(outcome.analysis.record.procedure)
+    lines = [f"{procedure.title}, errors by registration and by hand in brackets"]
+    for each in outcome.analysis.trajectories:
+        lines.append(f"  {each.trajectory.name}")
+        for name, error in (("Target point error", each.target), ("Entry point error", each.entry)):
+            parts = f"({error.registration_mm:.2f} and {error.hand_mm:.2f})"
+            lines.append(_line(f"  {name}", error.length_mm, f"mm {parts}"))
+        parts = f"({each.registration_angle_deg:.2f} and {each.hand_angle_deg:.2f})"
+        lines.append(_line("  Angular deviation", each.angle_deg, f"° {parts}"))
+        lines.append(_line("  Plunge depth", each.plunge_mm or 0.0, "mm"))
+    lines.append(_line("Score of the procedure", outcome.score.score, "of 100"))
     return "\n".join(lines)
 
 

@@ -20,12 +20,6 @@ from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.training.feed import FeedLayer
 
 FED = (Phase.DRILLING, Phase.INSERTING)
-_TURN = (
-    ControlName.TURN_UP,
-    ControlName.TURN_LEFT,
-    ControlName.TURN_DOWN,
-    ControlName.TURN_RIGHT,
-)
 _FELT: Mapping[str, Tone] = {
     FeedLayer.BONE.value: Tone.PLAIN,
     FeedLayer.THROUGH.value: Tone.WARNING,
@@ -188,8 +182,12 @@ class ProcedureScreen(ArmScreen):
             return (Hint(up_and_down, say("hint.feed")),)
         if session.is_typing_possible((SourceKind.XR,)):
             return ()
-        turn = (Hint(session.stick_label(_TURN), say("hint.turn")),)
-        return (*self._movement_hints(), *(turn if phase is Phase.ALIGNING else ()))
+        if phase is not Phase.ALIGNING:
+            return self._movement_hints()
+        turn = session.pair_label(ControlName.TURN_LEFT, ControlName.TURN_RIGHT)
+        tilt = session.pair_label(ControlName.TURN_DOWN, ControlName.TURN_UP)
+        turning = (Hint(turn, say("hint.turn")), Hint(tilt, say("hint.tilt")))
+        return (*self._movement_hints(), *turning)
 
     def _why_not_registered(self) -> tuple[ScreenMessage, ...]:
         """Return why the touches are not registered yet, if that will not change by itself."""

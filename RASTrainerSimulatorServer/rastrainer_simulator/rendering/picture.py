@@ -76,6 +76,7 @@ class SceneMoment:
 
 def apply_material(material: Material, target: vtkProperty) -> None:
     """Set a material on an actor's property."""
+    target.SetOpacity(material.opacity)
     if material.glowing:
         # Shadows need a lit material: switching its lighting off breaks their shader.
         target.SetColor(*material.color)
@@ -151,12 +152,12 @@ def render_picture(
     pixels = window.frame(camera, size)
     if inset:
         width, height = (round(INSET_SHARE * length) for length in size)
-        _lay_in_corner(pixels, window.frame(inset, (width, height)))
+        lay_in_corner(pixels, window.frame(inset, (width, height)))
     window.close()
     write_png(pixels, path)
 
 
-def _lay_in_corner(pixels: np.ndarray, inset: np.ndarray) -> None:
+def lay_in_corner(pixels: np.ndarray, inset: np.ndarray) -> None:
     """Lay a framed inset over the upper right corner; both (height, width, 3) uint8."""
     frame = max(1, round(FRAME_SHARE * pixels.shape[0]))
     margin = 3 * frame

@@ -40,7 +40,7 @@ def say_hello(client: Client, name: str) -> None:
         TrialStoppedError: it speaks another version of the protocol.
     """
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": name, "steady": True}
-    _send(client, CommandName.HELLO, hello)
+    send(client, CommandName.HELLO, hello)
 
 
 def play_trial(
@@ -51,11 +51,13 @@ def play_trial(
     seed: int,
     skill: Skill | None = None,
     on_progress: Callable[[dict[str, Any]], None] = lambda _state: None,
+    procedure: str = "",
 ) -> ScriptedTrialResult:
     """Play one task from its start to its registration, by commands alone.
 
     `StartTask` gets the same seed, by which the scripted trainee knows where the head is, as a
-    person sees on the screen. `on_progress` gets every new `SimState`.
+    person sees on the screen. `on_progress` gets every new `SimState`. `procedure` is to follow the
+    registration; it is carried out by others.
 
     Raises:
         TrialStoppedError: the server refused a command, or the tip did not reach a fiducial.
@@ -64,7 +66,9 @@ def play_trial(
     head_to_world = scenario.perturbed_head_to_world(seed)
     trainee = ScriptedTrainee.of(scenario, task_name, head_to_world, skill or Skill(), seed)
     start = {"task": task_name, "trainee": trainee_id, "mode": Mode.DESKTOP.value, "seed": seed}
-    trial_id = _send(client, CommandName.START_TASK, start)["trialId"]
+    if procedure:
+        start["procedure"] = procedure
+    trial_id = send(client, CommandName.START_TASK, start)["trialId"]
     view = _View(client, trial_id, on_progress)
     observation = view.next_observation()
     ends_at_s = observation.sim_time_s + LONGEST_TRIAL_S
@@ -127,7 +131,12 @@ def _state(message: Message) -> dict[str, Any]:
     return json.loads(message.content.text)
 
 
-def _send(client: Client, name: str, arguments: dict[str, Any]) -> dict[str, Any]:
+def send(client: Client, name: str, arguments: dict[str, Any]) -> dict[str, Any]:
+    """Have a command carried out, and return the data of its answer.
+
+    Raises:
+        TrialStoppedError: it was refused.
+    """
     reply = client.send_command(name, arguments, ANSWER_TIMEOUT_S)
     if not reply.ok:
         raise TrialStoppedError(f"{name} was refused: {reply.error}")

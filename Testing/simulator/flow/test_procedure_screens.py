@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.procedure_outcome import procedure_outcome
@@ -20,6 +21,14 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.screen import Tone
 from rastrainer_simulator.procedure_state import Tool
+from rastrainer_simulator.rendering.procedure_picture import (
+    PLACED,
+    PLANNED,
+    SHOWN,
+    draw_procedure,
+    procedure_lines,
+)
+from Testing.read_png import read_png
 from Testing.simulator.flow.conftest import Outside
 from Testing.simulator.flow.trainee import Keys, Trainee
 from Testing.simulator.planned_procedures import ENTRIES, TARGETS, procedure_setup
@@ -192,6 +201,7 @@ def score(operation: Operation) -> None:
     head_to_world = np.reshape(truth["headToWorld"], (4, 4))
     scenario = trainee.loop.setup.scenario
     operation.outcome = procedure_outcome(record, scenario, head_to_world)
+    operation.record, operation.head_to_world = record.procedure, head_to_world
     details = {"procedure": operation.outcome.summary()}
     scored = trainee.submit("TrialScored", trialId=record.trial_id, score=70.0, details=details)
     assert scored.ok, scored.message
@@ -342,3 +352,21 @@ def test_the_menu_offers_the_robot_s_alignment_only_where_it_is_allowed(operatio
         "retract",
         "work",
     ]
+
+
+def test_the_picture_of_a_procedure_shows_the_same_lines_as_the_head_in_the_views(
+    operation, tmp_path
+):
+    scenario = operation.trainee.loop.setup.scenario
+    procedure = scenario.procedure("dbs")
+    lines = procedure_lines(operation.record, procedure, operation.head_to_world)
+    truth = operation.trainee.loop.truth
+    drawn = [truth.in_world(np.array(line[1])) / MM_PER_M for three in lines for line in three]
+    ends = [arrow.end for arrow in screen_of(operation, "lines").errors]
+    np.testing.assert_allclose(drawn, ends, atol=MICROMETRE)
+    path = tmp_path / "procedure.png"
+    draw_procedure(path, read_head_mesh(scenario.head_mesh), procedure, lines)
+    pixels = read_png(path).reshape(-1, 3)
+    for color in (PLANNED, SHOWN, PLACED):
+        is_that = np.abs(pixels - 255.0 * np.array(color.color)).max(axis=1) < 40.0
+        assert is_that.sum() > 100, color.name

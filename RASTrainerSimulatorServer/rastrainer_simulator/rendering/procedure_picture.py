@@ -1,0 +1,134 @@
+"""A picture of a finished procedure: plan, registered line and placed instrument in the head."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.vtkRenderingCore import vtkRenderer
+
+from rastrainer import transforms
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.procedure.plan import Procedure
+from rastrainer.procedure.record import ProcedureRecord
+from rastrainer.scenario.scenario import Camera
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.rendering.lighting import Shadows, light_room
+from rastrainer_simulator.rendering.offscreen import OffscreenWindow, write_png
+from rastrainer_simulator.rendering.picture import lay_in_corner, node_actors
+from rastrainer_simulator.scene.nodes import SKIN, Material, Node
+from rastrainer_simulator.scene.procedure_nodes import plan_node
+from rastrainer_simulator.scene.surfaces import shaded, turned
+from rastrainer_simulator.vectors import any_perpendicular, vector
+
+CLEAR_SKIN = replace(SKIN, name="clear_skin", opacity=0.25)
+PLANNED = Material("planned", (0.10, 0.75, 0.30), glowing=True)
+SHOWN = Material("shown", (1.0, 0.75, 0.05), glowing=True)
+PLACED = Material("placed", (0.15, 0.45, 1.0), glowing=True)
+LINE_MM, BALL_MM = 0.45, 1.6
+SIZE = (1600, 1000)
+AWAY_MM, ANGLE_DEG = 420.0, 26.0
+"""Of the camera from the middle of all lines, and its opening."""
+INSET_SHARE, INSET_ERRORS = 0.27, 5.0
+"""Size of the picture of the first target in the corner; it is so many errors high."""
+LEAST_ERROR_MM = 0.2
+FROM = np.array([0.75, 0.75, 0.35])
+"""Where it looks from, RAS: the patient's right front, from above."""
+
+Line = tuple[np.ndarray, np.ndarray]
+
+
+def procedure_lines(
+    record: ProcedureRecord, procedure: Procedure, head_to_world: np.ndarray
+) -> list[tuple[Line, Line, Line]]:
+    """Return for each trajectory the planned, the shown and the placed line, truly, RAS mm.
+
+    `head_to_world` is the true pose, (4, 4) float, mm.
+    """
+    to_ras = transforms.inverse(head_to_world)
+    shown_to_ras = to_ras @ transforms.inverse(record.accepted.world_to_head)
+    lines = []
+    for plan, one in zip(procedure.trajectories, record.instruments, strict=True):
+        planned = np.array([plan.entry, plan.target])
+        ends = np.array([one.guide_tip_mm, one.at_depth(one.instrument_depth_mm)])
+        shown, placed = transforms.apply(shown_to_ras, planned), transforms.apply(to_ras, ends)
+        lines.append(((planned[0], planned[1]), (shown[0], shown[1]), (placed[0], placed[1])))
+    return lines
+
+
+def draw_procedure(
+    path: Path, head: HeadMesh, procedure: Procedure, lines: Sequence[tuple[Line, Line, Line]]
+) -> None:
+    """Write a PNG of a head that is seen through, with its no-go structures and lines.
+
+    The plan is green, the registered line yellow, the placed instrument blue. The corner shows the
+    ends of the first three, magnified.
+
+    Raises:
+        InputError: the picture cannot be written, or a mesh cannot be used.
+    """
+    nodes = [Node("skin", (shaded(head.vertices / MM_PER_M, head.triangles, CLEAR_SKIN),))]
+    nodes += [replace(node, is_hidden=False) for node in plan_node([procedure]).children]
+    pixels = _picture([*nodes, *_line_nodes(lines, 1.0)], _camera(lines), SIZE)
+    ends = [line[1] for line in lines[0]]
+    error_mm = max(LEAST_ERROR_MM, *(float(np.linalg.norm(end - ends[0])) for end in ends))
+    size = (round(INSET_SHARE * SIZE[0]), round(INSET_SHARE * SIZE[1]))
+    near = _near_camera(np.mean(ends, axis=0), INSET_ERRORS * error_mm)
+    lay_in_corner(pixels, _picture(_line_nodes(lines[:1], error_mm / 8.0), near, size))
+    write_png(pixels, path)
+
+
+def _picture(nodes: Sequence[Node], camera: Camera, size: tuple[int, int]) -> np.ndarray:
+    """Return (height, width, 3) uint8."""
+    renderer = vtkRenderer()
+    for actor in node_actors(nodes, {}, {}):
+        renderer.AddActor(actor)
+    light_room(renderer, Shadows.NONE)
+    renderer.SetBackground(0.93, 0.94, 0.95)
+    window = OffscreenWindow(renderer)
+    pixels = window.frame(camera, size)
+    window.close()
+    return pixels
+
+
+def _line_nodes(lines: Sequence[tuple[Line, Line, Line]], thickness: float) -> list[Node]:
+    """Return all lines, so many times as thick as usual."""
+    return [
+        _line_node(f"{material.name}_{number}", line, material, thickness)
+        for number, three in enumerate(lines)
+        for line, material in zip(three, (PLANNED, SHOWN, PLACED), strict=True)
+    ]
+
+
+def _line_node(name: str, line: Line, material: Material, thickness: float) -> Node:
+    """Return a thin cylinder with a ball at its end, RAS in m."""
+    start, end = (np.asarray(point) / MM_PER_M for point in line)
+    length = float(np.linalg.norm(end - start))
+    along = (end - start) / length
+    across = np.array(any_perpendicular(vector(along.tolist())))
+    pose = np.eye(4)
+    pose[:3, :3] = np.column_stack([across, np.cross(along, across), along])
+    pose[:3, 3] = start
+    radius, ball = (thickness * size / MM_PER_M for size in (LINE_MM, BALL_MM))
+    shaft = turned(0.0, 0.0, [(radius, 0.0), (radius, length)], material, pose)
+    angles = np.linspace(-np.pi / 2, np.pi / 2, 12)
+    profile = [(ball * np.cos(a) + 1e-7, length + ball * np.sin(a)) for a in angles]
+    return Node(name, (shaft, turned(0.0, 0.0, profile, material, pose)))
+
+
+def _camera(lines: Sequence[tuple[Line, Line, Line]]) -> Camera:
+    """Return a camera that sees all lines from the patient's right front."""
+    ends = np.array([line[1] for three in lines for line in three])
+    starts = np.array([line[0] for three in lines for line in three])
+    middle = (ends.mean(axis=0) + starts.mean(axis=0)) / 2
+    position = middle + AWAY_MM * FROM / np.linalg.norm(FROM)
+    return Camera(position, middle, np.array([0.0, 0.0, 1.0]), ANGLE_DEG)
+
+
+def _near_camera(place: np.ndarray, height_mm: float) -> Camera:
+    """Return a camera that sees so much about a place, from the same side."""
+    angle_deg = float(np.degrees(2.0 * np.arctan(0.5 * height_mm / AWAY_MM)))
+    position = place + AWAY_MM * FROM / np.linalg.norm(FROM)
+    return Camera(position, place, np.array([0.0, 0.0, 1.0]), angle_deg)
