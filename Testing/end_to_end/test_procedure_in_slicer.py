@@ -130,6 +130,12 @@ def led(tmp_path_factory):
             for role in (Role.PLANNED_LINE, Role.REGISTERED_LINE, Role.TRUE_LINE)
         }
         seen["answers"] = leader.answers
+        procedure.showOutcome(None)
+        seen["cleared"] = len(nodesOf(session._scene, LINE, Role.PLANNED_LINE))
+        with session.openStudy() as study:
+            session.replay.show(study.history("anna")[0])
+        seen["shown again"] = procedure.outcome
+        seen["lines again"] = len(nodesOf(session._scene, LINE, Role.TRUE_LINE))
         session.close()
     with Study.open_for_reading(folder / "study.db") as study:
         (seen["stored"],) = study.history("anna")
@@ -146,6 +152,19 @@ def test_the_procedure_is_registered_led_and_scored_by_slicer(led):
     assert errors.instrument.self_aligned
     assert outcome.score.version == "procedure-1"
     assert led["lines"] == dict.fromkeys(led["lines"], 1)
+
+
+def test_the_score_of_the_procedure_is_stored_beside_that_of_the_touches(led):
+    stored = led["stored"]
+    assert stored.procedure.score == led["outcome"].score
+    assert stored.score is not None
+
+
+def test_a_stored_trial_is_shown_again_with_its_lines(led):
+    assert led["cleared"] == 0
+    assert led["lines again"] == 1
+    again, first = led["shown again"].analysis, led["outcome"].analysis
+    assert again.target_rms_mm == pytest.approx(first.target_rms_mm)
 
 
 def test_the_slices_lie_along_the_instrument_and_are_then_as_they_were(led):

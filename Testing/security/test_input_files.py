@@ -17,6 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.markups import read_markups, read_points
 from rastrainer.files.nrrd import read_nrrd, write_nrrd
 from rastrainer.files.reading import MAX_DEPTH, MAX_ELEMENTS
+from rastrainer.procedure.plan import read_procedure
 from rastrainer.scenario.package import checked_scenario, unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import read_setup
@@ -75,6 +76,12 @@ def _scenario(path: Path) -> object:
 
 JSON_FAMILIES = {
     "scenario": Family(_scenario, lambda _: (SCENARIO / "scenario.json").read_bytes()),
+    "procedure": Family(
+        read_procedure,
+        lambda _: json.dumps(
+            json.loads((SCENARIO / "scenario.json").read_bytes())["procedures"][0]
+        ).encode(),
+    ),
     "set-up": Family(read_setup, lambda _: b'{"robotBaseMm": [0, 0]}'),
     "markups": Family(read_markups, lambda _: TASK.read_bytes()),
     "study protocol": Family(

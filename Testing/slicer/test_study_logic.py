@@ -198,6 +198,29 @@ def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab, tmp_path)
     assert lab.next == "desktop/1/task-1"
 
 
+def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab, tmp_path):
+    asked = json.loads(SHIPPED.read_text()) | {
+        "modes": ["desktop"],
+        "tasks": ["task-1"],
+        "questionnaires": [],
+        "trialRun": {"minutes": 0},
+        "procedures": {"task-1": "dbs"},
+    }
+    path = tmp_path / "asked.json"
+    path.write_text(json.dumps(asked))
+    lab.logic.begin(path)
+    lab.logic.enroll()
+    lab.logic.startTrial("task-1", "desktop", procedure="biopsy")
+    lab.room.run_until(lambda: lab.room.sent("StartTask"))
+    assert lab.room.sent("StartTask")[0]["procedure"] == "dbs"
+    told = {"phase": "running", "task": "task-1", "mode": "desktop", "trainee": "T001"}
+    for name, is_asked in (("dbs", True), ("biopsy", False)):
+        lab.room.tell(**told, procedure={"name": name})
+        lab.room.run_until(lambda name=name: lab.room.logic.progress.procedure == name)
+        assert (lab.logic.offProtocolSentence() == "") is is_asked
+    assert "with the procedure biopsy" in lab.logic.offProtocolSentence()
+
+
 def test_a_trial_that_will_not_count_is_reported_while_it_is_played(enrolled):
     enrolled.logic.answer([0] * 16)
     enrolled.tell(phase="running", task="task-3")

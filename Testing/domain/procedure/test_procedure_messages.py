@@ -4,7 +4,9 @@ import json
 
 import numpy as np
 
+from rastrainer import transforms
 from rastrainer.finite_json import MAX_MESSAGE_VALUES, MAX_RECORD_VALUES
+from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import MAX_TRAJECTORIES, ProcedureKind
 from rastrainer.procedure.record import (
     MAX_ALIGNMENTS,
@@ -12,6 +14,7 @@ from rastrainer.procedure.record import (
     MAX_FEED_METRICS,
     MAX_TOUCHED_CHECKPOINTS,
 )
+from rastrainer.procedure.score import ProcedureMeasures, score_procedure
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     PROCEDURE_PHASES,
@@ -21,7 +24,14 @@ from rastrainer.protocol import (
     decode_told_object,
 )
 from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
+from Testing.domain.procedure.made_up_procedure import (
+    made_up_meshes,
+    made_up_procedure,
+    trajectory,
+)
+from Testing.domain.procedure.procedure_records import recorded
 from Testing.domain.trial.trial_records import make_record
 
 DIGITS = 123.45678901234567
@@ -84,11 +94,18 @@ def test_slicer_accepts_the_record_of_the_longest_procedure_and_a_study_stores_i
 
 
 def test_the_simulator_accepts_the_score_of_the_longest_procedure():
-    """Twelve values for each line, as `ProcedureOutcome.summary` has them."""
-    line = {"name": "x" * 60, "nearest": "y" * 60, "plungeMm": None} | {
-        f"value{number}Mm": DIGITS for number in range(9)
+    lines = [
+        trajectory(f"{number} {'x' * 50}", (0.0, number - 10.0, 89.0), (0.0, 0.0, 20.0))
+        for number in range(MAX_TRAJECTORIES)
+    ]
+    procedure = made_up_procedure(*lines)
+    off = transforms.rigid(np.eye(3), np.array([0.123456789, 0.4, 0.0]))
+    analysis = analyze_procedure(recorded(procedure, off), procedure, made_up_meshes(), np.eye(4))
+    score = score_procedure(ProcedureMeasures.of(analysis), 300.0)
+    details = {
+        "procedure": ProcedureOutcome(analysis, score).summary(),
+        "residualsMm": [DIGITS] * 15,
     }
-    details = {"procedure": {"score": DIGITS, "trajectories": [line] * MAX_TRAJECTORIES}}
-    trial_id = make_record()["trialId"]
-    told = json.dumps({"trialId": trial_id, "score": 50.0, "details": details})
-    assert check_arguments(CommandName.TRIAL_SCORED, decode_json_object(told))["score"] == 50.0
+    told = json.dumps({"trialId": make_record()["trialId"], "score": 50.0, "details": details})
+    checked = check_arguments(CommandName.TRIAL_SCORED, decode_json_object(told))
+    assert len(checked["details"]["procedure"]["trajectories"]) == MAX_TRAJECTORIES

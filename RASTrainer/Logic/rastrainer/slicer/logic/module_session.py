@@ -178,6 +178,7 @@ class ModuleSession:
         self.aborted.kept.connect(self._takeAborted)
         self.link.stateChanged.connect(self._noticeNewTrial)
         self.replay.shown.connect(self.registration.reset)
+        self.replay.procedureShown.connect(self.procedure.showOutcome)
 
     def openStudy(self) -> Study:
         """Open the present study, or begin it; this thread draws the window and waits for no lock.

@@ -163,10 +163,16 @@ class ProcedureLogic:
 
     def takeScored(self, analysis: TrialAnalysis, isOtherOpen: bool) -> None:
         """Take the errors of a scored trial, and show them unless another trial is played."""
-        if analysis.procedure is None or isOtherOpen:
-            return
-        self.outcome = analysis.procedure
-        showProcedureErrors(self._scene, self.outcome.analysis)
+        if analysis.procedure is not None and not isOtherOpen:
+            self.showOutcome(analysis.procedure)
+
+    def showOutcome(self, outcome: ProcedureOutcome | None) -> None:
+        """Show lines and errors of a procedure in place of others; None for those of no trial."""
+        self.outcome = outcome
+        if outcome is None:
+            showPlannedLines(self._scene, None)
+        else:
+            showProcedureErrors(self._scene, outcome.analysis)
         self.changed.emit()
 
     def showPlan(self, scenario: Scenario) -> None:

@@ -15,7 +15,7 @@ from rastrainer.progress import Progress
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
-from rastrainer.slicer.logic.trial_work import EXPLAIN, READ_TRACK
+from rastrainer.slicer.logic.trial_work import EXPLAIN, EXPLAIN_PROCEDURE, READ_TRACK
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.robot_scene import URDF
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
@@ -36,6 +36,7 @@ from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.trial_review import with_progress
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.trial_feedback import TrialFeedback
 
 SLICES_A_TURN = 4
@@ -48,6 +49,7 @@ class ReplayLogic:
     Attributes:
         feedbackFound: emits nothing, whenever the feedback on another trial is known.
         shown: emits nothing, whenever another trial is shown, with its touches to be registered.
+        procedureShown: emits the `ProcedureOutcome` of that trial, None where it has none.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class ReplayLogic:
         """
         self.feedbackFound = Signal()
         self.shown = Signal()
+        self.procedureShown = Signal()
         self._isTrialOpen = isTrialOpen
         self._scene = scene
         self._openStudy = openStudy
@@ -197,6 +200,13 @@ class ReplayLogic:
     def _track(self, trialId: str, progress: Progress) -> ReplayTrack:
         return self._run(READ_TRACK, progress, self._records, trialId)
 
+    def _procedure(self, trial: StoredTrial, progress: Progress) -> ProcedureOutcome | None:
+        """Return the errors of a trial's procedure; None where they are not known."""
+        if trial.record.procedure is None or trial.truth is None:
+            return None
+        scenario = self._findScenario(trial.record.scenario)
+        return self._run(EXPLAIN_PROCEDURE, progress, trial.record, scenario, trial.truth)
+
     def _put(self, trial: StoredTrial, progress: Progress) -> None:
         self._checkNoTrialIsOpen()
         record, rigid = trial.record, trial.registrations.get(RIGID)
@@ -204,11 +214,12 @@ class ReplayLogic:
             raise InputError(_("It is not known where the head was: the trial was not registered."))
         stopReplay(self._scene)
         isThere = isReplayOf(self._scene, record.trial_id)
-        track, chain, scenario = inBackground(
+        track, chain, scenario, outcome = inBackground(
             lambda report: (
                 None if isThere else self._track(record.trial_id, report),
                 readArmChain(self._robot / URDF),
                 self._findScenario(record.scenario),
+                self._procedure(trial, report),
             ),
             progress,
         )
@@ -219,6 +230,7 @@ class ReplayLogic:
         showTask(self._scene, scenario, record.task)
         showTouches(self._scene, record)
         self.shown.emit()
+        self.procedureShown.emit(outcome)
         if track is None:
             goTo(self._scene, 0.0)
         else:

@@ -14,7 +14,7 @@ from rastrainer.protocol import CommandName
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.practice_watch import PracticeWatch
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
-from rastrainer.slicer.logic.training_logic import TrainingLogic
+from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
@@ -156,13 +156,24 @@ class StudyLogic:
                 return _(
                     "{trainee} is repeating an aborted trial: it will count once a reason is given."
                 ).format(trainee=trial.trainee)
-            progress.check_start(trial.mode, trial.task)
+            step = progress.check_start(trial.mode, trial.task)
         except InputError:
-            return _(
-                "{trainee} plays {task} in the mode {mode}, which the study does not ask for now: "
-                "it will not count."
-            ).format(trainee=trial.trainee, task=trial.task, mode=trial.mode)
-        return ""
+            return self._notAsked(trial)
+        return "" if step.procedure == trial.procedure else self._notAsked(trial)
+
+    def _notAsked(self, trial: TrialStatus) -> str:
+        text = _(
+            "{trainee} plays {task} in the mode {mode}, which the study does not ask for now: "
+            "it will not count."
+        )
+        if trial.procedure:
+            text = _(
+                "{trainee} plays {task} with the procedure {procedure} in the mode {mode}, which "
+                "the study does not ask for now: it will not count."
+            )
+        return text.format(
+            trainee=trial.trainee, task=trial.task, mode=trial.mode, procedure=trial.procedure
+        )
 
     def startStep(self) -> None:
         """Start the trial that comes next.

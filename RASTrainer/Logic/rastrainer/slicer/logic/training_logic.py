@@ -37,6 +37,7 @@ class TrialStatus:
         clearanceMm: signed distance of the tool to the head; None where it is not known.
         proximity: `free`, `proximity` or `contact`.
         instruction: what the trainee reads.
+        procedure: that the trial continues with; empty for the touches alone.
     """
 
     trialId: str = ""
@@ -50,6 +51,7 @@ class TrialStatus:
     clearanceMm: float | None = None
     proximity: str = ""
     instruction: str = ""
+    procedure: str = ""
 
     @property
     def isOpen(self) -> bool:
@@ -118,6 +120,7 @@ class TrainingLogic:
             clearanceMm=knownNumber(state.get("clearanceMm")),
             proximity=str(state.get("proximity", "")),
             instruction=str(state.get("instruction", "")),
+            procedure=procedureOf(state),
         )
 
     def start(
@@ -244,6 +247,12 @@ def tutorialSentence(trainee: str) -> str:
         "{trainee} does the tutorial first, where the simulator is shown: about two minutes. Then "
         "start the trial run here, or let the trainee start it."
     ).format(trainee=trainee)
+
+
+def procedureOf(state: Mapping[str, Any]) -> str:
+    """Return the name of the procedure in the simulator's state; empty where there is none."""
+    told = state.get("procedure")
+    return str(told.get("name", "")) if isinstance(told, Mapping) else ""
 
 
 def knownNumber(value: Any) -> float | None:

@@ -6,9 +6,11 @@ thread of Slicer's, both would keep its window from answering. The study stays w
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
 from rastrainer.journal.replay_track import ReplayTrack, find_track
 from rastrainer.progress import Progress
@@ -16,6 +18,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.trial_review import scored_with_journal, trajectory_of
 from rastrainer.trial import ctps
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
 from rastrainer.trial.touch_registration import TouchRegistration, register_touches
@@ -24,6 +27,7 @@ REGISTER = f"{__name__}:register"
 REGISTER_OPEN = f"{__name__}:registerOpen"
 SCORE = f"{__name__}:score"
 EXPLAIN = f"{__name__}:explain"
+EXPLAIN_PROCEDURE = f"{__name__}:explainProcedure"
 READ_TRACK = f"{__name__}:readTrack"
 _READING = "Reading the journal"
 
@@ -71,6 +75,19 @@ def explain(
     """
     progress(_READING, 0.0)
     return analyze_trial(record, scenario, trajectory=trajectory_of(record, records))
+
+
+def explainProcedure(
+    record: TrialRecord, scenario: Scenario, truth: RevealedTruth, progress: Progress
+) -> ProcedureOutcome | None:
+    """Return the errors of a stored trial's procedure; None where it is of another plan."""
+    progress("Computing errors", 0.0)
+    try:
+        return procedure_outcome(record, scenario, truth.matrix)
+    except InputError as error:
+        # The trial itself can be shown all the same.
+        logging.info("The lines of a procedure are not shown: %s", error)
+        return None
 
 
 def readTrack(records: Path, trialId: str, progress: Progress) -> ReplayTrack:
