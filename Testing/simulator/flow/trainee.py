@@ -19,7 +19,7 @@ from rastrainer_simulator.vectors import dot, subtract
 PATIENCE_S = 40.0
 TICKS_A_STEP = 2
 STEP_S = 0.004 * TICKS_A_STEP
-MOST_STEPS = 2000
+MOST_STEPS = 10_000
 SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 LIFT_M = 0.035
@@ -113,7 +113,7 @@ class Trainee:
 
     def until(self, condition: Callable[[], bool], what: str = "it") -> None:
         """Step until a condition is true."""
-        give_up = time.monotonic() + PATIENCE_S
+        give_up = None
         steps = 0
         while not condition():
             self.step()
@@ -121,6 +121,7 @@ class Trainee:
             if steps > MOST_STEPS:
                 # What must be on the disk before it is told takes the disk's own time.
                 time.sleep(0.005)
+                give_up = give_up or time.monotonic() + PATIENCE_S
                 assert time.monotonic() < give_up, f"no {what}; the screen: {self.presenter.screen}"
 
     def until_menu(self, name: str | None) -> None:

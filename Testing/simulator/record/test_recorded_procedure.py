@@ -1,6 +1,7 @@
 """A procedure in its journal: ended in any phase it continues there, and it replays bit by bit."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -231,6 +232,16 @@ def test_the_views_are_shown_the_procedure_again(finished, planned):
         assert placed.guide.direction == pytest.approx(instrument.guide_direction)
 
 
+def assert_nearly_equal(resumed, before):
+    """Compare states of lines; a journal's millimeters give metres back but for the last bit."""
+    for one, other in zip(resumed, before, strict=True):
+        assert replace(one, guide=None) == replace(other, guide=None)
+        assert (one.guide is None) == (other.guide is None)
+        if one.guide is not None:
+            assert one.guide.tip == pytest.approx(other.guide.tip, rel=1e-14)
+            assert one.guide.direction == pytest.approx(other.guide.direction, rel=1e-14)
+
+
 @pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
 def test_a_server_that_ends_in_a_phase_is_resumed_there_and_all_replays(
     simulation, planned, tmp_path, phase
@@ -251,7 +262,7 @@ def test_a_server_that_ends_in_a_phase_is_resumed_there_and_all_replays(
         assert [p.name for p in state.training.procedure.checkpoints] == [
             p.name for p in before.checkpoints
         ]
-        assert state.training.procedure.trajectories == before.trajectories
+        assert_nearly_equal(state.training.procedure.trajectories, before.trajectories)
         server.must(CommandName.RESUME)
         assert server.training.phase is phase
         server.finish()
