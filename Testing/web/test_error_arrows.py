@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.net.views.screen import ErrorArrow, Screen, Tone
+from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, Screen, Tone
 from Testing.simulator.conftest import setup  # noqa: F401
 from Testing.simulator.flow.conftest import loop, shared  # noqa: F401
 from Testing.simulator.net.views.served import ServedViews
@@ -23,13 +23,18 @@ def arrow(tone, height):
 
 def test_arrows_come_with_the_screen_and_go_with_it(browser, loop, loop_thread):  # noqa: F811
     served = ServedViews(loop_thread, loop)
-    page = open_page(browser, served.url, served.code)
+    page = open_page(browser, served.url, served.code, size={"width": 960, "height": 600})
     arrows = tuple(map(arrow, (Tone.GOOD, Tone.WARNING, Tone.ERROR), (0.41, 0.42, 0.43)))
-    served.tell(Screen(errors=arrows))
+    served.tell(Screen(errors=arrows, hints=(Hint("Esc", "Result", "back"), Hint("D", "Turn"))))
     wait_for(page, "page.errors.group.children.length === 6")
     drawn = page.evaluate(DRAWN)
     assert [color for color, *_place in drawn] == ["3ccb7f", "ffb92e", "ff5252"]
     assert [place for _color, *place in drawn] == [pytest.approx(list(each.end)) for each in arrows]
+    # Who has only a mouse gets back, too.
+    assert page.locator("#hints button").count() == 1
+    page.click("#hints button:has-text('Result')")
+    (view,) = {call[1] for call in served.presenter.calls if call[0] == "view_joined"}
+    served.wait_for_call("on_item", view, "back")
     served.tell(Screen())
     wait_for(page, "page.errors.group.children.length === 0")
     assert page.problems == []

@@ -187,6 +187,16 @@ def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(pla
     trainee.press("left", lambda: trainee.value(choice.name) == before, "the value before")
 
 
+def test_the_menu_of_the_tasks_is_whole_on_a_laptop(place, page):
+    trainee = place.trainee(PageKeys(page))
+    trainee.go_to_experiment()
+    assert shown(page, trainee) == "experiment"
+    width, height = SIZES["laptop"]
+    page.set_viewport_size({"width": width, "height": height})
+    menu = "document.getElementById('menu')"
+    assert page.evaluate(f"{menu}.scrollHeight - {menu}.clientHeight") <= 0
+
+
 def test_a_selection_is_seen_where_the_system_chooses_the_colors(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_home()

@@ -71,10 +71,27 @@ class Overlay:
         self._shown: Content | None = None
 
     def item_at(self, x: float, y: float) -> str:
-        """Return the name of the menu's item at a pixel, counted from the upper left corner."""
+        """Return the name of the item at a pixel, counted from the upper left corner.
+
+        Without a menu, it is that of a hint that can be clicked.
+        """
         if self._menu is None or self._menu_box is None:
-            return ""
+            return self._hint_at(x, y)
         return self._menu.item_at(x - self._menu_box.left, y - self._menu_box.top)
+
+    def _hint_at(self, x: float, y: float) -> str:
+        shown = () if self._shown is None else self._shown.screen.hints
+        if not any(hint.item for hint in shown):
+            return ""
+        room = self._size[0] - 2 * self._brush.px(theme.MARGIN)
+        width, height = self._slots["hints"].sprite.size
+        left = (self._size[0] - width) // 2
+        top = self._size[1] - self._brush.px(theme.MARGIN) - height
+        for hint, box in strips.hint_boxes(shown, self._brush, room):
+            is_across = 0 <= x - left - box.left < box.width
+            if is_across and 0 <= y - top - box.top < box.height:
+                return hint.item
+        return ""
 
     def show(self, content: Content, size: tuple[int, int]) -> bool:
         """Lay something over a window of so many pixels; return whether anything has changed."""

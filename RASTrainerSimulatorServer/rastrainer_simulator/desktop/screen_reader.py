@@ -35,7 +35,10 @@ def screen_from_json(value: Json) -> Screen:
         instruction=_message(value["instruction"]),
         warnings=tuple(_message(warning) for warning in value["warnings"]),
         status=tuple(str(fact) for fact in value["status"]),
-        hints=tuple(Hint(str(hint["control"]), str(hint["action"])) for hint in value["hints"]),
+        hints=tuple(
+            Hint(str(hint["control"]), str(hint["action"]), str(hint["item"]))
+            for hint in value["hints"]
+        ),
         language=str(value["language"]),
         has_arrow=bool(value["has_arrow"]),
         errors=tuple(_error(arrow) for arrow in value["errors"]),

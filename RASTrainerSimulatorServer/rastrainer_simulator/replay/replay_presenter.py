@@ -6,15 +6,18 @@ from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from functools import reduce
 
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.loop.subscribers import Subscribers
 from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, feedback_event
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Frames, Hello, ViewUpdate
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
-from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
-from rastrainer_simulator.viewpoint.view_control import Pictures, ViewControl
+from rastrainer_simulator.viewpoint.orbit import orbit_to
+from rastrainer_simulator.viewpoint.touch_views import BestViews
+from rastrainer_simulator.viewpoint.view_control import STILL, Pictures, ViewControl
 
 STEP_S = 5.0
 SLOWLY = 0.5
@@ -167,10 +170,14 @@ class ReplayPresenter:
         self._count = 0
         self._held: dict[int, frozenset[int]] = {}
         self._view = ViewControl()
+        self._best = BestViews()
+        self._is_looking_for_views = False
+        self._wants_worst = False
         self._player = Player(playback, end)
         self.screen = self._make_screen()
         playback.changed = self._refresh
         playback.subscribe(self._feel)
+        playback.subscribe(self._move_view)
 
     def pictures(self, now: SimulationState) -> Pictures:
         """Return where the picture of a state is looked from."""
@@ -182,6 +189,7 @@ class ReplayPresenter:
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:  # noqa: ARG002
         """Turn the view."""
+        self._wants_worst = False
         camera = self._playback.setup.scenario.cameras[self._playback.latest.camera]
         self._view.turn(camera, around_deg, higher_deg, zoom)
 
@@ -234,8 +242,32 @@ class ReplayPresenter:
         self._playback.pause(True)
 
     def _do(self, action: PlayerAction | None) -> None:
-        if action is not None:
-            self._player.do(action)
+        if action is None:
+            return
+        self._player.do(action)
+        if action in (PlayerAction.WORST, PlayerAction.CAMERA):
+            self._wants_worst = action is PlayerAction.WORST
+        if self._wants_worst and not self._is_looking_for_views:
+            self._look_for_views()
+
+    def _look_for_views(self) -> None:
+        """Begin to look for the best views in a thread: it takes seconds."""
+        playback = self._playback
+        head_to_world = playback.latest.head_to_world.copy()
+        head_to_world[:3, 3] *= MM_PER_M
+        self._best.look(playback.setup, playback.trial.task, head_to_world)
+        self._is_looking_for_views = True
+
+    def _move_view(self, result: StepResult) -> None:
+        """Go to the best view of the worst touch where that is wanted, as soon as it is known."""
+        worst = self._playback.trial.worst
+        view = self._best.of(worst[0]) if self._wants_worst and worst is not None else None
+        camera = self._playback.setup.scenario.cameras[result.state.camera]
+        self._view.use(result.state.camera)
+        if view is not None:
+            self._wants_worst = False
+            self._view.go(orbit_to(camera, view.eye, view.fiducial))
+        self._view.advance(PERIOD_S, camera, STILL, is_arm_still=True)
 
     def _feel(self, result: StepResult) -> None:
         """Publish the events as feedback: sounds and vibration."""

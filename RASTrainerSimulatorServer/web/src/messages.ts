@@ -47,6 +47,8 @@ export interface Message {
 export interface Hint {
   readonly control: string;
   readonly action: string;
+  /** Name of the item that a click chooses; "" for none. */
+  readonly item: string;
 }
 
 /** From a fiducial toward its touch, or a line of a procedure, in World, m; equal ends are a ball. */

@@ -19,11 +19,12 @@ export class Overlay {
   private pairing: PairingNews | null = null;
   private readonly menuView: MenuView;
 
-  constructor(connection: Connection) {
+  constructor(private readonly connection: Connection) {
     this.menuView = new MenuView(connection);
   }
 
   show(screen: Screen): void {
+    const { connection } = this;
     document.body.dataset.menu = screen.menu?.name ?? "";
     this.menu = screen.menu;
     this.showMenu();
@@ -36,7 +37,9 @@ export class Overlay {
     this.part("hints", screen.hints, (parent) => {
       for (const hint of screen.hints) {
         const line = element("li", "");
-        line.append(element("kbd", hint.control), hint.action);
+        const place = hint.item === "" ? line : line.appendChild(element("button", ""));
+        place.append(element("kbd", hint.control), hint.action);
+        if (hint.item !== "") place.onclick = () => connection.send("item", { name: hint.item });
         parent.append(line);
       }
     });

@@ -13,7 +13,7 @@ from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.performance import Quality, first_quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.screen import Hint, Screen
 from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.read_png import read_png
@@ -173,6 +173,23 @@ def test_the_inset_shows_the_other_camera_in_a_white_frame_and_gives_way_to_a_me
     assert len(found(right[top + 4 : bottom - 4], BLUE)) > 0
     without = show(screen=SCREEN.__class__(menu=MENU))
     assert len(found(without[: SIZE[1] // 3], ((250, 250, 250), (255, 255, 255)))) < 200
+
+
+def test_a_hint_that_can_be_clicked_is_found_under_the_mouse(show, picture):
+    hints = (Hint("Left / Right", "Turn the view"), Hint("Esc", "Result", "back"))
+    show(replace(SCREEN, hints=hints))
+    overlay = picture._overlay
+    is_item = [[overlay.item_at(x, y) for x in range(SIZE[0])] for y in range(480, 540)]
+    places = np.argwhere(np.array(is_item) != "")
+    left, right = places[:, 1].min(), places[:, 1].max()
+    # It is the right one of two, and as wide as its words.
+    assert SIZE[0] / 2 - 20 < left < right < 0.75 * SIZE[0]
+    assert 60 < right - left < 160
+    assert 15 < np.ptp(places[:, 0]) < 40
+    height = 480 + round(places[:, 0].mean())
+    assert overlay.item_at((left + right) / 2, height) == "back"
+    show()
+    assert overlay.item_at((left + right) / 2, height) == ""
 
 
 def test_a_menu_that_is_opened_again_is_shown_again(show):

@@ -127,6 +127,23 @@ def test_the_trial_is_shown_again_to_the_views_while_the_arm_stands(result):
     assert result.journal.read_bytes() == before
 
 
+def test_the_errors_on_the_head_are_turned_by_keys_and_pad_and_left_by_a_click(result):
+    control = result.presenter._session.view.control
+    control.reset()
+    result.choose("errors")
+    result.until(lambda: result.presenter.screen.errors, "the arrows")
+    hints = result.presenter.screen.hints
+    assert [hint.action for hint in hints] == ["Turn the view", "Turn the view", "Result"]
+    assert [hint.item for hint in hints] == ["", "", "back"]
+    result.tap("right", "right", "up")
+    assert (control.orbit.azimuth_deg, control.orbit.elevation_deg) == (20.0, 10.0)
+    result.tap("left", "down")
+    assert (control.orbit.azimuth_deg, control.orbit.elevation_deg) == (10.0, 0.0)
+    result.presenter.on_item(1, "back")
+    result.until_menu("result")
+    control.reset()
+
+
 def test_the_worst_touch_is_looked_at_from_where_it_is_seen_best(result):
     view = result.presenter._session.view
     view.control.reset()

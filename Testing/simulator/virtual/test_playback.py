@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,7 @@ from rastrainer.journal.folder import journals
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.replay_track import read_track
 from rastrainer.protocol import Phase, Proximity
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.net.views.presenter import Feedback
 from rastrainer_simulator.net.views.screen import Screen
@@ -163,6 +165,34 @@ def test_the_worst_touch_is_shown_at_half_speed_up_to_the_touch(viewer, trial):
     assert viewer.touched - before == 1
     assert viewer.playback.latest.training.touches[-1].label == label
     assert any(isinstance(one, Screen) for one in viewer.messages)
+
+
+def test_the_worst_touch_is_looked_at_from_its_best_view_until_the_camera_changes(
+    viewer,
+):
+    viewer.press("KeyT")
+    label, *_interval = viewer.playback.trial.worst
+    scenario = viewer.playback.setup.scenario
+    task = scenario.task(viewer.playback.trial.task)
+    in_head = task.fiducials[task.labels.index(label)] / MM_PER_M
+    head = viewer.playback.latest.head_to_world
+    fiducial = head[:3, :3] @ in_head + head[:3, 3]
+
+    def off_middle():
+        main = viewer.presenter.pictures(viewer.playback.latest).main
+        eye, middle = np.array(main.position), np.array(main.focal_point)
+        line = (middle - eye) / np.linalg.norm(middle - eye)
+        return np.linalg.norm(np.cross(fiducial - eye, line))
+
+    assert off_middle() > 0.001
+    give_up = time.monotonic() + 60.0
+    while off_middle() > 0.001:
+        # The best views are looked for in a thread beside, one after the other.
+        viewer.playback.advance(0.0)
+        time.sleep(0.001)
+        assert time.monotonic() < give_up, "no best view"
+    viewer.press("KeyC")
+    assert off_middle() > 0.001
 
 
 def test_the_simulator_loads_the_same_trial_in_a_thread_and_only_reads_the_journal(

@@ -45,22 +45,39 @@ def status(facts: Sequence[str], brush: Brush, room: int) -> np.ndarray:
 
 def hints(shown: Sequence[Hint], brush: Brush, room: int) -> np.ndarray:
     """Return controls as key caps with what they do, in as many rows as they need."""
+    rows = _rows(shown, brush, room)
+    pad, cap = brush.px(theme.STEP), _cap_height(brush)
+    width = max(_hints_width(row, brush) for row in rows)
+    canvas = Canvas(width, len(rows) * (cap + pad) + pad)
+    ground = Box(0, 0, canvas.width, canvas.height)
+    canvas.box(ground, theme.GLASS, min(canvas.height / 2, brush.px(theme.PANEL_RADIUS)))
+    for hint, box in hint_boxes(shown, brush, room):
+        _write_hint(canvas, hint, brush, box)
+    return canvas.pixels()
+
+
+def hint_boxes(shown: Sequence[Hint], brush: Brush, room: int) -> list[tuple[Hint, Box]]:
+    """Return where each hint is in the picture that `hints` makes."""
+    rows = _rows(shown, brush, room)
+    pad, cap = brush.px(theme.STEP), _cap_height(brush)
+    width = max(_hints_width(row, brush) for row in rows)
+    found = []
+    for index, row in enumerate(rows):
+        left = (width - _hints_width(row, brush)) // 2 + brush.px(theme.PAD)
+        for hint in row:
+            wide = _hint_width(hint, brush)
+            found.append((hint, Box(left, pad + index * (cap + pad), wide, cap)))
+            left += wide + brush.px(theme.PAD + theme.STEP)
+    return found
+
+
+def _rows(shown: Sequence[Hint], brush: Brush, room: int) -> list[list[Hint]]:
     rows: list[list[Hint]] = [[]]
     for hint in shown:
         if rows[-1] and _hints_width([*rows[-1], hint], brush) > room:
             rows.append([])
         rows[-1].append(hint)
-    pad = brush.px(theme.STEP)
-    cap = _cap_height(brush)
-    width = max(_hints_width(row, brush) for row in rows)
-    canvas = Canvas(width, len(rows) * (cap + pad) + pad)
-    ground = Box(0, 0, canvas.width, canvas.height)
-    canvas.box(ground, theme.GLASS, min(canvas.height / 2, brush.px(theme.PANEL_RADIUS)))
-    for index, row in enumerate(rows):
-        left = (width - _hints_width(row, brush)) // 2 + brush.px(theme.PAD)
-        for hint in row:
-            left += _write_hint(canvas, hint, brush, left, pad + index * (cap + pad))
-    return canvas.pixels()
+    return rows
 
 
 def _sentence(
@@ -101,11 +118,12 @@ def _hints_width(row: Sequence[Hint], brush: Brush) -> int:
     return sum(_hint_width(hint, brush) for hint in row) + between + 2 * brush.px(theme.PAD)
 
 
-def _write_hint(canvas: Canvas, hint: Hint, brush: Brush, left: int, top: int) -> int:
-    """Draw a key cap and its action; return how far the next begins to the right."""
-    height, width = _cap_height(brush), _cap_width(hint.control, brush)
+def _write_hint(canvas: Canvas, hint: Hint, brush: Brush, box: Box) -> None:
+    """Draw a key cap and its action; what can be clicked is colored as buttons are."""
+    left, top, height = box.left, box.top, box.height
+    width = _cap_width(hint.control, brush)
     cap = Box(left, top, width, height)
-    canvas.box(cap, theme.CAP, height / 4)
+    canvas.box(cap, theme.ACCENT if hint.item else theme.CAP, height / 4)
     canvas.frame(cap, theme.CAP_EDGE, height / 4, brush.px(1.5))
     text = brush.width(hint.control, theme.SMALL_STRONG)
     row = top + (height - brush.line_height(theme.SMALL)) // 2
@@ -114,4 +132,3 @@ def _write_hint(canvas: Canvas, hint: Hint, brush: Brush, left: int, top: int) -
     )
     beside = left + width + brush.px(1.5 * theme.STEP)
     brush.write(canvas, hint.action, theme.SMALL, theme.TEXT_SOFT, beside, row)
-    return _hint_width(hint, brush) + brush.px(theme.PAD + theme.STEP)

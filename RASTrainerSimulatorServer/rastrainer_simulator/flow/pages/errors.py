@@ -5,6 +5,7 @@ from __future__ import annotations
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import (
     ErrorArrow,
     Hint,
@@ -19,6 +20,15 @@ GOOD_MM = 2.0
 POOR_MM = 4.0
 """Errors up to the first are good, from the second on they are poor: what frameless stereotaxy
 reaches in the clinic lies between them."""
+STEP_DEG = 10.0
+"""By so much each press turns the view; held inputs repeat."""
+_TURNS = {
+    ControlName.LEFT: (-STEP_DEG, 0.0),
+    ControlName.RIGHT: (STEP_DEG, 0.0),
+    ControlName.UP: (0.0, STEP_DEG),
+    ControlName.DOWN: (0.0, -STEP_DEG),
+}
+"""Around the head to the right, and higher, degrees."""
 LONGER = 5.0
 """An error of a millimetre would hardly be seen."""
 
@@ -36,12 +46,28 @@ class ErrorsPage(SessionPage):
         """Return the arrows; they show the true errors, which the score has already revealed."""
         session = self.session
         touches = session.training.touches if session.training.result is not None else ()
+        back = Hint(session.label(ControlName.BACK), self.say("hint.result"), "back")
+        hints: tuple[Hint, ...] = (back,)
+        if not session.is_typing_possible((SourceKind.XR,)):
+            # In a headset one looks around with the head.
+            pairs = (ControlName.LEFT, ControlName.RIGHT), (ControlName.UP, ControlName.DOWN)
+            turn = self.say("hint.turn_view")
+            hints = (*(Hint(session.pair_label(*pair), turn) for pair in pairs), back)
         return Screen(
             instruction=ScreenMessage(self._title),
-            hints=(Hint(session.label(ControlName.BACK), self.say("hint.result")),),
+            hints=hints,
             language=session.preferences.language,
             errors=tuple(error_arrow(session.fiducial(t.label), t.position) for t in touches),
         )
+
+    def pressed(self, control: ControlName) -> bool:
+        """Turn the view around the head."""
+        if control not in _TURNS:
+            return False
+        session = self.session
+        camera = session.scenario.cameras[session.state.camera]
+        session.view.control.turn(camera, *_TURNS[control], 1.0)
+        return True
 
     @property
     def _title(self) -> str:

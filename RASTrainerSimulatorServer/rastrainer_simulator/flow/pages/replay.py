@@ -114,5 +114,5 @@ class ReplayPage(SessionPage):
             Hint(seek, say("hint.seek")),
             Hint(label(ControlName.UP), say("hint.worst")),
             Hint(label(ControlName.CAMERA), say("hint.camera")),
-            Hint(label(ControlName.BACK), say("hint.result")),
+            Hint(label(ControlName.BACK), say("hint.result"), "back"),
         )

@@ -144,10 +144,18 @@ class DepthRuler:
 
 @dataclasses.dataclass(frozen=True)
 class Hint:
-    """Which control does what just now, such as "A" and "Touch"."""
+    """Which control does what just now, such as "A" and "Touch".
+
+    Attributes:
+        control: the input's name.
+        action: what it does.
+        item: what a view sends back as the name of an item when the hint is clicked, for who has
+            only a mouse; "" where a click does nothing.
+    """
 
     control: str
     action: str
+    item: str = ""
 
 
 @dataclasses.dataclass(frozen=True)

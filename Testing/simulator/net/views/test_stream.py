@@ -34,7 +34,7 @@ def test_a_view_is_welcomed_first_and_told_how_things_stand(served, connect):
     screen = seen["screen"]["screen"]
     assert screen["menu"]["items"][0]["name"] == "go"
     assert screen["instruction"] == {"text": "Touch 3", "tone": "good"}
-    assert screen["hints"] == [{"control": "A", "action": "Touch"}]
+    assert screen["hints"] == [{"control": "A", "action": "Touch", "item": ""}]
     assert ("view_joined", 1, Hello("page", "Quest 2", 72.0)) in served.presenter.calls
 
 
