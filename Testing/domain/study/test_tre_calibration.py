@@ -22,7 +22,8 @@ def row(number, mode="desktop", **values):
 
 
 def report(*rows):
-    return calibration(StudyData("Study", rows))
+    # A number and its unit stay on one line.
+    return calibration(StudyData("Study", rows)).replace("\N{NO-BREAK SPACE}", " ")
 
 
 def test_trials_are_ordered_by_expected_error_and_judged_by_their_interval():
