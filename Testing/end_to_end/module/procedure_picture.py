@@ -1,0 +1,79 @@
+"""Save the picture of a procedure: `python -m Testing.end_to_end.module.procedure_picture PNG`."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PySide6 import QtGui
+
+from rastrainer import transforms
+from rastrainer.procedure.errors import analyze_procedure
+from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.record import UsedRegistration
+from rastrainer.procedure.score import ProcedureMeasures, reference_duration_s, score_procedure
+from rastrainer.registration.registration import register
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.scene.views import AlongInstrument
+from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.virtual.virtual_procedure import (
+    ProcedureHands,
+    ProcedureSetting,
+    carry_out,
+)
+from Testing.slicer.host.host import Host
+
+PROCEDURE, TASK, TOUCHING_S, FLE_MM = "seeg", "task-3", 90.0, 2.0
+SECTION = "procedureCollapsibleButton"
+COLORS = QtGui.QImage.Format.Format_Indexed8
+
+
+def carried_out() -> ProcedureOutcome:
+    """Return what virtual hands made of stereo-EEG after a careless registration."""
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    procedure, skull = scenario.procedure(PROCEDURE), scenario.skull_mesh
+    assert skull is not None
+    random, truth = np.random.default_rng(21), scenario.perturbed_head_to_world(21)
+    fiducials = np.asarray(scenario.task(TASK).fiducials)
+    touches = transforms.apply(truth, fiducials)
+    touches += random.normal(0.0, FLE_MM / np.sqrt(3), touches.shape)
+    fit = register(touches, fiducials)
+    used = UsedRegistration(tuple(map(float, fit.matrix.ravel())), fit.fre_mm, 0.6)
+    meshes = read_procedure_meshes(procedure, skull)
+    setting = ProcedureSetting(procedure, meshes.skull, procedure.sha256(skull), truth)
+    hands = replace(ProcedureHands(), angle_sd_deg=0.8, depth_sd_mm=1.0)
+    done = carry_out(setting, used, TOUCHING_S, hands, random)
+    analysis = analyze_procedure(done, procedure, meshes, truth)
+    reference = reference_duration_s(TOUCHING_S, procedure)
+    return ProcedureOutcome(analysis, score_procedure(ProcedureMeasures.of(analysis), reference))
+
+
+def save(picture: Path) -> None:
+    """Show the outcome in the module, with the slices along the first instrument."""
+    outcome = carried_out()
+    with tempfile.TemporaryDirectory() as temporary:
+        host = Host(Path(temporary))
+        host.open()
+        host.press("showScenarioButton")
+        host.let_pass(3.0)
+        host.widget.logic.session.procedure.showOutcome(outcome)
+        first = outcome.analysis.trajectories[0]
+        AlongInstrument(host.scene).show(first.tip, first.axis_direction)
+        host.scene.GetFirstNodeByName("Head").SetDisplayVisibility(False)
+        for name in ("scenario", "simulator", "setup"):
+            host.find(f"{name}CollapsibleButton").collapsed = True
+        host.find(SECTION).collapsed = False
+        host.look_from(120.0, 20.0, 1.2)
+        host.let_pass(1.0)
+        host.window_screenshot(picture)
+        host.close()
+    # Few colors: the repository is to stay small.
+    QtGui.QImage(str(picture)).convertToFormat(COLORS).save(str(picture))
+
+
+if __name__ == "__main__":
+    save(Path(sys.argv[1]))
