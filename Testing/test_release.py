@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import json
 import re
 from pathlib import Path
 
@@ -30,6 +32,11 @@ def test_code_changelog_and_citation_state_the_same_version_and_date():
     assert said["version"] == __version__
 
 
+def test_slicers_index_of_extensions_points_at_the_tag_of_this_version():
+    entry = json.loads((ROOT / "RASTrainer.json").read_text(encoding="utf-8"))
+    assert entry["scm_revision"] == f"v{__version__}"
+
+
 def test_the_citation_has_what_its_schema_requires_of_software_and_references():
     said = citation()
     assert said["cff-version"] == "1.2.0"
@@ -41,11 +48,35 @@ def test_the_citation_has_what_its_schema_requires_of_software_and_references():
             assert {"name"} <= set(author) or {"family-names", "given-names"} <= set(author)
 
 
-def test_the_citation_names_the_same_publications_as_the_readme():
+def acknowledgement() -> str:
+    """Return the text with which Slicer's module acknowledges what it builds on."""
+    module = ast.parse((ROOT / "RASTrainer" / "RASTrainer.py").read_text(encoding="utf-8"))
+    (text,) = [
+        node.value.args[0].value
+        for node in ast.walk(module)
+        if isinstance(node, ast.Assign)
+        and ast.unparse(node.targets[0]) == "parent.acknowledgementText"
+    ]
+    return text
+
+
+def test_citation_readme_and_the_module_in_slicer_name_the_same_publications():
     readme = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
-    for reference in citation()["references"]:
-        assert reference["title"] in readme
-        assert reference.get("doi", reference.get("url")) in readme
+    for text in (readme, acknowledgement()):
+        for reference in citation()["references"]:
+            assert reference["title"] in text
+            assert reference.get("doi", reference.get("url")) in text
+
+
+def test_the_readme_states_the_measured_sizes_of_the_simulator_that_the_module_shows():
+    resources = ROOT / "RASTrainer" / "Resources" / "RASTrainerSimulator"
+    measured = json.loads((resources / "sizes.json").read_text(encoding="utf-8"))
+    columns = ("linux-x86_64", "win32-AMD64", "darwin-arm64", "darwin-x86_64")
+    assert sorted(measured) == sorted(columns)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for title, key in (("downloaded, once", "downloadMB"), ("kept", "keptMB")):
+        row = " | ".join(f"{measured[name][key]} MB" for name in columns)
+        assert f"| {title} | {row} |" in readme
 
 
 @pytest.mark.parametrize("name", ["MIT", "BSD-3-Clause", "LicenseRef-Colin27"])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import shutil
+import os
+import subprocess
 
 import slicer
 from tour_stage import Tour
@@ -25,6 +26,28 @@ def plan(tour: Tour) -> str:
     return hands.text("reachableText")
 
 
+def keep_trajectory(tour: Tour) -> str:
+    """Place a trajectory by two points, and keep it in a copy of the scenario."""
+    hands = tour.hands
+    hands.open("planCollapsibleButton")
+    hands.click("placeTrajectoryButton")
+    line = hands.find("planComboBox").currentNode()
+    entry = [0.0] * 3
+    slicer.util.getNode("*fiducials").GetNthControlPointPositionWorld(0, entry)
+    line.AddControlPoint(*entry)
+    line.AddControlPoint(*PLAN_MM)
+    interaction = slicer.app.applicationLogic().GetInteractionNode()
+    interaction.SetCurrentInteractionMode(interaction.ViewTransform)
+    hands.let_pass(0.5)
+    hands.find("planTitleLineEdit").text = "Plan of the tour"
+    hands.click("keepPlanButton")
+    combo = hands.find("scenarioComboBox")
+    hands.wait_until(lambda: combo.currentText == "Plan of the tour", "the copy is chosen")
+    told = hands.text("scenarioText")
+    tour.remove_chosen_scenario()
+    return told
+
+
 def replay(tour: Tour) -> str:
     hands = tour.hands
     hands.open("scoreCollapsibleButton")
@@ -36,12 +59,24 @@ def replay(tour: Tour) -> str:
     return hands.text("replayText")
 
 
-def tables_and_curve(tour: Tour) -> None:
-    hands = tour.hands
-    for name in ("showTablesButton", "learningCurveButton"):
-        hands.open("traineesCollapsibleButton", "historyGroupBox")
+def tables_and_plots(tour: Tour) -> str:
+    """Show tables, learning curve and calibration; each time the user's layout comes back."""
+    hands, layouts = tour.hands, []
+    own = _layout()
+    hands.open("traineesCollapsibleButton", "historyGroupBox", "scoreCollapsibleButton")
+    for name in ("showTablesButton", "learningCurveButton", "calibrationButton"):
         hands.click(name)
+        hands.wait_until(lambda: _layout() != own, f"{name} shows another layout")
+        layouts.append(_layout())
         hands.click(name)
+        hands.wait_until(lambda: _layout() == own, f"{name} gives the layout back")
+    return f"layouts {', '.join(map(str, layouts))}, then {own} again"
+
+
+def _layout() -> int:
+    """Return the number of the layout that is shown."""
+    name = "vtkMRMLLayoutNode"
+    return slicer.mrmlScene.GetSingletonNode(name, name).GetViewArrangement()
 
 
 def export(tour: Tour) -> str:
@@ -80,24 +115,65 @@ def save_and_load_scene(tour: Tour) -> str:
     return f"{path.stat().st_size} bytes"
 
 
+def zip_file(tour: Tour) -> str:
+    """Save the scenario without its names, and add it again under what it is called then."""
+    hands, path = tour.hands, tour.fresh("scenario.zip")
+    hands.open("scenarioCollapsibleButton", "shareGroupBox")
+    # Its tasks have fiducials on the face, which could not go without them.
+    hands.check("removeFaceCheckBox", wanted=False)
+    tour.dialogs.answer("Save the scenario", path)
+    hands.click("exportScenarioButton")
+    hands.wait_until(path.is_file, "the file is written", SCENARIO_TIMEOUT_S)
+    hands.wait_until(lambda: "is written" in hands.text("scenarioText"), "it is told")
+    told = hands.text("scenarioText")
+    tour.dialogs.answer("Add a scenario", path)
+    hands.click("importScenarioButton")
+    hands.wait_until(lambda: "is added" in hands.text("scenarioText"), "it is added")
+    tour.remove_chosen_scenario()
+    return told
+
+
+def preview_and_check(tour: Tour) -> str:
+    """Look for the head of a volume, and have the choices checked before anything is made."""
+    hands = tour.hands
+    hands.open("newScenarioCollapsibleButton", "adjustHeadGroupBox", "planForScenarioGroupBox")
+    _choose_volume(tour)
+    hands.click("previewHeadButton")
+    text = "newScenarioText"
+    hands.wait_until(
+        lambda: "the head that was found" in hands.text(text), "it is found", SCENARIO_TIMEOUT_S
+    )
+    hands.must(slicer.util.getNodes("Head as found*"), "The head is not shown.")
+    hands.click("checkScenarioButton")
+    hands.wait_until(lambda: "can be used" in hands.text(text), "it is checked", SCENARIO_TIMEOUT_S)
+    return hands.text(text)
+
+
 def scenario_from_volume(tour: Tour) -> str:
     hands = tour.hands
     hands.open("newScenarioCollapsibleButton")
-    (volume,) = slicer.util.getNodesByClass("vtkMRMLScalarVolumeNode")
-    hands.find("scanComboBox").setCurrentNode(volume)
-    hands.find("titleLineEdit").text = "Head of the tour"
+    _choose_volume(tour)
     hands.click("makeScenarioButton")
     combo = hands.find("scenarioComboBox")
     hands.wait_until(
         lambda: "Head of the tour" in combo.currentText, "it is made", SCENARIO_TIMEOUT_S
     )
-    made = tour.session.places.library / combo.itemData(combo.currentIndex)
     told = hands.text("newScenarioText")
     hands.choose("scenarioComboBox", "Colin27")
     hands.click("loadScenarioButton")
     hands.let_pass(2.0)
-    shutil.rmtree(made)
+    hands.choose("scenarioComboBox", "Head of the tour")
+    tour.remove_chosen_scenario()
     return told
+
+
+def _choose_volume(tour: Tour) -> None:
+    """Choose the images of the scenario, as if they were a patient's."""
+    hands = tour.hands
+    (volume,) = slicer.util.getNodesByClass("vtkMRMLScalarVolumeNode")
+    hands.find("scanComboBox").setCurrentNode(volume)
+    hands.find("titleLineEdit").text = "Head of the tour"
+    hands.let_pass(0.1)
 
 
 def study(tour: Tour) -> str:
@@ -110,11 +186,26 @@ def study(tour: Tour) -> str:
     hands.click("beginStudyButton")
     hands.click("createTraineeButton")
     hands.click("enrollButton")
-    hands.wait_until(lambda: hands.find("stepsTable").rowCount, "the steps are listed")
+    table = hands.find("stepsTable")
+    hands.wait_until(lambda: table.rowCount, "the steps are listed")
     told = hands.text("stepText")
     leads = ("Answer", "Start the step", "Break")
     hands.wait_until(lambda: hands.text("nextStepButton") in leads, "the button leads on")
-    return told
+    _answer_questionnaire(tour)
+    hands.must(table.item(0, 1).text() == "done", "The answers are not kept.")
+    tour.dialogs.answer("Skip the step", "This is a tour, not a study.")
+    hands.click("skipStepButton")
+    hands.wait_until(lambda: "a tour" in table.item(1, 1).text(), "a step is skipped")
+    return f"{told} Then: {table.item(1, 1).text()}"
+
+
+def _answer_questionnaire(tour: Tour) -> None:
+    """Answer the questionnaire SSQ, with which the published study begins."""
+    from rastrainer.study.protocol.questionnaires import find_questionnaire
+
+    for item in find_questionnaire("ssq").items:
+        tour.hands.choose(f"{item.name}ComboBox", "1")
+    tour.hands.click("saveAnswersButton")
 
 
 def delete_every_node(tour: Tour) -> str:
@@ -136,7 +227,31 @@ def delete_trainee_and_stop(tour: Tour) -> str:
     tour.dialogs.answer("cannot be undone", "Yes")
     hands.click("deleteTraineeButton")
     hands.wait_until(lambda: "was deleted" in hands.text("traineeText"), "the trainee is deleted")
-    told = hands.text("traineeText")
+    told, group = hands.text("traineeText"), _group_of_simulator(tour)
+    hands.must(_processes(group), "The simulator's process is not found.")
     hands.click("stopSimulatorButton")
     hands.wait_until(lambda: hands.text("nextStepButton") == "Start and connect", "it ends")
+    hands.wait_until(lambda: not _processes(group), "no process of the simulator is left")
     return told
+
+
+def _group_of_simulator(tour: Tour) -> int:
+    """Return the number of the process group of the simulator; on Windows, of its process."""
+    from rastrainer.journal.folder_lock import read_holder
+
+    holder = read_holder(tour.session.places.records)
+    tour.hands.must(holder and holder.pid, "The simulator does not say who it is.")
+    return holder.pid if os.name == "nt" else os.getpgid(holder.pid)
+
+
+def _processes(group: int) -> list[str]:
+    """Return a line for each process of the group that runs."""
+    if os.name == "nt":
+        words = ["tasklist", "/NH", "/FI", f"PID eq {group}"]
+        lines = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+        return [line for line in lines.splitlines() if f" {group} " in line]
+    words = ["ps", "-A", "-o", "pgid=,stat=,args="]
+    lines = subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
+    known = [line.split(None, 2) for line in lines]
+    # What has ended and waits to be noticed has a Z.
+    return [each[-1] for each in known if int(each[0]) == group and "Z" not in each[1]]

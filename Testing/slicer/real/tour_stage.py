@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -58,6 +59,7 @@ class Tour:
             ("programPathLineEdit", "currentPath"),
             ("studyPathLineEdit", "currentPath"),
             ("windowCheckBox", "checked"),
+            ("tutorialCheckBox", "checked"),
         )
         return [(name, what, getattr(self.hands.find(name), what)) for name, what in kept]
 
@@ -71,6 +73,14 @@ class Tour:
         path = self.folder / name
         path.unlink(missing_ok=True)
         return path
+
+    def remove_chosen_scenario(self) -> None:
+        """Remove the scenario of one's own that is chosen, and go back to the built-in one."""
+        combo = self.hands.find("scenarioComboBox")
+        folder = self.session.places.library / combo.itemData(combo.currentIndex)
+        self.hands.must(folder.is_dir(), f"There is no scenario {folder}.")
+        self.hands.choose("scenarioComboBox", "Colin27")
+        shutil.rmtree(folder)
 
     def touch(self, first: int, last: int) -> str:
         """Let the trainee touch points, and wait until Slicer shows them; return what it says."""

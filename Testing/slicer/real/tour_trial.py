@@ -10,6 +10,7 @@ from tour_stage import SLIP_AT, Tour
 
 TRAINEE = "TOUR-1"
 STUDY = "study.db"
+FLE_MM = 20.0
 SETUP_TIMEOUT_S = 1800.0
 WEB_PAGE = """
 import http.server, os, threading
@@ -90,6 +91,24 @@ def show_scenario(tour: Tour) -> str:
     return hands.text("scenarioText")
 
 
+def abort_trial_run(tour: Tour) -> str:
+    """Start the trial run, and abort it after changing one's mind once."""
+    hands = tour.hands
+    hands.open("trainingCollapsibleButton")
+    # The tutorial would come first, and waits for a person.
+    hands.check("tutorialCheckBox", wanted=False)
+    hands.click("startTrialRunButton")
+    hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial run runs")
+    tour.dialogs.answer("Abort the trial", "No")
+    hands.click("abortButton")
+    hands.let_pass(1.0)
+    hands.must(hands.text("nextStepButton") == "Pause", "It was aborted against the answer.")
+    tour.dialogs.answer("Abort the trial", "Yes")
+    hands.click("abortButton")
+    hands.wait_until(lambda: hands.find("startTaskButton").enabled, "no trial is open")
+    return hands.text("phaseText")
+
+
 def start_task(tour: Tour) -> str:
     hands = tour.hands
     hands.open("trainingCollapsibleButton")
@@ -140,6 +159,14 @@ def mend_registration(tour: Tour) -> str:
     hands.click("excludeButton")
     hands.wait_until(lambda: table.rowCount == 14, "another point is left out")
     hands.click("undoButton")
+    hands.wait_until(lambda: table.rowCount == 15, "it is back, too")
+    table.selectRow(3)
+    hands.find("fleSpinBox").value = FLE_MM
+    hands.click("fleButton")
+    stated = f"{FLE_MM:.2f}"
+    hands.wait_until(lambda: table.item(3, 3).text() == stated, "the point weighs less")
+    hands.click("undoButton")
+    hands.wait_until(lambda: table.item(3, 3).text() != stated, "it weighs as much again")
     hands.choose("kindComboBox", "Affine")
     hands.choose("kindComboBox", "Rigid")
     hands.check("headColoredCheckBox")
