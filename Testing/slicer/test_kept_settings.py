@@ -3,7 +3,11 @@
 import pytest
 import slicer
 
-from rastrainer.slicer.settings import HOST, PORT
+from rastrainer.scenario.package import pack
+from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer.slicer import settings
+from rastrainer.slicer.settings import HOST, PORT, Setting
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.slicer.host.host import Host
 
 SECTIONS = ("setup", "simulator", "trainees", "scenario", "training", "registration")
@@ -37,8 +41,15 @@ def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):
     host.type("portSpinBox", "18999")
     host.check("windowCheckBox", False)
     host.check("networkCheckBox")
+    host.check("tutorialCheckBox", False)
     host.choose("modeComboBox", "Headset")
-    host.choose("taskComboBox", "Task 3")
+    with new_folder(tmp_path / "ball") as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+    host.answer("Add a scenario", pack(tmp_path / "ball", tmp_path / "ball.zip"))
+    host.press("importScenarioButton")
+    host.choose("scenarioComboBox", "Colin27")
+    host.choose("scenarioComboBox", "A ball")
+    host.choose("taskComboBox", "Task 2")
     host.choose("kindComboBox", "Affine")
     host.check("headColoredCheckBox")
     host.check("slicesNextPointCheckBox", False)
@@ -46,13 +57,19 @@ def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):
     host.type("studyPathLineEdit", str(tmp_path / "mine.db"))
     host.type("wheelsPathLineEdit", str(tmp_path / "wheels"))
     host.type("programPathLineEdit", str(tmp_path / "rastrainer"))
+    host.type("indexLineEdit", "https://wheels.example.org/simple")
+    kept = {each.key for each in vars(settings).values() if isinstance(each, Setting)}
+    assert kept <= set(slicer.app.settings().allKeys())
     host = start()
     assert host.text("hostLineEdit") == "10.0.0.7"
     assert host.find("portSpinBox").value == 18999
     assert not host.find("windowCheckBox").checked
     assert host.find("networkCheckBox").checked
     assert host.find("modeComboBox").currentText == "Headset"
-    assert host.find("taskComboBox").currentText == "Task 3"
+    assert not host.find("tutorialCheckBox").checked
+    assert host.find("scenarioComboBox").currentText == "A ball"
+    assert host.find("taskComboBox").currentText == "Task 2"
+    assert host.text("indexLineEdit") == "https://wheels.example.org/simple"
     assert host.find("kindComboBox").currentText == "Affine"
     assert host.widget.logic.session.registration.kind == "affine"
     assert host.find("headColoredCheckBox").checked

@@ -3,6 +3,7 @@
 import ast
 import re
 import socket
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 from rastrainer_simulator.cli.main import main
@@ -10,8 +11,8 @@ from Testing.forked_child import in_child
 
 RASTRAINER = Path(__file__).parents[2] / "RASTrainer"
 LOGIC = RASTRAINER / "Logic" / "rastrainer"
-ON_THE_COMMAND_LINE = ("commands", "headless", "__main__", "scipy_modules")
-"""Parts whose sentences only somebody reads who has typed a command."""
+ON_THE_COMMAND_LINE = {LOGIC / "statistics" / "scipy_modules.py"}
+"""Files whose sentences only somebody reads who has typed a command: Slicer has scipy."""
 COMMANDS = "simulator|scenario|demo|doctor|study|head|score|register|export|report"
 WORDS = re.compile(rf"(?<![\w-])--[a-z]|\brastrainer ({COMMANDS})\b|command line|terminal|\bpip\b")
 
@@ -33,21 +34,51 @@ def test_no_sentence_of_the_module_speaks_of_the_command_line():
     said = [
         f"{path.name}: {sentence}"
         for path in (RASTRAINER / "RASTrainer.py", *LOGIC.rglob("*.py"))
-        if not any(part in str(path.relative_to(RASTRAINER)) for part in ON_THE_COMMAND_LINE)
+        if path not in ON_THE_COMMAND_LINE
         for sentence in sentences(path)
         if WORDS.search(sentence)
     ]
     assert said == []
 
 
+def test_what_may_speak_of_the_command_line_is_there_and_does():
+    for path in ON_THE_COMMAND_LINE:
+        assert any(WORDS.search(sentence) for sentence in sentences(path)), path
+
+
+def texts_of_widgets():
+    """Return what each widget says, by the widgets that it lies in and the property."""
+    found = {}
+
+    def look(element, place):
+        for child in element:
+            name = child.get("name", "")
+            where = f"{place}/{name}" if child.tag in ("widget", "property") else place
+            if child.tag == "string":
+                # A list has several of the same place.
+                found[where] = f"{found.get(where, '')} {child.text or ''}".strip()
+            look(child, where)
+
+    for path in (RASTRAINER / "Resources" / "UI").glob("*.ui"):
+        look(ElementTree.parse(path).getroot(), path.stem)
+    return found
+
+
 def test_no_widget_speaks_of_the_command_line():
-    texts = [
-        f"{path.name}: {text}"
-        for path in (RASTRAINER / "Resources" / "UI").glob("*.ui")
-        for text in re.findall(r"<string>(.*?)</string>", path.read_text(encoding="utf-8"))
-        if WORDS.search(text)
+    texts = texts_of_widgets()
+    assert len(texts) > 200
+    assert {place: text for place, text in texts.items() if WORDS.search(text)} == {}
+
+
+def test_the_field_of_a_protocol_says_which_page_describes_the_file():
+    (tip,) = [
+        text
+        for place, text in texts_of_widgets().items()
+        if place.endswith("/protocolPathLineEdit/toolTip")
     ]
-    assert texts == []
+    page = "docs/studies.md"
+    assert page in tip
+    assert "formatVersion" in (RASTRAINER.parent / page).read_text(encoding="utf-8")
 
 
 def start_on_a_port_in_use(folder, port):

@@ -10,6 +10,8 @@ from tour_stage import Tour
 from tour_trial import STUDY, TRAINEE
 
 PLAN_MM = (10.0, 20.0, 30.0)
+TRAJECTORY_MM = (39.79, 48.41, 61.59), (28.0, 30.0, 24.0)
+"""Entry and target of the planned biopsy of the built-in head, which the robot can carry out."""
 SCENARIO_TIMEOUT_S = 600.0
 
 
@@ -23,7 +25,12 @@ def plan(tour: Tour) -> str:
     hands.wait_until(lambda: hands.find("sendPlanButton").enabled, "the plan can be sent")
     hands.click("sendPlanButton")
     hands.wait_until(lambda: "shows the plan" in hands.text("reachableText"), "it is shown")
-    return hands.text("reachableText")
+    told, plan = hands.text("reachableText"), hands.find("planComboBox").currentNode()
+    hands.click("removePlanPointButton")
+    hands.must(plan.GetNumberOfControlPoints() == 0, "The target is not removed.")
+    hands.click("undoPlanButton")
+    hands.must(plan.GetNumberOfControlPoints() == 1, "The target is not brought back.")
+    return told
 
 
 def keep_trajectory(tour: Tour) -> str:
@@ -32,10 +39,8 @@ def keep_trajectory(tour: Tour) -> str:
     hands.open("planCollapsibleButton")
     hands.click("placeTrajectoryButton")
     line = hands.find("planComboBox").currentNode()
-    entry = [0.0] * 3
-    slicer.util.getNode("*fiducials").GetNthControlPointPositionWorld(0, entry)
-    line.AddControlPoint(*entry)
-    line.AddControlPoint(*PLAN_MM)
+    for place in TRAJECTORY_MM:
+        line.AddControlPoint(*place)
     interaction = slicer.app.applicationLogic().GetInteractionNode()
     interaction.SetCurrentInteractionMode(interaction.ViewTransform)
     hands.let_pass(0.5)
@@ -143,7 +148,10 @@ def preview_and_check(tour: Tour) -> str:
     hands.wait_until(
         lambda: "the head that was found" in hands.text(text), "it is found", SCENARIO_TIMEOUT_S
     )
-    hands.must(slicer.util.getNodes("Head as found*"), "The head is not shown.")
+    hands.open("scenarioCollapsibleButton", "otherHeadGroupBox")
+    hands.find("headModelComboBox").setCurrentNode(slicer.util.getNode("Head as found"))
+    hands.click("useHeadButton")
+    hands.wait_until(lambda: "is the head now" in hands.text("otherHeadText"), "it is used")
     hands.click("checkScenarioButton")
     hands.wait_until(lambda: "can be used" in hands.text(text), "it is checked", SCENARIO_TIMEOUT_S)
     return hands.text(text)

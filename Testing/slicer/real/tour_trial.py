@@ -78,6 +78,10 @@ def create_trainee(tour: Tour) -> str:
     hands.check("newConsentCheckBox")
     hands.click("nextStepButton")
     hands.must(TRAINEE in hands.find("traineeComboBox").currentText, "Nobody is chosen.")
+    for is_active in (False, True):
+        hands.click("archiveButton")
+        active = [each.pseudonym for each in tour.session.trainees.trainees()]
+        hands.must((TRAINEE in active) == is_active, "The archive is not followed.")
     return hands.text("traineeText")
 
 
@@ -125,7 +129,7 @@ def pause_and_resume(tour: Tour) -> None:
     hands = tour.hands
     hands.click("nextStepButton")
     hands.wait_until(lambda: hands.text("nextStepButton") == "Resume", "the trial is paused")
-    hands.click("nextStepButton")
+    hands.click("pauseButton")
     hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial is resumed")
 
 
