@@ -80,6 +80,9 @@ class Tour:
         folder = self.session.places.library / combo.itemData(combo.currentIndex)
         self.hands.must(folder.is_dir(), f"There is no scenario {folder}.")
         self.hands.choose("scenarioComboBox", "Colin27")
+        # The simulator may have loaded the other one.
+        self.hands.click("loadScenarioButton")
+        self.hands.let_pass(2.0)
         shutil.rmtree(folder)
 
     def touch(self, first: int, last: int) -> str:

@@ -2,7 +2,7 @@
 
 Slicer's Python is a launcher that starts the real one and passes no signal on, so that to end what
 was started is not to end what runs. On POSIX the program gets a session, and so a group, of its
-own, in which all that it starts stays. On Windows they are in one job object.
+own, in which all that it starts stays. On Windows they are in one job object (`windows_job`).
 
 The end of Slicer does not end them: a running trial survives a crash of Slicer.
 """
@@ -27,44 +27,16 @@ from rastrainer.progress import Progress, report_line
 from rastrainer.python_environment import clean_environment
 
 if sys.platform == "win32":
-    import ctypes
-    from ctypes import wintypes
+    from rastrainer.slicer.program.windows_job import WINDOWS_OPTIONS, WindowsJob, endTree
 
-    OPTIONS: dict[str, Any] = {"creationflags": subprocess.CREATE_NO_WINDOW}
-    """Of `subprocess.Popen`; Windows would open a console window for it."""
-
-    _kernel = ctypes.WinDLL("kernel32", use_last_error=True)
-    _kernel.CreateJobObjectW.argtypes = [wintypes.LPVOID, wintypes.LPCWSTR]
-    _kernel.CreateJobObjectW.restype = wintypes.HANDLE
-    _kernel.AssignProcessToJobObject.argtypes = [wintypes.HANDLE, wintypes.HANDLE]
-    _kernel.TerminateJobObject.argtypes = [wintypes.HANDLE, wintypes.UINT]
+    OPTIONS = WINDOWS_OPTIONS
+    ProcessGroup = WindowsJob
 
     def endProcess(pid: int, hasOwnGroup: bool, isAsked: bool) -> None:  # noqa: ARG001
-        """End a process and all that it has started, at once: see `WindowsProcessGroup.end`."""
-        words = ["taskkill", "/F", "/T", "/PID", str(pid)]
-        subprocess.Popen(words, stdin=subprocess.DEVNULL, **OPTIONS)
-
-    class WindowsProcessGroup:
-        """What `OPTIONS` have started, and all that it starts."""
-
-        def __init__(self, process: subprocess.Popen[str]) -> None:
-            """Take the process into a job; what it starts from now on is in it, too."""
-            self._job = _kernel.CreateJobObjectW(None, None)
-            _kernel.AssignProcessToJobObject(self._job, int(process._handle))
-
-        def end(self) -> None:
-            """End them at once: nothing on Windows can ask a program without a window."""
-            self.kill()
-
-        def kill(self) -> None:
-            """End them at once."""
-            _kernel.TerminateJobObject(self._job, 1)
-
-    ProcessGroup = WindowsProcessGroup
+        """End a process and all that it has started, at once: see `WindowsJob.end`."""
+        endTree(pid)
 
 else:
-    import contextlib
-    import os
     import signal
 
     OPTIONS: dict[str, Any] = {"start_new_session": True}
@@ -155,11 +127,11 @@ class ChildProcess:
                 errors="replace",
                 **OPTIONS,
             )
+            self._group = ProcessGroup(self._process)
         except OSError as error:
             raise NotStartedError(
                 f"{self.arguments[0]} cannot be started: {error.strerror or error}."
             ) from None
-        self._group = ProcessGroup(self._process)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 

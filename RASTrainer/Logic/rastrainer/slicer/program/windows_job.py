@@ -1,0 +1,133 @@
+"""Windows: a program and all that it starts in one job object, from its first moment on.
+
+The program is started suspended and goes on once it is in the job: what it starts is in it, too.
+`subprocess` closes the handle of its first thread, which is therefore found by the process.
+The calls are those of Microsoft's documentation of kernel32.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+import sys
+import weakref
+from typing import Any
+
+_BOOL, _LONG, _DWORD = ctypes.c_int32, ctypes.c_int32, ctypes.c_uint32
+_HANDLE, _POINTER, _TEXT = ctypes.c_void_p, ctypes.c_void_p, ctypes.c_wchar_p
+"""As on Windows, where the tests of these calls run elsewhere, too."""
+_CREATE_NO_WINDOW, _CREATE_SUSPENDED = 0x08000000, 0x00000004
+"""Without the former, Windows opens a console window."""
+WINDOWS_OPTIONS: dict[str, Any] = {"creationflags": _CREATE_NO_WINDOW | _CREATE_SUSPENDED}
+"""Of `subprocess.Popen`; the program goes on when it is given to a `WindowsJob`."""
+_SNAP_THREADS = 0x00000004
+_SUSPEND_RESUME = 0x0002
+_INVALID_HANDLE = ctypes.c_void_p(-1).value
+_FAILED = 0xFFFFFFFF
+
+
+class _ThreadEntry(ctypes.Structure):
+    """THREADENTRY32."""
+
+    _fields_ = (
+        ("dwSize", _DWORD),
+        ("cntUsage", _DWORD),
+        ("th32ThreadID", _DWORD),
+        ("th32OwnerProcessID", _DWORD),
+        ("tpBasePri", _LONG),
+        ("tpDeltaPri", _LONG),
+        ("dwFlags", _DWORD),
+    )
+
+
+_SIGNATURES: dict[str, tuple[Any, ...]] = {
+    "CreateJobObjectW": (_HANDLE, _POINTER, _TEXT),
+    "AssignProcessToJobObject": (_BOOL, _HANDLE, _HANDLE),
+    "TerminateJobObject": (_BOOL, _HANDLE, _DWORD),
+    "CreateToolhelp32Snapshot": (_HANDLE, _DWORD, _DWORD),
+    "Thread32First": (_BOOL, _HANDLE, ctypes.POINTER(_ThreadEntry)),
+    "Thread32Next": (_BOOL, _HANDLE, ctypes.POINTER(_ThreadEntry)),
+    "OpenThread": (_HANDLE, _DWORD, _BOOL, _DWORD),
+    "ResumeThread": (_DWORD, _HANDLE),
+    "CloseHandle": (_BOOL, _HANDLE),
+}
+
+
+def _withSignatures(library: Any) -> Any:
+    """Return a library after declaring its functions: a handle has 64 bits, an int only 32."""
+    for name, (result, *arguments) in _SIGNATURES.items():
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+def _kernel32() -> Any:
+    if sys.platform == "win32":
+        return ctypes.WinDLL("kernel32", use_last_error=True)
+    raise OSError("There are job objects on Windows only.")
+
+
+class WindowsJob:
+    """What `WINDOWS_OPTIONS` have started, and all that it starts."""
+
+    def __init__(self, process: subprocess.Popen[str], kernel: Any | None = None) -> None:
+        """Take the process into a job, and let it go on.
+
+        Args:
+            process: started with `WINDOWS_OPTIONS`.
+            kernel: kernel32; loaded where it is left out.
+
+        Raises:
+            OSError: it does not go on; it has been ended.
+        """
+        self._kernel = _withSignatures(kernel or _kernel32())
+        self._pid = process.pid
+        self._job = self._kernel.CreateJobObjectW(None, None)
+        if self._job:
+            # The last handle to be closed ends nothing: a crash of Slicer leaves the program alone.
+            weakref.finalize(self, self._kernel.CloseHandle, self._job)
+        handle = int(getattr(process, "_handle"))  # noqa: B009 (there on Windows only)
+        self._isInJob = bool(self._job and self._kernel.AssignProcessToJobObject(self._job, handle))
+        if not self._resume():
+            process.kill()
+            raise OSError("Windows has started it, but does not let it run")
+
+    def end(self) -> None:
+        """End them at once: nothing on Windows can ask a program without a window."""
+        self.kill()
+
+    def kill(self) -> None:
+        """End them at once."""
+        if self._isInJob:
+            self._kernel.TerminateJobObject(self._job, 1)
+        else:
+            endTree(self._pid)
+
+    def _resume(self) -> bool:
+        """Let each thread of the process go on; return whether one has."""
+        snapshot = self._kernel.CreateToolhelp32Snapshot(_SNAP_THREADS, 0)
+        if snapshot in (None, _INVALID_HANDLE):
+            return False
+        entry = _ThreadEntry(dwSize=ctypes.sizeof(_ThreadEntry))
+        resumed = []
+        isThere = self._kernel.Thread32First(snapshot, ctypes.byref(entry))
+        while isThere:
+            if entry.th32OwnerProcessID == self._pid:
+                resumed.append(self._resumeThread(entry.th32ThreadID))
+            isThere = self._kernel.Thread32Next(snapshot, ctypes.byref(entry))
+        self._kernel.CloseHandle(snapshot)
+        return any(resumed)
+
+    def _resumeThread(self, number: int) -> bool:
+        thread = self._kernel.OpenThread(_SUSPEND_RESUME, False, number)
+        if not thread:
+            return False
+        former = self._kernel.ResumeThread(thread)
+        self._kernel.CloseHandle(thread)
+        return former != _FAILED
+
+
+def endTree(pid: int) -> None:
+    """End a process and all that it has started, as far as their parents still run, at once."""
+    words = ["taskkill", "/F", "/T", "/PID", str(pid)]
+    subprocess.Popen(words, stdin=subprocess.DEVNULL, creationflags=_CREATE_NO_WINDOW)
