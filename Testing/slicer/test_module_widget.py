@@ -136,6 +136,8 @@ def used_by(path):
             parts = node.args
         elif isinstance(node, (ast.Tuple, ast.List)):
             parts = node.elts
+        elif isinstance(node, ast.Dict):
+            parts = node.keys
         else:
             continue
         yield from (part.value for part in parts if isinstance(part, ast.Constant))
@@ -170,6 +172,26 @@ NOT_IN_THE_TOUR = {
     "sampleDataButton": "it needs the Internet",
     "startStepButton": "the study's trials would take hours",
     "repeatStepButton": "the study's trials would take hours",
+    **dict.fromkeys(
+        (
+            "acceptButton",
+            "advanceButton",
+            "alignButton",
+            "checkLinesButton",
+            "editProcedureButton",
+            "lockButton",
+            "noGoButton",
+            "placeLineButton",
+            "registerAgainButton",
+            "releaseButton",
+            "removeLineButton",
+            "retractDrillButton",
+            "saveProcedureButton",
+            "startInsertionButton",
+            "withdrawButton",
+        ),
+        "the tour's trial has no procedure yet; the host's tests carry one out",
+    ),
 }
 
 
