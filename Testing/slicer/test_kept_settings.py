@@ -10,7 +10,15 @@ from rastrainer.slicer.settings import HOST, PORT, Setting
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.slicer.host.host import Host
 
-SECTIONS = ("setup", "simulator", "trainees", "scenario", "training", "registration")
+SECTIONS = (
+    "setup",
+    "simulator",
+    "trainees",
+    "scenario",
+    "training",
+    "registration",
+    "procedure",
+)
 
 
 @pytest.fixture
@@ -54,6 +62,7 @@ def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):
     host.check("headColoredCheckBox")
     host.check("slicesNextPointCheckBox", False)
     host.check("slicesToolCheckBox")
+    host.check("slicesAlongCheckBox", False)
     host.type("studyPathLineEdit", str(tmp_path / "mine.db"))
     host.type("wheelsPathLineEdit", str(tmp_path / "wheels"))
     host.type("programPathLineEdit", str(tmp_path / "rastrainer"))
@@ -76,6 +85,7 @@ def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):
     slices = host.widget.logic.session.slices
     assert not slices.showsNextPoint
     assert slices.followsTool
+    assert not slices.liesAlong
     assert host.find("studyPathLineEdit").currentPath == str(tmp_path / "mine.db")
     assert host.find("wheelsPathLineEdit").currentPath == str(tmp_path / "wheels")
     assert host.find("programPathLineEdit").currentPath == str(tmp_path / "rastrainer")
