@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from Testing.web.chromium import EYES_M, enter_headset, open_page
@@ -136,6 +137,58 @@ def test_a_banner_stands_in_the_room_above_the_head_and_not_in_the_close_up(work
     before = work.evaluate("page.headset.boards.warning.mesh.position.toArray()")
     stand(work, yaw=0.3)
     assert work.evaluate("page.headset.boards.warning.mesh.position.toArray()") == before
+
+
+CLOSE_UP = """async (inset) => {
+  const { headset, stage } = page;
+  const { closeUp, room } = headset.boards;
+  for (let turn = 0; turn < 3; turn++) closeUp.draw(stage, room, inset);
+  const { x, y, z } = closeUp.camera.position;
+  return [[x, -z, y], closeUp.camera.fov];
+}"""
+BEHIND = {
+    "position": [0.2, 0.1, 0.4],
+    "focalPoint": [0.3, 0.0, 0.4],
+    "viewUp": [0, 0, 1],
+    "viewAngleDeg": 17,
+}
+
+
+def test_the_close_up_looks_along_the_skin_wherever_the_next_touch_is(work):
+    place, angle = work.evaluate(CLOSE_UP, BEHIND)
+    assert (place, angle) == (pytest.approx(BEHIND["position"]), 17)
+    place, angle = work.evaluate(CLOSE_UP, None)
+    front = work.evaluate("page.scene.cameras['close-up'].position")
+    assert (place, angle) == (pytest.approx(front), 10)
+
+
+ARROW = """(place) => {
+  const { arrow, camera } = page.headset;
+  const model = { fiducial: (label, target) => target.fromArray(place) };
+  arrow.show(model, camera, place && "7");
+  if (place === null) arrow.show(model, camera, null);
+  const up = arrow.group.position.clone().set(0, 1, 0).applyQuaternion(arrow.group.quaternion);
+  const { x, y, z } = arrow.group.position;
+  return { isSeen: arrow.group.visible, way: [up.x, -up.z, up.y], at: [x, -z, y],
+           isInRoom: arrow.group.parent === page.headset.boards.room };
+}"""
+AHEAD = """() => {
+  const { camera } = page.headset;
+  const eyes = camera.getWorldPosition(camera.position.clone());
+  const place = eyes.clone().addScaledVector(camera.getWorldDirection(camera.position.clone()), %s);
+  return [place.x, -place.z, place.y];
+}"""
+
+
+def test_an_arrow_leads_the_eyes_to_a_next_point_that_is_out_of_sight(work):
+    assert not work.evaluate(ARROW, work.evaluate(AHEAD % "1"))["isSeen"]
+    behind = work.evaluate(AHEAD % "-1")
+    arrow = work.evaluate(ARROW, behind)
+    assert arrow["isSeen"]
+    assert arrow["isInRoom"], "it is not drawn in the close-up"
+    way = np.subtract(behind, arrow["at"])
+    assert arrow["way"] == pytest.approx(list(way / np.linalg.norm(way)), abs=1e-5)
+    assert not work.evaluate(ARROW, None)["isSeen"]
 
 
 def test_hints_and_holder_are_written_on_lines_of_their_own(worn):

@@ -225,7 +225,7 @@ export class Page {
       this.showProcedure(model, state);
       model.pulse(now);
       this.ring?.show(model, state, stage.renderer.xr.getCamera(), this.screen?.menu == null);
-      this.headset.draw(now, frame, model);
+      this.headset.draw(now, frame, model, state);
       this.frames.drawn();
     } else {
       this.drawFlat(flat, now, model, state);

@@ -1,4 +1,4 @@
-/** The close-up camera as a magnified picture in the room: it follows the tool's tip. */
+/** A magnified picture in the room: along the skin where a touch is to be judged, else of the tool's tip. */
 
 import {
   LinearFilter,
@@ -13,6 +13,7 @@ import {
 } from "three";
 
 import { COLORS } from "../panels/pen";
+import type { CameraPlace } from "../messages";
 import type { Stage } from "../stage";
 import { Viewpoint } from "../viewpoint";
 
@@ -45,17 +46,22 @@ export class CloseUp {
     this.mesh.add(this.frame);
   }
 
-  /** Draw the picture if it is its turn; `hidden` is not to be seen in it. */
-  draw(stage: Stage, hidden: Object3D): void {
+  /**
+   * Draw the picture if it is its turn; `hidden` is not to be seen in it. With `inset`, it is looked along
+   * the skin from there, also behind the head.
+   */
+  draw(stage: Stage, hidden: Object3D, inset: CameraPlace | null): void {
     const { model, renderer } = stage;
     const camera = model?.news.cameras["close-up"];
     const tool = model?.node("tool");
     if (!this.mesh.visible || camera === undefined || tool === undefined) return;
     this.turn = (this.turn + 1) % EVERY;
     if (this.turn !== 0) return;
-    this.place.take(camera);
-    this.place.focus.copy(tool.getWorldPosition(this.tip));
-    this.place.angle = ANGLE_DEG;
+    this.place.take(inset ?? camera);
+    if (inset === null) {
+      this.place.focus.copy(tool.getWorldPosition(this.tip));
+      this.place.angle = ANGLE_DEG;
+    }
     this.place.look(this.camera, WIDTH / HEIGHT);
     hidden.visible = false;
     renderer.xr.enabled = false;

@@ -4,7 +4,7 @@ import { PerspectiveCamera, Vector3 } from "three";
 
 import type { Connection } from "../connection";
 import type { FrameCount } from "../frame_count";
-import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen } from "../messages";
+import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen, StateNews } from "../messages";
 import type { SceneModel } from "../scene_model";
 import type { Sounds } from "../sounds";
 import type { Stage } from "../stage";
@@ -13,6 +13,7 @@ import { headsetModel } from "./device";
 import { Grab } from "./grab";
 import { Hands } from "./hands";
 import { Placement } from "./placement";
+import { SightArrow } from "./sight_arrow";
 import { Seating } from "./seating";
 
 const HIGHEST_HZ = 90;
@@ -26,6 +27,8 @@ export class Headset {
   private readonly boards = new Boards();
   private readonly seating = new Seating();
   private readonly grab = new Grab();
+  private readonly arrow = new SightArrow();
+  private hasArrow = false;
   private readonly hands: Hands;
   private base: XRReferenceSpace | null = null;
   private mustRecenter = false;
@@ -45,6 +48,7 @@ export class Headset {
     const { scene, renderer } = stage;
     this.placement.rig.add(this.camera);
     scene.add(this.placement.rig, this.boards.room);
+    this.boards.room.add(this.arrow.group);
     this.hands = new Hands(renderer.xr, this.placement.rig, this.boards.pointable, connection, this.grab, {
       onChosen: (name) => this.choose(name),
       onHovered: (name) => this.boards.hover(name),
@@ -75,6 +79,7 @@ export class Headset {
   /** Leave the picture to the flat view. */
   end(): void {
     this.boards.dispose();
+    this.arrow.dispose();
     this.hands.release();
     this.placement.rig.removeFromParent();
     this.stage.renderer.xr.enabled = false;
@@ -86,6 +91,7 @@ export class Headset {
   }
 
   showScreen(screen: Screen): void {
+    this.hasArrow = screen.menu === null && screen.has_arrow;
     this.boards.show(screen);
     this.hands.isStepped = this.boards.isStepped;
   }
@@ -116,7 +122,7 @@ export class Headset {
   }
 
   /** Draw for both eyes, `now` in s. */
-  draw(now: number, frame: XRFrame, model: SceneModel): void {
+  draw(now: number, frame: XRFrame, model: SceneModel, state: StateNews): void {
     if (model.news !== this.shownNews) {
       this.shownNews = model.news;
       this.takeScene(model);
@@ -128,7 +134,8 @@ export class Headset {
     this.hands.poll(Math.min(1, now - this.looked));
     this.looked = now;
     this.hear(model);
-    this.boards.closeUp.draw(this.stage, this.boards.room);
+    this.boards.closeUp.draw(this.stage, this.boards.room, state.inset);
+    this.arrow.show(model, this.camera, this.hasArrow ? state.next : null);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
 
