@@ -122,6 +122,28 @@ def test_a_menu_that_opens_comes_up_where_the_eyes_look(work):
     assert work.evaluate(BOARD, "menu")["aside"] < 2.0
 
 
+TWICE = """() => {
+  const { headset, screen } = page;
+  const { menu } = headset.boards;
+  const work = { ...screen, menu: null };
+  const other = { ...screen, menu: { ...screen.menu, title: "Another menu" } };
+  const pictures = [screen, work, screen, other, work, screen].map((shown) => {
+    headset.showScreen(shown);
+    return menu.mesh.visible ? menu.context.canvas.toDataURL() : "";
+  });
+  return { isSame: pictures[0] === pictures[2] && pictures[0] === pictures[5],
+           isHidden: pictures[1] === "" && pictures[4] === "",
+           isOther: !["", pictures[0]].includes(pictures[3]),
+           items: menu.regions.map(({ name }) => name) };
+}"""
+
+
+def test_a_menu_that_is_opened_again_is_drawn_again(menu):
+    seen = menu.evaluate(TWICE)
+    assert (seen["isSame"], seen["isHidden"], seen["isOther"]) == (True, True, True)
+    assert seen["items"] == menu.evaluate("page.screen.menu.items.map(({ name }) => name)")
+
+
 @pytest.mark.parametrize("name", ["work", "closeUp", "warning"])
 def test_a_panel_is_read_from_behind_the_head_too(work, name):
     stand(work, forward=BEHIND_M, yaw=3.14159)
