@@ -226,6 +226,6 @@ def copy_with_plan(
         raise InputError(" ".join(wrong))
     with new_folder(copy) as made:
         write_scenario(made, scenario, head, skull, volume, no_go)
-        draw_preview(made / PREVIEW_NAME, scenario, head)
-        load_scenario(made)
+        # The picture needs the meshes where they were written.
+        draw_preview(made / PREVIEW_NAME, load_scenario(made), head)
     return load_scenario(copy)
