@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
@@ -15,6 +18,7 @@ from Testing.web.chromium import accessibility_checker, open_page
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
 
+WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
 SIZES = {
     "phone": (390, 844),
     "phone on its side": (844, 390),
@@ -195,6 +199,36 @@ def test_the_menu_of_the_tasks_is_whole_on_a_laptop(place, page):
     page.set_viewport_size({"width": width, "height": height})
     menu = "document.getElementById('menu')"
     assert page.evaluate(f"{menu}.scrollHeight - {menu}.clientHeight") <= 0
+
+
+def contrast(one, other):
+    """Return the contrast of two sRGB colors of 0 to 255 (WCAG 2.2)."""
+
+    def luminance(color):
+        shares = [value / 255 for value in color]
+        linear = [s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4 for s in shares]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    dark, bright = sorted(map(luminance, (one, other)))
+    return (bright + 0.05) / (dark + 0.05)
+
+
+def test_what_cannot_be_chosen_is_legible_over_any_picture():
+    css = (WEB / "static" / "page.css").read_text(encoding="utf-8").replace("/ ", "")
+    pale = bytes.fromhex(re.search(r"--pale: #(\w+);", css)[1])
+    layers = [
+        [float(number) for number in re.search(rf"--{name}: rgb\((.*)%\);", css)[1].split()]
+        for name in ("night", "row")
+    ]
+    for picture in ((255.0,) * 3, (0.0,) * 3):
+        ground = picture
+        for *color, percent in layers:
+            share = percent / 100
+            ground = [share * c + (1 - share) * g for c, g in zip(color, ground, strict=True)]
+        assert contrast(pale, ground) >= 4.5
+    pen = (WEB / "src" / "panels" / "pen.ts").read_text(encoding="utf-8")
+    pale, row = (bytes.fromhex(re.search(rf'{name}: "#(\w+)"', pen)[1]) for name in ("pale", "row"))
+    assert contrast(pale, row) >= 4.5
 
 
 def test_a_selection_is_seen_where_the_system_chooses_the_colors(place, page):

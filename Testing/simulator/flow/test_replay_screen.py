@@ -144,6 +144,13 @@ def test_the_errors_on_the_head_are_turned_by_keys_and_pad_and_left_by_a_click(r
     control.reset()
 
 
+def test_a_replay_is_left_by_a_click(result):
+    result.show_again()
+    assert [hint.item for hint in result.presenter.screen.hints] == ["", "", "", "", "back"]
+    result.presenter.on_item(1, "back")
+    result.until_menu("result")
+
+
 def test_the_worst_touch_is_looked_at_from_where_it_is_seen_best(result):
     view = result.presenter._session.view
     view.control.reset()

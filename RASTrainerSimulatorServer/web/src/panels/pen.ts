@@ -11,7 +11,7 @@ export const COLORS = {
   edge: "#37445a",
   text: "#f4f7fb",
   soft: "#c3cede",
-  pale: "#8695ac",
+  pale: "#97a5bc",
 };
 
 export const TONES: Readonly<Record<Tone, string>> = {
