@@ -128,7 +128,7 @@ def perform(operation: Operation) -> None:
 
 
 def begin(operation: Operation) -> None:
-    """Choose a procedure and a task, touch all points where the tip is, and register them."""
+    """Choose a procedure and a task, touch all points wherever the tip is, and register them."""
     trainee = operation.trainee
     trainee.until_menu("start")
     trainee.choose("train")
@@ -148,6 +148,10 @@ def begin(operation: Operation) -> None:
     trainee.choose("task-1")
     trainee.until_menu(None)
     for kept in range(1, 16):
+        # Touches at one place could not be registered again by who shows the trial again.
+        trainee.hands.push(*np.roll((1.0, 0.0, 0.0), kept).tolist(), False)
+        trainee.step(15)
+        trainee.hands.push(0.0, 0.0, 0.0, False)
         trainee.tap("touch")
         trainee.until(lambda k=kept: trainee.touched == k, f"touch {kept}")
     trainee.until(lambda: trainee.state.training.phase is Phase.COMPLETE, "the last touch")
@@ -218,6 +222,29 @@ def score(operation: Operation) -> None:
     operation.keep("lines")
     trainee.tap("back")
     trainee.until_menu("procedure-errors")
+    trainee.choose("back")
+    trainee.until_menu("result")
+    replay(operation)
+
+
+def replay(operation: Operation) -> None:
+    """Have the trial shown again, up to where the second guide is aligned."""
+    trainee = operation.trainee
+    trainee.choose("replay")
+    trainee.until_menu(None)
+    playback = trainee.presenter._session.pages.top.playback
+
+    def is_there() -> bool:
+        procedure = trainee.presenter.shown.latest.training.procedure
+        return procedure is not None and (procedure.trajectory, procedure.stage) == (
+            1,
+            Phase.DRILLING,
+        )
+
+    while not is_there():
+        playback.play_from(playback.time_s + 1.0)
+        trainee.step(1)
+    operation.keep("replayed")
 
 
 def screen_of(operation: Operation, name: str):
@@ -342,6 +369,13 @@ def test_the_lines_on_the_head_show_plan_registration_and_instrument(operation):
         assert shown.end == pytest.approx(shown_in_world(operation, TARGETS[number]), abs=1e-6)
         tip = truth.in_world(errors.tip) / MM_PER_M
         assert placed.end == pytest.approx(tip, abs=MICROMETRE)
+
+
+def test_the_trial_shown_again_draws_the_plan_as_it_was_seen(operation):
+    replayed, drilled = (screen_of(operation, name) for name in ("replayed", "drilled 1"))
+    assert replayed.is_head_clear
+    assert replayed.errors == drilled.errors
+    assert told_of(operation, "replayed")["tool"] == "drill"
 
 
 def test_the_menu_offers_the_robot_s_alignment_only_where_it_is_allowed(operation):

@@ -72,11 +72,13 @@ def paint_bulls_eye(look: BullsEye, brush: Brush) -> np.ndarray:
     canvas.box(whole, theme.GLASS, brush.px(theme.RADIUS))
     middle = canvas.width / 2
     for ring_mm in (*RINGS_MM, FARTHEST_MM):
-        _circle(canvas, (middle, middle), brush.px(RADIUS) * shown_radius(ring_mm), theme.EDGE, 3)
+        _circle(
+            canvas, (middle, middle), brush.px(RADIUS) * shown_radius(ring_mm), theme.CAP_EDGE, 3
+        )
     cross = brush.px(RADIUS)
     for along, across in ((1, 0), (0, 1)):
         ends = [(middle - s * cross * along, middle - s * cross * across) for s in (1, -1)]
-        canvas.stroke(ends, brush.px(2), theme.EDGE)
+        canvas.stroke(ends, brush.px(2), theme.CAP_EDGE)
     color = theme.ON_SKIN if look.is_good else theme.TARGET
     entry, target = (_shown(place, middle, brush) for place in (look.entry, look.target))
     canvas.stroke([entry, target], brush.px(4), color)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.input.inputs import InputDevice
@@ -42,11 +45,16 @@ class ReplayPage(SessionPage):
         return Menu(self.name, self.say("replay.loading"), (), (), (self.button("back"),))
 
     def screen(self) -> Screen | None:
-        """Return what is read while the trial is played."""
-        if self._player is None:
+        """Return what is read while the trial is played; with the plan, where it was seen."""
+        if self._player is None or self.playback is None:
             return None
         session = self.session
-        return self._player.screen(session.texts, self._hints(), session.preferences.language)
+        shown = self._player.screen(session.texts, self._hints(), session.preferences.language)
+        procedure = self.playback.latest.training.procedure
+        if procedure is None or procedure.present is None:
+            return shown
+        marks = plan_marks(procedure, session.planned_bone)
+        return replace(shown, errors=marks, is_head_clear=True)
 
     def advance(self, dt: float) -> None:
         """Play, as soon as the trial is loaded."""

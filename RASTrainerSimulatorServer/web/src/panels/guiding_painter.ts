@@ -40,9 +40,9 @@ export function paintGuiding(pen: Pen, aim: Aim | null, ruler: DepthRuler | null
 
 function paintAim(pen: Pen, aim: Aim): void {
   const middle = GUIDING_WIDTH / 2;
-  for (const ring of [...RINGS_MM, FARTHEST_MM]) pen.circle(middle, middle, RADIUS * shownRadius(ring), COLORS.edge, 3);
-  pen.stroke(middle - RADIUS, middle, middle + RADIUS, middle, COLORS.edge, 2);
-  pen.stroke(middle, middle - RADIUS, middle, middle + RADIUS, COLORS.edge, 2);
+  for (const ring of [...RINGS_MM, FARTHEST_MM]) pen.circle(middle, middle, RADIUS * shownRadius(ring), COLORS.pale, 3);
+  pen.stroke(middle - RADIUS, middle, middle + RADIUS, middle, COLORS.pale, 2);
+  pen.stroke(middle, middle - RADIUS, middle, middle + RADIUS, COLORS.pale, 2);
   const isGood = aim.entryDistanceMm <= GOOD_MM && aim.angleDeg <= GOOD_DEG;
   const color = isGood ? GOOD : OFF;
   const [entryX, entryY] = shown(aim.entryMm, middle);
