@@ -102,6 +102,7 @@ def perform(operation: Operation) -> None:
     trainee = operation.trainee
     begin(operation)
     trainee.tap("touch")
+    trainee.until(lambda: trainee.state.training.procedure.checkpoints, "a touched checkpoint")
     operation.keep("verifying")
     trainee.tap("undo")
     trainee.until_menu("procedure")

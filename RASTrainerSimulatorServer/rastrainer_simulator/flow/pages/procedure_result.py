@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rastrainer.json_checks import is_number
@@ -14,6 +15,7 @@ from rastrainer.procedure.score import (
     PLUNGE_LIMIT_MM,
     TARGET_LIMIT_MM,
 )
+from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.plan_marks import (
     PLACED,
@@ -23,15 +25,12 @@ from rastrainer_simulator.flow.session.plan_marks import (
     placed_line,
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.net.views.screen import (
     ErrorArrow,
     Fact,
-    Hint,
     Menu,
     MenuItem,
     Screen,
-    ScreenMessage,
     Tone,
 )
 from rastrainer_simulator.procedure_state import PlannedLine
@@ -141,29 +140,20 @@ class ProcedureErrorsPage(SessionPage):
         return facts
 
 
-class ProcedureLinesPage(SessionPage):
+class ProcedureLinesPage(ErrorsPage):
     """Shows the planned, the registered and the placed lines in the head, without a menu."""
 
     name = "procedure-lines"
 
-    def menu(self) -> Menu:
-        """Return what a view that draws no lines would show."""
-        return Menu(self.name, self.say("procedure-lines.title"), items=(self.button("back"),))
-
     def screen(self) -> Screen:
         """Return the lines; the score has revealed where the head truly is."""
         session = self.session
-        return Screen(
-            instruction=ScreenMessage(self.say("procedure-lines.title")),
-            hints=(Hint(session.label(ControlName.BACK), self.say("hint.result")),),
-            language=session.preferences.language,
-            errors=_lines(session) if session.training.result is not None else (),
-            is_head_clear=True,
-        )
+        lines = _lines(session) if session.training.result is not None else ()
+        return replace(super().screen(), errors=lines, is_head_clear=True)
 
-    def accept(self, item: str) -> None:  # noqa: ARG002
-        """Go back to the table."""
-        self.back()
+    @property
+    def _title(self) -> str:
+        return self.say("procedure-lines.title")
 
 
 def _lines(session: TrainingSession) -> tuple[ErrorArrow, ...]:
