@@ -1,4 +1,4 @@
-"""Slicer's side leads a procedure of the default head, against a real simulator, and scores it."""
+"""Slicer leads a procedure against a real simulator, is lost in each phase, and scores it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from rastrainer.protocol import DEFAULT_HOST, CommandName, Phase
+from rastrainer.protocol import DEFAULT_HOST, PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.module_session import ModulePaths, ModuleSession
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
@@ -46,6 +46,15 @@ class Leader:
         self.answers: list[str] = []
         self.session.procedure.answered.connect(self.answers.append)
         self.session.link.connectTo(DEFAULT_HOST, port)
+
+        self.place = folder, port
+
+    def lost(self) -> Leader:
+        """Break off without any word, as a process that is killed, and return a new Leader."""
+        self.session.link.connector.Stop()
+        other = Leader(*self.place)
+        other.until(lambda: other.session.link.isOpen and other.status.name)
+        return other
 
     @property
     def status(self):
@@ -88,16 +97,23 @@ class Leader:
         }
 
 
+def found(leader: Leader, seen: dict) -> Leader:
+    """Lose Slicer's side; note the phase before and what the next one finds, and return that."""
+    other = leader.lost()
+    seen["lost"].append(leader)
+    seen["found"].append((leader.status, other.status))
+    return other
+
+
 @pytest.fixture(scope="module")
 def led(tmp_path_factory):
     """What Slicer's side saw while it led a procedure with one line."""
     folder = tmp_path_factory.mktemp("led")
     scenario = load_scenario(asset_path("scenarios", "colin27"))
-    seen: dict = {"scenario": scenario}
+    seen: dict = {"scenario": scenario, "lost": [], "found": []}
     with SimulatorProcess(folder / "records", "--speed", SPEED) as simulator:
         leader = Leader(folder, simulator.port)
-        session, procedure = leader.session, leader.session.procedure
-        leader.until(lambda: session.link.isOpen)
+        leader.until(lambda: leader.session.link.isOpen)
         with Player(simulator.port) as player:
             touching = threading.Thread(
                 target=play, args=(player, scenario), kwargs={"procedure": PROCEDURE}, daemon=True
@@ -106,20 +122,25 @@ def led(tmp_path_factory):
             leader.until(lambda: not touching.is_alive())
             leader.until(lambda: leader.status.isRegistered)
             seen["axial"] = leader.slices()
-            procedure.accept()
+            leader = found(leader, seen)
+            leader.session.procedure.accept()
             leader.until_in(Phase.ALIGNING)
-            procedure.align()
+            leader = found(leader, seen)
+            leader.session.procedure.align()
             leader.until(leader.is_aligned)
-            procedure.lock()
+            leader.session.procedure.lock()
             leader.until_in(Phase.DRILLING)
-            procedure.feed(True)
+            leader.session.procedure.feed(True)
             leader.until(lambda: leader.status.feedMm > 0.9)
             leader.feed_to(55.0)
             seen["along"] = leader.slices()
-            procedure.startInsertion()
+            leader = found(leader, seen)
+            leader.session.procedure.startInsertion()
             leader.until_in(Phase.INSERTING)
             line = scenario.procedure(PROCEDURE).trajectories[0]
             leader.feed_to(30.0 + line.length_mm)
+            leader = found(leader, seen)
+            procedure, session = leader.session.procedure, leader.session
             procedure.release()
             leader.until(lambda: procedure.outcome is not None)
             seen["after"] = leader.slices()
@@ -136,7 +157,8 @@ def led(tmp_path_factory):
             session.replay.show(study.history("anna")[0])
         seen["shown again"] = procedure.outcome
         seen["lines again"] = len(nodesOf(session._scene, LINE, Role.TRUE_LINE))
-        session.close()
+        for each in (*seen["lost"], leader):
+            each.session.close()
     with Study.open_for_reading(folder / "study.db") as study:
         (seen["stored"],) = study.history("anna")
     return seen
@@ -152,6 +174,15 @@ def test_the_procedure_is_registered_led_and_scored_by_slicer(led):
     assert errors.instrument.self_aligned
     assert outcome.score.version == "procedure-1"
     assert led["lines"] == dict.fromkeys(led["lines"], 1)
+
+
+def test_a_slicer_that_is_lost_in_a_phase_finds_the_procedure_as_it_was(led):
+    phases = [before.phase for before, _after in led["found"]]
+    assert phases == [phase.value for phase in PROCEDURE_PHASES]
+    for before, after in led["found"]:
+        assert (after.phase, after.name) == (before.phase, before.name)
+        assert after.isRegistered
+        assert after.feedMm >= before.feedMm
 
 
 def test_the_score_of_the_procedure_is_stored_beside_that_of_the_touches(led):
