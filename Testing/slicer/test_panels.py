@@ -369,13 +369,20 @@ def test_the_choice_of_a_fit_changes_the_transform(panels, touched):
     assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
 
 
-def test_one_small_legend_is_drawn_in_the_3d_view_alone(panels, touched):
+def test_one_small_legend_is_drawn_in_the_3d_view_alone(panels, touched, tmp_path):
     touch(panels, touched)
+    head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetDisplayNode()
+    head.SetOpacity(0.4)
     seen = [panels.legends()]
     panels.check("headColoredCheckBox")
     seen.append(panels.legends())
+    # Through a translucent head the colors would not be those of the legend.
+    assert head.GetOpacity() == 1.0
+    panels.window_screenshot(tmp_path / "colored.png")
+    assert panels.legends() == seen[-1]
     panels.check("headColoredCheckBox", False)
     seen.append(panels.legends())
+    assert head.GetOpacity() == 0.4
     titles = [[title for title, _share in drawn.pop("View1")] for drawn in seen]
     assert titles == [["Residual (mm)"], ["TRE (mm)"], ["Residual (mm)"]]
     assert [drawn for drawn in seen if any(drawn.values())] == []

@@ -88,10 +88,13 @@ class View:
     def _open_window(self) -> None:
         if not isinstance(self.window, vtk.vtkGenericOpenGLRenderWindow):
             return
-        self.window.RemoveRenderer(self.renderer)
-        self.window = vtk.vtkRenderWindow()
+        former, self.window = self.window, vtk.vtkRenderWindow()
         self.window.SetOffScreenRendering(1)
-        self.window.AddRenderer(self.renderer)
+        self.window.SetNumberOfLayers(former.GetNumberOfLayers())
+        # Legends have a renderer of their own, in a layer above.
+        for renderer in list(former.GetRenderers()):
+            former.RemoveRenderer(renderer)
+            self.window.AddRenderer(renderer)
         self._interactor.SetRenderWindow(self.window)
 
     def legends(self, scene: Any) -> list[tuple[str, float]]:
@@ -102,7 +105,9 @@ class View:
         drawn = []
         for node in slicer.util.getNodesByClass("vtkMRMLColorLegendDisplayNode", scene):
             actor = manager.GetColorLegendActor(node)
-            if actor is not None and actor.GetVisibility():
+            renderers = self.window.GetRenderers()
+            is_drawn = any(renderer.HasViewProp(actor) for renderer in renderers)
+            if actor is not None and actor.GetVisibility() and is_drawn:
                 drawn.append((actor.GetTitle(), actor.GetWidth() * actor.GetHeight()))
         return drawn
 

@@ -25,6 +25,8 @@ SIZE = (0.1, 0.35)
 """Width and height as shares of the view."""
 PLACE = (0.98, 0.5)
 TRE_SCALARS = "expected TRE (mm)"
+OPACITY_ATTRIBUTE = "RASTrainer.opacity"
+"""On a colored head: its opacity without the colors, which mean something only where it is 1."""
 
 
 def showScalars(model: Any, name: str, ends: tuple[float, float]) -> None:
@@ -94,6 +96,8 @@ def colorHead(
     Raises:
         InputError: the registration has too few points.
     """
+    display = model.GetDisplayNode()
+    isColored = display.GetScalarVisibility() and display.GetActiveScalarName() == TRE_SCALARS
     points = slicer.util.arrayFromModelPoints(model).astype(float)
     errors = expected_tre(registration, points, localization)
     scalars = numpy_to_vtk(errors, deep=True)
@@ -101,6 +105,9 @@ def colorHead(
     model.GetPolyData().GetPointData().AddArray(scalars)
     model.GetPolyData().Modified()
     low, high = float(errors.min()), float(errors.max())
+    if not isColored:
+        model.SetAttribute(OPACITY_ATTRIBUTE, str(display.GetOpacity()))
+        display.SetOpacity(1.0)
     showScalars(model, TRE_SCALARS, colorRange(low, high))
     showLegend(model, "TRE (mm)", HEAD_RANK)
     return low, high
@@ -117,6 +124,10 @@ def uncolorHead(model: Any) -> None:
     display = model.GetDisplayNode()
     if display is not None and display.GetActiveScalarName() == TRE_SCALARS:
         display.SetScalarVisibility(False)
+        former = model.GetAttribute(OPACITY_ATTRIBUTE)
+        if former:
+            display.SetOpacity(float(former))
+            model.RemoveAttribute(OPACITY_ATTRIBUTE)
         hideLegend(model)
 
 
