@@ -1,9 +1,13 @@
-"""A biopsy from the menu to the result, by gamepad alone and by the window's keyboard alone.
+"""A biopsy from the menu to the result, by gamepad alone and by the keys of a page alone.
 
 No Slicer is there: the simulator registers the points and scores the procedure itself.
 """
 
 from __future__ import annotations
+
+import threading
+import time
+from contextlib import suppress
 
 import pytest
 
@@ -11,13 +15,16 @@ from rastrainer.journal.journal_file import read_journal
 from Testing.end_to_end.hands import GamepadHands, KeyHands
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.procedure_trainee import ALIGNED_DEG, ALIGNED_MM, ProcedureTrainee
+from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.test_gamepad_session import type_by_gamepad
-from Testing.end_to_end.test_keyboard_session import SMALL
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
 
 # Fifteen touches and a whole procedure by hand take minutes.
 pytestmark = pytest.mark.soak
 
-SPEED = {"gamepad": "3", "keyboard": "1.5"}
+SPEED = "3"
+PRESSED_S, ALIVE_S = 0.02, 0.1
 TRAINEE = "P7"
 TITLE = "Biopsy of a frontal lesion"
 PAST_INNER_MM = 1.0
@@ -50,17 +57,45 @@ class TurningKeys(KeyHands):
         self._held = wanted
 
 
+class PageKeyboard:
+    """The keys of a page, as it sends them, with its signs of life."""
+
+    def __init__(self, client: ViewClient):
+        self._client = client
+        threading.Thread(target=self._live, daemon=True).start()
+
+    def _live(self) -> None:
+        with suppress(Exception):
+            while True:
+                self._client.send({"type": "alive"})
+                time.sleep(ALIVE_S)
+
+    def tap(self, code: str) -> None:
+        self.hold(code, True)
+        time.sleep(PRESSED_S)
+        self.hold(code, False)
+
+    def hold(self, code: str, is_down: bool) -> None:
+        is_typed = is_down and code.startswith(("Key", "Digit"))
+        text = code[-1].lower() if is_typed else ""
+        self._client.send({"type": "key", "code": code, "isDown": is_down, "text": text})
+
+
 @pytest.fixture(scope="module", params=["gamepad", "keyboard"])
 def operated(tmp_path_factory, request) -> dict:
     """Carry the biopsy out; return what came of it."""
     device = request.param
     folder = tmp_path_factory.mktemp(device)
     options = () if device == "gamepad" else ("--no-gamepad",)
-    with Lab(folder, "--speed", SPEED[device], "--seed", "11", *options) as lab:
-        if device == "keyboard":
-            lab.open_window("window", *SMALL)
-        hands = TurningGamepad(lab.simulator) if device == "gamepad" else TurningKeys(lab.keyboard)
-        return operate(ProcedureTrainee(lab.view, hands), lab, device)
+    with (
+        Lab(folder, "--speed", SPEED, "--seed", "11", *options) as lab,
+        LoopThread() as thread,
+        ViewClient(thread, lab.url, lab.key) as client,
+    ):
+        if device == "gamepad":
+            return operate(ProcedureTrainee(lab.view, TurningGamepad(lab.simulator)), lab, device)
+        page = WatchingView(client)
+        return operate(ProcedureTrainee(page, TurningKeys(PageKeyboard(client))), lab, device)
 
 
 def operate(trainee: ProcedureTrainee, lab: Lab, device: str) -> dict:
