@@ -56,6 +56,19 @@ def test_path_speed_and_rest_of_minimum_jerk_reaches(trajectory):
     assert motion["sparc"] == pytest.approx(-1.5, abs=0.2)
 
 
+def test_waiting_for_the_result_after_the_last_touch_is_no_idle_time(trajectory):
+    waiting = np.arange(1, 60 * 50) / 50.0
+    waited = replace(
+        trajectory,
+        times_s=np.concatenate([trajectory.times_s, trajectory.times_s[-1] + waiting]),
+        tip_mm=np.concatenate([trajectory.tip_mm, np.repeat([CORNERS[-1]], len(waiting), axis=0)]),
+        clearance_mm=np.full(len(trajectory.times_s) + len(waiting), 30.0),
+    )
+    idle_s = trial_motion(trajectory)["idle_time_s"]
+    assert trial_motion(waited)["idle_time_s"] == pytest.approx(idle_s)
+    assert idle_s < trial_motion(waited)["completion_time_s"]
+
+
 def whole(trajectory, **more):
     """A complete trial of a known task."""
     known = {str(i + 1): point + 0.1 * i**2 for i, point in enumerate(CORNERS)}

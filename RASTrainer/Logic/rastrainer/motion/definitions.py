@@ -116,7 +116,7 @@ DEFINITIONS: dict[str, MetricDefinition] = {
             "idle_time_s",
             "Idle time",
             f"Time with the tip slower than {IDLE_SPEED_MM_S:g} mm/s for more than "
-            f"{IDLE_DURATION_S:g} s at a stretch.",
+            f"{IDLE_DURATION_S:g} s at a stretch, up to the last touch that counts.",
             unit="s",
             better=-1,
         ),

@@ -16,6 +16,7 @@ time, not mean difficulty over mean time.
 from __future__ import annotations
 
 import contextlib
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -122,7 +123,7 @@ def trial_motion(trajectory: Trajectory) -> dict[str, float]:
         "path_length_mm": path_length(tip),
         "mean_speed_mm_s": float(speed.mean()),
         "peak_speed_mm_s": float(speed.max()),
-        "idle_time_s": idle_time(speed, RATE_HZ),
+        "idle_time_s": idle_time(speed[times <= _end_s(trajectory)], RATE_HZ),
         "least_clearance_mm": float(trajectory.clearance_mm.min()),
     }
     if len(trajectory.touches) > 1:
@@ -130,6 +131,11 @@ def trial_motion(trajectory: Trajectory) -> dict[str, float]:
         metrics |= _efficiency(trajectory, metrics["path_between_touches_mm"])
         metrics |= _throughput(trajectory)
     return metrics
+
+
+def _end_s(trajectory: Trajectory) -> float:
+    """Return when the trainee's work ends: what follows the last touch waits for the result."""
+    return float(trajectory.touch_times_s[-1]) if trajectory.touches else math.inf
 
 
 def _counts(trajectory: Trajectory) -> dict[str, float]:
