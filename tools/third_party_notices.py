@@ -17,7 +17,7 @@ LOCK = ROOT / "requirements.lock"
 WEB = ROOT / "RASTrainerSimulatorServer" / "web"
 OUTPUT = ROOT / "build" / "third-party-notices.txt"
 LONGEST_FILE = 200_000
-MOST_FILES = 24
+MAX_FILES = 24
 """Of one package; those nearest to its top have its license."""
 RULE = "=" * 100
 INTRODUCTION = """RASTrainer is under the MIT license (LICENSE.txt).
@@ -115,7 +115,7 @@ def _legal_files(package: importlib.metadata.Distribution) -> Iterator[str]:
         if _LEGAL.search(file.name) and file.suffix in _TEXT_SUFFIXES
     ]
     found.sort(key=lambda file: (len(file.parts), str(file)))
-    for file in found[:MOST_FILES]:
+    for file in found[:MAX_FILES]:
         path = Path(str(package.locate_file(file)))
         if path.is_file():
             yield _text(path)

@@ -10,7 +10,7 @@ from rastrainer_simulator.assets import asset_path
 TIP = "iiwa_tool_tip_ee"
 TOLERANCE_M = 1e-4
 TOLERANCE_RAD = 1e-3
-MOST_STEPS = 100
+MAX_STEPS = 100
 EQUATIONS = {"position": 3, "direction": 5, "pose": 6}
 # How much a turn of the tip about its x, y and z axes counts in each mode.
 TURNS = {"position": (0.0, 0.0, 0.0), "direction": (1.0, 1.0, 0.0), "pose": (1.0, 1.0, 1.0)}
@@ -61,7 +61,7 @@ class PinPink:
         task.set_target(target)
         limits = [robot.model.configuration_limit]
         turns = np.array(TURNS[mode]) > 0.0
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             error = task.compute_error(configuration)
             off, turned = np.linalg.norm(error[:3]), np.linalg.norm(error[3:][turns])
             if off <= TOLERANCE_M and turned <= TOLERANCE_RAD:
@@ -93,7 +93,7 @@ class LeastSquares:
         robot, q = self._robot, np.array(q_start)
         count = EQUATIONS[mode]
         damping = self.damping * np.eye(count)
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             error = _local_error(robot.tip(q), target, mode)
             if np.linalg.norm(error[:3]) <= TOLERANCE_M and (
                 np.linalg.norm(error[3:]) <= TOLERANCE_RAD

@@ -28,7 +28,7 @@ from Testing.benchmarks.loop_health import Punctuality, next_health, punctuality
 TICK_S = 0.004
 ON_TIME_S = 0.001
 TICKS_PER_S = 250
-MOST_PROCESSORS = 8
+MAX_PROCESSORS = 8
 
 
 class BareLoop:
@@ -82,7 +82,7 @@ def _processors() -> list[int | None]:
     """Return the processors that may be used here; [None] where the system does not report them."""
     if not hasattr(os, "sched_getaffinity"):
         return [None]
-    return sorted(os.sched_getaffinity(0))[:MOST_PROCESSORS]
+    return sorted(os.sched_getaffinity(0))[:MAX_PROCESSORS]
 
 
 def _loop(pipe: Connection, processor: int | None) -> None:

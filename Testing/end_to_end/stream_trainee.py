@@ -35,7 +35,7 @@ OFF_FIDUCIALS_M = 0.018
 """A place that far from every fiducial is clearly none, whatever the skin's slope there."""
 ASIDE_M = (0.03, 0.04, 0.05)
 """How far from the tip such a place is looked for."""
-MOST_ATTEMPTS = 15
+MAX_ATTEMPTS = 15
 STILL_STATES = 10
 """The arm is at rest after this number of equal states in a row."""
 
@@ -230,7 +230,7 @@ class StreamTrainee:
         """Hold the tip still above a fiducial, far enough to be free of the head."""
         point, center = self.place_of(label), self.head_center
         above = point + HOVER_M * (point - center) / np.linalg.norm(point - center)
-        for _attempt in range(MOST_ATTEMPTS):
+        for _attempt in range(MAX_ATTEMPTS):
             self.steer_to(above, 0.004, fine=True)
             self.hands.push(0.0, 0.0, 0.0, False)
             self.until_still()
@@ -277,7 +277,7 @@ class StreamTrainee:
     def press_on(self, label: str) -> None:
         """Record the fiducial under the tip; after a miss, approach from above once more."""
         kept = self.touched
-        for _attempt in range(MOST_ATTEMPTS):
+        for _attempt in range(MAX_ATTEMPTS):
             if self.lower_onto(label):
                 self._tap_touch(label)
             if self.touched > kept:

@@ -34,7 +34,7 @@ pytestmark = pytest.mark.skipif(
 
 TROUBLE = re.compile(r"error|traceback|critical", re.IGNORECASE)
 KEY = "the-views-key-of-this-long-run-only"
-MOST_GROWTH_MB = 8.0
+MAX_GROWTH_MB = 8.0
 """Between the first fifth and the last, of either process: what caches and studies grow by."""
 
 
@@ -133,7 +133,7 @@ def growth_mb(usages: list[Usage]) -> float:
 def check_flat(run: Run) -> None:
     assert run.errors == run.problems == []
     for usages in (run.simulator, run.slicer):
-        assert growth_mb(usages) <= MOST_GROWTH_MB
+        assert growth_mb(usages) <= MAX_GROWTH_MB
         # A journal that is being closed and a view that is leaving may still be counted.
         assert usages[-1].descriptors <= usages[0].descriptors + 3
 

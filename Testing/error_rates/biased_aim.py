@@ -22,7 +22,7 @@ from Testing.error_rates.registered import common_biases, errors_along_skin, reg
 from Testing.simulator.virtual.cheating_trainees import BIAS_MM, FLE_MM
 
 DIRECTIONS = 60
-MOST_ABOVE = 0.02
+MAX_ABOVE = 0.02
 """Of the trials in the direction that pays most."""
 HEADER = (
     "task",
@@ -53,7 +53,7 @@ class BiasedAim:
     passed: float
     honest: np.ndarray
     honest_passed: float
-    at_most: float = MOST_ABOVE
+    at_most: float = MAX_ABOVE
     at_least: None = None
 
     @property

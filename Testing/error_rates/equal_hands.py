@@ -19,9 +19,9 @@ from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
 from Testing.error_rates.hands import HEADS, SLOW, TASKS, USUAL, HandsTrial, scenario_of, trials_of
 from Testing.error_rates.registered import common_biases, registered_errors
 
-MOST_OFF = 2.0
+MAX_OFF = 2.0
 """Points by which a task's mean score may be off that of all tasks."""
-MOST_OFF_SLOW = 3.5
+MAX_OFF_SLOW = 3.5
 """The same of hands that the references were not made for: one task is off by more than 2."""
 MORE = 4
 """Times as many sets for the deviation that is asked for."""
@@ -103,12 +103,12 @@ class EqualScore:
 
 def usual(sets: int) -> list[EqualScore]:
     """Return the usual hands' scores, with `sets` trials put together for each task."""
-    return scores(USUAL, sets, MOST_OFF)
+    return scores(USUAL, sets, MAX_OFF)
 
 
 def slow(sets: int) -> list[EqualScore]:
     """Return the scores of slower, less accurate hands."""
-    return scores(SLOW, sets, MOST_OFF_SLOW)
+    return scores(SLOW, sets, MAX_OFF_SLOW)
 
 
 def scores(hands: str, sets: int, at_most: float | None, seed: int = 22) -> list[EqualScore]:

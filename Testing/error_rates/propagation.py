@@ -31,7 +31,7 @@ HEADER = (
 )
 TASK, PROCEDURE = "task-3", "dbs"
 FLE_MM, BIAS_MM = (0.3, 1.0, 2.0), 2.0
-LOWEST, HIGHEST, MOST_OFF = 0.93, 0.97, 0.05
+LOWEST, HIGHEST, MAX_OFF = 0.93, 0.97, 0.05
 """Of the coverage of the 95 % interval, and of the ratio from 1."""
 SPREAD = 0.4
 """Of the ratio of a single procedure, about."""
@@ -76,7 +76,7 @@ class PropagatedError:
         is_covered = LOWEST - slack <= self.coverage <= HIGHEST + slack
         return bool(
             is_covered
-            and abs(self.ratio - 1) <= MOST_OFF + SPREAD * standard_errors / np.sqrt(self.sets)
+            and abs(self.ratio - 1) <= MAX_OFF + SPREAD * standard_errors / np.sqrt(self.sets)
         )
 
     def cells(self) -> list[str]:

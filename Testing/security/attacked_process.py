@@ -11,11 +11,11 @@ from Testing.benchmarks.loop_health import next_health
 from Testing.benchmarks.row import resident_mb
 from Testing.benchmarks.watched_loop import WatchedLoop
 
-MOST_GROWTH_MB = 8.0
+MAX_GROWTH_MB = 8.0
 """What an attack leaves behind after another like it has warmed the process up."""
-MOST_MORE_DESCRIPTORS = 4
+MAX_MORE_DESCRIPTORS = 4
 """An attack may have started a trial, whose journal is then open."""
-MOST_MORE_MISSED = 0.5
+MAX_MORE_MISSED = 0.5
 """Of the ticks, beside a loop that does nothing: coarse, for a slow machine makes a loop that works
 late sooner than one that does not. The share itself is printed."""
 TIMEOUT_S = 30.0
@@ -42,7 +42,7 @@ def settled(pid: int, client: Client, wanted: Cost) -> Cost:
     end = time.monotonic() + TIMEOUT_S
     while True:
         cost = cost_of(pid, client)
-        if cost.descriptors <= wanted.descriptors + MOST_MORE_DESCRIPTORS or time.monotonic() > end:
+        if cost.descriptors <= wanted.descriptors + MAX_MORE_DESCRIPTORS or time.monotonic() > end:
             return cost
 
 
@@ -64,9 +64,9 @@ def summary(before: Cost, after: Cost, watched: WatchedLoop) -> str:
 
 def check_unharmed(before: Cost, after: Cost, watched: WatchedLoop) -> None:
     """Check that an attack has left nothing behind and has not kept the loop from its ticks."""
-    assert after.descriptors <= before.descriptors + MOST_MORE_DESCRIPTORS
-    assert after.resident_mb - before.resident_mb <= MOST_GROWTH_MB
-    assert watched.measured.on_time >= watched.bare.on_time - MOST_MORE_MISSED
+    assert after.descriptors <= before.descriptors + MAX_MORE_DESCRIPTORS
+    assert after.resident_mb - before.resident_mb <= MAX_GROWTH_MB
+    assert watched.measured.on_time >= watched.bare.on_time - MAX_MORE_MISSED
 
 
 def counted_in_log(said: str) -> Counter[str]:

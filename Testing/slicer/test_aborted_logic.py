@@ -5,7 +5,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.trial_delivery import MOST_WAITING, AbortedTrialsLogic
+from rastrainer.slicer.logic.trial_delivery import MAX_WAITING, AbortedTrialsLogic
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
@@ -134,11 +134,11 @@ def test_that_of_a_deleted_trainee_is_acknowledged_and_not_kept(lab):
 
 
 def test_more_than_fit_are_left_for_the_next_offer(lab):
-    offered = [make_aborted(number) for number in range(1, MOST_WAITING + 10)]
+    offered = [make_aborted(number) for number in range(1, MAX_WAITING + 10)]
     for _ in range(2):
         for record in offered:
             lab.link.trialAborted.emit(record)
         lab.run_until(lambda: not lab.logic._queue._waiting)
-    lab.run_until(lambda: len(lab.kept) >= MOST_WAITING)
+    lab.run_until(lambda: len(lab.kept) >= MAX_WAITING)
     with Study.open(lab.path) as study:
-        assert MOST_WAITING <= len(AbortedTrials(study).of("T-001")) <= len(offered)
+        assert MAX_WAITING <= len(AbortedTrials(study).of("T-001")) <= len(offered)

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from rastrainer.slicer.link.arrivals import CHARACTERS_A_TURN, COMMANDS_A_TURN, MOST_KEPT, Arrivals
+from rastrainer.slicer.link.arrivals import CHARACTERS_A_TURN, COMMANDS_A_TURN, MAX_KEPT, Arrivals
 from rastrainer.slicer.signal import ErrorGuard, Signal
 
 
@@ -38,11 +38,11 @@ def test_long_commands_are_handed_over_fewer_a_turn(arrivals, told):
 
 
 def test_of_a_flood_no_more_is_kept_than_can_wait(arrivals, told):
-    for number in range(10 * MOST_KEPT):
+    for number in range(10 * MAX_KEPT):
         arrivals.keepCommand("Known", json.dumps({"number": number}))
-    for _ in range(10 * MOST_KEPT):
+    for _ in range(10 * MAX_KEPT):
         arrivals.emitCommands()
-    assert [each["number"] for each in told] == list(range(MOST_KEPT))
+    assert [each["number"] for each in told] == list(range(MAX_KEPT))
 
 
 def test_unknown_commands_count_as_well(arrivals, told):

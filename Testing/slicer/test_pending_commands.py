@@ -7,7 +7,7 @@ import pytest
 
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.link.pending_commands import MOST_AT_ONCE, SENDING_S
+from rastrainer.slicer.link.pending_commands import MAX_AT_ONCE, SENDING_S
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.peer_sockets import takeCrashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
@@ -145,7 +145,7 @@ def test_to_a_simulator_that_does_not_answer_no_more_is_sent(silent):
     for _ in range(50):
         silent.link.process()
     wait_until(lambda: silent.asked(), lambda: None)
-    assert silent.link.connector._nextCommandId - 2 == MOST_AT_ONCE
+    assert silent.link.connector._nextCommandId - 2 == MAX_AT_ONCE
     silent.may_answer.set()
     silent.run_until(lambda: len(silent.replies) == BURST)
     assert all(reply.ok for reply in silent.replies)

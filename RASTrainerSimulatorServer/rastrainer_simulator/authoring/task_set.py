@@ -28,7 +28,7 @@ from rastrainer_simulator.scene.skin_marks import place_marks
 
 ABOVE_BASE_MM = 25.0
 SMOOTH_WITHIN_MM = 12.0
-MOST_BENDING_DEG = 30.0
+MAX_BENDING_DEG = 30.0
 """Most that a normal within that distance may differ: excludes ears, nostrils, eyelids, brows."""
 
 DOWNWARD = -0.4
@@ -48,7 +48,7 @@ def is_smooth(mesh: HeadMesh, vertex: int) -> bool:
     """Return whether the skin around a vertex bends little."""
     away = np.linalg.norm(mesh.vertices - mesh.vertices[vertex], axis=1)
     around = mesh.vertex_normals[away < SMOOTH_WITHIN_MM]
-    least = np.cos(np.radians(MOST_BENDING_DEG))
+    least = np.cos(np.radians(MAX_BENDING_DEG))
     return bool((around @ mesh.vertex_normals[vertex]).min() >= least)
 
 
@@ -73,7 +73,7 @@ ATTEMPTS = 6
 WIDEN_DEG, WIDEST_DEG = 10.0, 75.0
 """If there is no room for the easy tasks, their angle to the view grows by this at each attempt."""
 
-MOST_SHARE = 0.94
+MAX_SHARE = 0.94
 """Largest share of the progress before the tasks are found."""
 
 _DECIMALS = 4
@@ -164,7 +164,7 @@ class TaskSetProposer:
 
     def _report(self, step: str, share: float) -> None:
         """Report the progress, which never decreases."""
-        self._share = max(self._share, min(share, MOST_SHARE))
+        self._share = max(self._share, min(share, MAX_SHARE))
         self._progress(step, self._share)
 
     def _is_readable(self, proposal: Proposal) -> bool:

@@ -25,7 +25,7 @@ SHIPPED_PROTOCOL = ("studies", "published-protocol.json")
 TYPICAL_FLE_MM = 1.5
 TRIAL_TIME_SD = 0.12
 """Of the logarithm of drawn times beside the tempo: heads, paths and slips of the hand."""
-MOST_TRAINEES = 100_000
+MAX_TRAINEES = 100_000
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -106,8 +106,8 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         InputError: an argument, the protocol or the folder cannot be used.
     """
-    if not 2 <= arguments.trainees <= MOST_TRAINEES or arguments.seed < 0:
-        raise InputError(f"A cohort has 2 to {MOST_TRAINEES} trainees, and its seed is 0 or above.")
+    if not 2 <= arguments.trainees <= MAX_TRAINEES or arguments.seed < 0:
+        raise InputError(f"A cohort has 2 to {MAX_TRAINEES} trainees, and its seed is 0 or above.")
     protocol = read_study_protocol(arguments.protocol or asset_path(*SHIPPED_PROTOCOL))
     if arguments.power is not None:
         print(_power(protocol, arguments))

@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.ops.desktop_process import VIEW_KEY_VARIABLE, has_display
 
 DEFAULT_URL = "http://127.0.0.1:18945"
-LEAST_SIDE, MOST_SIDE = 320, 16_384
+LEAST_SIDE, MAX_SIDE = 320, 16_384
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -103,9 +103,9 @@ def _size(text: str) -> tuple[int, int]:
     width, _x, height = text.lower().partition("x")
     if width.isdecimal() and height.isdecimal():
         size = int(width), int(height)
-        if min(size) >= LEAST_SIDE and max(size) <= MOST_SIDE:
+        if min(size) >= LEAST_SIDE and max(size) <= MAX_SIDE:
             return size
     raise InputError(
         "--size must be WIDTHxHEIGHT in pixels, such as 1280x720, "
-        f"each from {LEAST_SIDE} to {MOST_SIDE}."
+        f"each from {LEAST_SIDE} to {MAX_SIDE}."
     )

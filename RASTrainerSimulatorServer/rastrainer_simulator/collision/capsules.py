@@ -49,7 +49,7 @@ def thin_segment(start: np.ndarray, end: np.ndarray) -> fcl.CollisionObject:
 
 _LONG = 1.35  # A solid longer than this times its width gets a capsule for each half.
 _FIRST_STEP, _LAST_STEP = 0.02, 0.0003
-_MOST_POINTS = 5_000_000
+_MAX_POINTS = 5_000_000
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def surface_points(vertices: np.ndarray, triangles: np.ndarray, spacing: float) 
     )
     start, end = vertices[np.unique(edges, axis=0).T]
     counts = np.ceil(np.linalg.norm(end - start, axis=1) / spacing).astype(int) + 1
-    if counts.sum() > _MOST_POINTS:
+    if counts.sum() > _MAX_POINTS:
         raise InputError(
             f"A collision mesh has {len(start)} edges of {counts.sum() * spacing:.0f} m in all; "
             "it should be a coarse hull of its link."

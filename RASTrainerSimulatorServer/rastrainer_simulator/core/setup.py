@@ -33,13 +33,13 @@ from rastrainer_simulator.robot.model import (
 from rastrainer_simulator.robot.srs_geometry import Joint
 
 PREPARED_NAME = "prepared.json"
-MOST_BYTES = 2**20
+MAX_BYTES = 2**20
 
 
 def read_prepared(urdf: Path) -> Mapping[str, Any] | None:
     """Return the prepared robot beside a URDF, None if there is none or it is out of date."""
     try:
-        prepared = read_json(urdf.parent / PREPARED_NAME, MOST_BYTES)
+        prepared = read_json(urdf.parent / PREPARED_NAME, MAX_BYTES)
         return prepared if prepared["sha256"] == _fingerprint(urdf) else None
     except (InputError, OSError, KeyError, TypeError):
         return None

@@ -27,7 +27,7 @@ from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
 from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, paint_ring
 from rastrainer_simulator.net.views.screen import Screen
 
-MOST_WARNINGS = 3
+MAX_WARNINGS = 3
 GLOW = 44
 INSET_FRAME = 4
 
@@ -136,7 +136,7 @@ class Overlay:
         message = screen.instruction if screen.instruction.text else None
         if self._paint("instruction", message, strips.instruction, brush, room):
             top = self._center("instruction", top)
-        for index in range(MOST_WARNINGS):
+        for index in range(MAX_WARNINGS):
             warning = screen.warnings[index] if index < len(screen.warnings) else None
             if self._paint(f"warning{index}", warning, strips.warning, brush, room):
                 top = self._center(f"warning{index}", top)
@@ -257,7 +257,7 @@ _SLOTS = (
     "gauge",
     "status",
     "hints",
-    *(f"warning{index}" for index in range(MOST_WARNINGS)),
+    *(f"warning{index}" for index in range(MAX_WARNINGS)),
     "instruction",
     "menu",
 )

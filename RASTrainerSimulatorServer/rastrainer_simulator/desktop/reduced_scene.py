@@ -9,7 +9,7 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLFramebufferObject
 
 from rastrainer_simulator.desktop.gl_window import GlWindow
 
-MOST_PIXELS = 1_200_000
+MAX_PIXELS = 1_200_000
 """So many are drawn fast enough by a processor; more than 1366 × 768, fewer than 1600 × 900."""
 
 # OpenGL's names, of which VTK's Python has none.
@@ -37,7 +37,7 @@ class ReducedScene:
     def fit(self, is_reduced: bool) -> None:
         """Set what the next picture is drawn with, by the size of the window."""
         width, height = self._window.size
-        needed = math.ceil(math.sqrt(width * height / MOST_PIXELS)) if is_reduced else 1
+        needed = math.ceil(math.sqrt(width * height / MAX_PIXELS)) if is_reduced else 1
         self.divisor = needed
         self._renderer.SetViewport(0.0, 0.0, (width // needed) / width, (height // needed) / height)
 

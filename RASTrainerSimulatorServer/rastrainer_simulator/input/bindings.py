@@ -19,8 +19,8 @@ from rastrainer_simulator.input.inputs import BUTTONS, InputDevice, is_input
 Table = Mapping[ControlName, tuple[str, ...]]
 BINDINGS_FILE = "controls.json"
 FORMAT_VERSION = 1
-MOST_BYTES = 2**16
-MOST_INPUTS = 4
+MAX_BYTES = 2**16
+MAX_INPUTS = 4
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ def read_bindings(path: Path) -> Bindings:
     Raises:
         InputError: the file cannot be read, or holds something else; the sentence names the field.
     """
-    values = read_json(path, MOST_BYTES)
+    values = read_json(path, MAX_BYTES)
     if not isinstance(values, dict) or values.get("formatVersion") != FORMAT_VERSION:
         raise InputError(f"{path} must be a JSON object with the formatVersion {FORMAT_VERSION}.")
     unknown = set(values) - {"formatVersion", *InputDevice}
@@ -247,13 +247,13 @@ def _free_inputs(
 
 
 def _read_inputs(device: InputDevice, control: str, inputs: Any) -> tuple[str, ...]:
-    is_list = isinstance(inputs, list) and 1 <= len(inputs) <= MOST_INPUTS
+    is_list = isinstance(inputs, list) and 1 <= len(inputs) <= MAX_INPUTS
     if not is_list or not all(isinstance(name, str) and is_input(device, name) for name in inputs):
         example = (
             '"a", "dpup" or "-leftx"' if device is InputDevice.GAMEPAD else '"Space" or "KeyA"'
         )
         raise InputError(
-            f"the field {device.value}.{control} must be a list of 1 to {MOST_INPUTS} inputs, "
+            f"the field {device.value}.{control} must be a list of 1 to {MAX_INPUTS} inputs, "
             f"such as {example}."
         )
     return tuple(dict.fromkeys(inputs))

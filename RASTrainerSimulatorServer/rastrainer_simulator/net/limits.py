@@ -11,7 +11,7 @@ from rastrainer.files.reading import read_json
 from rastrainer_simulator.loop.rates import TrialLimits
 
 LIMITS_FILE = "limits.json"
-MOST_BYTES = 2**14
+MAX_BYTES = 2**14
 LARGEST = {"_share": 1, "_bytes": 2**30, "_per_s": 2**20, "_s": 86_400}
 """By how a limit's name ends: a limit that limits nothing is a mistake."""
 LARGEST_COUNT = 2**16
@@ -128,7 +128,7 @@ def read_limits(folder: Path) -> ServerLimits:
     if not path.exists():
         return ServerLimits()
     groups = [field.name for field in dataclasses.fields(ServerLimits)]
-    values = read_json(path, MOST_BYTES)
+    values = read_json(path, MAX_BYTES)
     if not isinstance(values, dict) or not values.keys() <= set(groups):
         raise InputError(f"{path} must be a JSON object with any of {', '.join(groups)}.")
     defaults = ServerLimits()

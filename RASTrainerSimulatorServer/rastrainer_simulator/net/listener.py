@@ -11,7 +11,7 @@ from typing import Any
 
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
 
-MOST_HANDSHAKES = 32
+MAX_HANDSHAKES = 32
 """Most TLS handshakes at a time."""
 
 _BACKLOG = 128
@@ -43,7 +43,7 @@ class Listener:
         self._rate_limiter = AsyncRateLimiter(per_s)
         self._tls = tls
         self._handshake_s = None if tls is None else handshake_s
-        self._handshakes = asyncio.Semaphore(MOST_HANDSHAKES)
+        self._handshakes = asyncio.Semaphore(MAX_HANDSHAKES)
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def listen(self, host: str, port: int) -> int:

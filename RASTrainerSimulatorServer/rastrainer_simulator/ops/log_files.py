@@ -25,7 +25,7 @@ from rastrainer_simulator.ops.stamps import iso
 
 LARGEST_FILE = 1_000_000
 OLDER_FILES = 5
-MOST_LOGS = 9
+MAX_LOGS = 9
 """Most logs of one name that are written at a time."""
 TERMINAL_FORMAT = "%(asctime)s %(levelname)s %(name)s: %(message)s"
 
@@ -35,7 +35,7 @@ _log = logging.getLogger(__name__)
 _crashes = logging.getLogger("rastrainer.crash")
 LONGEST_MESSAGE = 8000
 """Most characters of a message or a traceback; longer ones are cut."""
-MOST_WAITING = 1000
+MAX_WAITING = 1000
 CLOSE_TIMEOUT_S = 1.0
 
 
@@ -93,7 +93,7 @@ def _opened(ends: contextlib.ExitStack, folder: Path, name: str) -> _LogFile | N
 
 def _free_name(ends: contextlib.ExitStack, folder: Path, name: str) -> str:
     """Lock and return the first name that no other program logs to."""
-    for own in (name, *(f"{name}-{number}" for number in range(2, MOST_LOGS + 1))):
+    for own in (name, *(f"{name}-{number}" for number in range(2, MAX_LOGS + 1))):
         flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0)
         descriptor = open_private(folder / f".{own}.lock", flags)
         ends.callback(os.close, descriptor)
@@ -160,7 +160,7 @@ class BackgroundHandler(logging.Handler):
         """`handler` belongs to it from now on; its level counts."""
         super().__init__(handler.level)
         self._handler = handler
-        self._waiting: queue.Queue[logging.LogRecord | None] = queue.Queue(MOST_WAITING)
+        self._waiting: queue.Queue[logging.LogRecord | None] = queue.Queue(MAX_WAITING)
         self._lost = 0
         self._thread = threading.Thread(target=self._write, name="log", daemon=True)
         self._thread.start()

@@ -14,7 +14,7 @@ from rastrainer_simulator.input.inputs import SourceKind
 GUIDED_TOUCHES = 3
 FORMAT_VERSION = 1
 DECIMALS = 3
-LONGEST_S, MOST_MM = 1e6, 1e4
+LONGEST_S, MAX_MM = 1e6, 1e4
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ class TutorialOutcome:
             device=fields.one_of("device", tuple(kind.value for kind in SourceKind)),
             mode=fields.one_of("mode", tuple(mode.value for mode in Mode)),
             seconds=fields.number("seconds", 0, LONGEST_S),
-            first_error_mm=fields.number("firstErrorMm", 0, MOST_MM),
-            errors_mm=tuple(fields.numbers("errorsMm", GUIDED_TOUCHES, MOST_MM)),
+            first_error_mm=fields.number("firstErrorMm", 0, MAX_MM),
+            errors_mm=tuple(fields.numbers("errorsMm", GUIDED_TOUCHES, MAX_MM)),
             step_seconds={step: steps.number(step, 0, LONGEST_S) for step in steps.names()},
         )
 

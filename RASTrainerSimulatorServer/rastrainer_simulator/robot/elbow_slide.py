@@ -23,8 +23,8 @@ _FLAT = 1e-9
 _NO_MOTION = 2e-4
 LEAP = 0.02 * 0.02
 """Squared motion, rad², that no step of teleoperation needs away from a singularity."""
-_MOST_SLIDES = 4
-_MOST_KEPT = 4
+_MAX_SLIDES = 4
+_MAX_KEPT = 4
 
 
 def with_least_motion(
@@ -39,7 +39,7 @@ def with_least_motion(
         return theta
     # Close to a singularity the nearest elbow can need a pan to turn far: try to keep each.
     elbows = elbows_that_keep_a_pan(arm, circle, wrist, goal.held_tool, goal.roll, last)
-    for elbow in islice(elbows, _MOST_KEPT):
+    for elbow in islice(elbows, _MAX_KEPT):
         kept = _near(arm, elbow, wrist, goal, last)
         if kept is not None and squared_motion(kept, last) < motion:
             theta, motion = kept, squared_motion(kept, last)
@@ -51,7 +51,7 @@ def _slide(
 ) -> tuple[Angles, float]:
     """Return θ after the elbow has slid, and the squared motion (rad²) from `last`."""
     motion = squared_motion(theta, last)
-    for _ in range(_MOST_SLIDES):
+    for _ in range(_MAX_SLIDES):
         links = chain(theta)
         angle, distance = _slide_angle(circle.axis, theta, links, last, goal.roll is not None)
         if distance < _NO_MOTION:

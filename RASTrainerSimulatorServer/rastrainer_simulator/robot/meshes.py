@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     ColoredMesh = tuple[trimesh.Trimesh, tuple[float, float, float, float]]
 
 LARGEST_FILE = 50 * 2**20
-MOST_TRIANGLES = 500_000
+MAX_TRIANGLES = 500_000
 FARTHEST = 10.0
 
 
@@ -73,8 +73,8 @@ def _load(part: MeshPart) -> trimesh.Trimesh:
 def _check_shape(part: MeshPart, vertices: np.ndarray, faces: np.ndarray) -> None:
     if len(faces) == 0:
         raise InputError(f"{part.path} holds no triangles; it should hold a surface mesh.")
-    if len(faces) > MOST_TRIANGLES:
-        raise InputError(f"{part.path} has {len(faces)} triangles; at most {MOST_TRIANGLES} fit.")
+    if len(faces) > MAX_TRIANGLES:
+        raise InputError(f"{part.path} has {len(faces)} triangles; at most {MAX_TRIANGLES} fit.")
     is_surface = vertices.shape[1:] == faces.shape[1:] == (3,)
     if not is_surface or faces.min() < 0 or faces.max() >= len(vertices):
         raise InputError(f"{part.path} has faces that are no triangles of its vertices.")
@@ -124,9 +124,9 @@ def _link_middles(model: RobotModel) -> dict[str, np.ndarray]:
     }
 
 
-MOST_NUMBERS = 20_000_000
+MAX_NUMBERS = 20_000_000
 """Coordinates and corners of all shown copies together; half a million triangles have 3 million."""
-MOST_COPIES = 1_000
+MAX_COPIES = 1_000
 
 _HEADER = struct.Struct("<4sII")
 _CHUNK = struct.Struct("<II")
@@ -144,7 +144,7 @@ def checked_content(data: bytes, kind: str, what: str) -> bytes:
     """
     if kind == "dae":
         text = plain_xml(data, what)
-        if len(text) * text.count("<instance_") > MOST_NUMBERS * MOST_COPIES:
+        if len(text) * text.count("<instance_") > MAX_NUMBERS * MAX_COPIES:
             raise _too_much(what)
         return text.encode()
     if kind == "glb":
@@ -163,7 +163,7 @@ def _check_glb(data: bytes, what: str) -> None:
         numbers = _numbers_shown(tree)
     except (ValueError, TypeError, KeyError, IndexError, AttributeError, struct.error):
         raise InputError(f"{what} is not a GLB file (glTF 2.0).") from None
-    if numbers > MOST_NUMBERS:
+    if numbers > MAX_NUMBERS:
         raise _too_much(what)
 
 
@@ -183,7 +183,7 @@ def _numbers_shown(tree: Any) -> int:
     for node in nodes:
         for child in node.get("children", ()):
             parents[child] = parents.get(child, 0) + 1
-    if len(nodes) > MOST_COPIES or any(count > 1 for count in parents.values()):
+    if len(nodes) > MAX_COPIES or any(count > 1 for count in parents.values()):
         raise ValueError  # Where a node has two parents, it is no tree.
     shown = sum(meshes[node["mesh"]] for node in nodes if "mesh" in node)
     return max(shown, sum(counts))
@@ -197,4 +197,4 @@ def whole(value: Any) -> int:
 
 
 def _too_much(what: str) -> InputError:
-    return InputError(f"{what} unfolds into more than {MOST_NUMBERS} numbers.")
+    return InputError(f"{what} unfolds into more than {MAX_NUMBERS} numbers.")

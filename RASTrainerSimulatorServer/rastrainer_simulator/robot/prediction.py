@@ -34,8 +34,8 @@ from rastrainer_simulator.vectors import ZERO, Vector, scale, subtract, unit
 
 _DAMPING = 1e-6
 _LONGEST_STEP = 0.3
-_MOST_STEPS = 4
-_MOST_STOPS = 3
+_MAX_STEPS = 4
+_MAX_STOPS = 3
 _EXACT = 1e-10
 
 Columns = Sequence[Vector]
@@ -43,7 +43,7 @@ Columns = Sequence[Vector]
 
 def predict(arm: CanonicalArm, theta: Angles, links: Chain, target: Vector) -> tuple[Angles, Chain]:
     """Return θ with the tip nearer to a `target` (m) close by, inside the limits, and its chain."""
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         columns, error = _equations(arm, links, target)
         theta, free = _step_inside_limits(arm, theta, columns, error)
         links = chain(theta)
@@ -120,7 +120,7 @@ def _step_inside_limits(
     moved = _step(theta, columns, error)
     if inside(moved, arm.limits):
         return moved, True
-    for _ in range(_MOST_STOPS):
+    for _ in range(_MAX_STOPS):
         held = clamped(moved, arm.limits)
         stopped = [joint for joint in range(6) if held[joint] != moved[joint]]
         for joint in stopped:

@@ -21,7 +21,7 @@ OWN_SHARE = 0.8
 """Largest ratio of a number's distance to its own dot and to any other, so that it is clear."""
 ENOUGH = 16
 """Places to choose from, after which none farther from the fiducial is looked at."""
-MOST_TRIES = 20_000
+MAX_TRIES = 20_000
 _COLUMNS, _ROWS = 7, 5
 _RELIEF = 0.3
 _ROOM_ENOUGH = 6.0
@@ -131,7 +131,7 @@ def _chosen(choices: list[list[Place]], margin: float) -> list[Place] | None:
             return True
         for place in allowed[order[depth]]:
             tries += 1
-            if tries > MOST_TRIES:
+            if tries > MAX_TRIES:
                 return False
             if all(_apart(place, other) >= NUMBERS_APART * margin for other in chosen.values()):
                 chosen[order[depth]] = place

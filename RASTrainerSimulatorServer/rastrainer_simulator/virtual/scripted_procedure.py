@@ -25,7 +25,7 @@ DRILL_MM_S, INSERT_MM_S, LONGEST_FEED_S = 5.0, 10.0, 2.0
 SLOW_FROM_MM, SLOW_MM_S = 2.0, 1.0
 NEAR_MM = 0.1
 STATE_TIMEOUT_S = 60.0
-MOST_FEEDS = 200
+MAX_FEEDS = 200
 
 
 def play_procedure(
@@ -83,7 +83,7 @@ def _place(client: Client, trajectory: ProcedureTrajectory, number: int, inner_m
 def _feed(client: Client, tool: str, to_mm: float, fastest_mm_s: float) -> None:
     """Feed what is in the guide to a depth, the last bit slowly."""
     depth = _depth(client, tool, -1.0)
-    for _ in range(MOST_FEEDS):
+    for _ in range(MAX_FEEDS):
         left = to_mm - depth
         if left <= NEAR_MM:
             return

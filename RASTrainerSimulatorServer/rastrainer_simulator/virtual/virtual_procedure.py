@@ -36,7 +36,7 @@ from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 MISSED_BONE_MM = 20.0
 """How far the drill goes past the entry where it meets no bone."""
-MOST_CHECKPOINTS = 3
+MAX_CHECKPOINTS = 3
 TIME_SD = 0.15
 """Of the logarithm of the times of aligning, drilling and inserting."""
 
@@ -184,7 +184,7 @@ def _checked(
 ) -> tuple[TouchedCheckpoint, ...]:
     """Return the touches of the first checkpoints, a few seconds apart."""
     touched = []
-    for number, checkpoint in enumerate(setting.procedure.checkpoints[:MOST_CHECKPOINTS], start=1):
+    for number, checkpoint in enumerate(setting.procedure.checkpoints[:MAX_CHECKPOINTS], start=1):
         place = transforms.apply(setting.head_to_world, checkpoint.position)
         place = place + hands.check_sd_mm * random.normal(size=3)
         error = np.linalg.norm(transforms.apply(used.world_to_head, place) - checkpoint.position)

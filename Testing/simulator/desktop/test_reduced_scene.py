@@ -26,8 +26,8 @@ def draw(glb, monkeypatch):
     inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
     window = GlWindow(SIZE, is_fullscreen=False)
 
-    def draw(quality, most=reduced_scene.MOST_PIXELS):
-        monkeypatch.setattr(reduced_scene, "MOST_PIXELS", most)
+    def draw(quality, most=reduced_scene.MAX_PIXELS):
+        monkeypatch.setattr(reduced_scene, "MAX_PIXELS", most)
         picture = Picture(window, inbox, quality)
         inbox.take_state(state_text())
         assert picture.is_due(0.0)

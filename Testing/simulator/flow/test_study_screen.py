@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
-from rastrainer_simulator.flow.session.study_steps import ANSWERED, MOST_TRAINEES, StudySteps
+from rastrainer_simulator.flow.session.study_steps import ANSWERED, MAX_TRAINEES, StudySteps
 
 TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
 
@@ -226,7 +226,7 @@ def test_a_trial_that_was_asked_for_is_not_begun_twice_before_slicer_says_what_f
 
 def test_the_guide_forgets_the_oldest_news_and_keeps_no_more_than_it_may():
     guide = StudySteps()
-    for number in range(MOST_TRAINEES + 5):
+    for number in range(MAX_TRAINEES + 5):
         guide.take(StudyStep(f"P{number}", "all-done", 1, 1))
     assert guide.step_of("P4") is None
     assert guide.step_of("P5") is not None

@@ -19,7 +19,7 @@ from rastrainer_simulator.vectors import dot, subtract
 PATIENCE_S = 40.0
 TICKS_A_STEP = 2
 STEP_S = 0.004 * TICKS_A_STEP
-MOST_STEPS = 10_000
+MAX_STEPS = 10_000
 SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 LIFT_M = 0.035
@@ -118,7 +118,7 @@ class Trainee:
         while not condition():
             self.step()
             steps += 1
-            if steps > MOST_STEPS:
+            if steps > MAX_STEPS:
                 # What must be on the disk before it is told takes the disk's own time.
                 time.sleep(0.005)
                 give_up = give_up or time.monotonic() + PATIENCE_S

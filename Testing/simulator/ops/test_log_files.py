@@ -11,7 +11,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.ops import log_files
-from rastrainer_simulator.ops.log_files import MOST_WAITING, BackgroundHandler, keep_logs
+from rastrainer_simulator.ops.log_files import MAX_WAITING, BackgroundHandler, keep_logs
 from Testing.forked_child import in_child
 
 OURS = logging.getLogger("rastrainer_simulator.some_part")
@@ -138,15 +138,15 @@ def test_a_log_that_nobody_reads_holds_nobody_up_keeps_what_came_first_and_count
     aside = BackgroundHandler(blocked)
     aside.handle(record("0"))
     blocked.reached.wait()
-    for number in range(1, 3 * MOST_WAITING):
+    for number in range(1, 3 * MAX_WAITING):
         aside.handle(record(str(number)))
     blocked.go.set()
     aside.close()
     *kept, gap = blocked.taken
     assert kept == [str(number) for number in range(len(kept))]
-    assert len(kept) == MOST_WAITING + 1
+    assert len(kept) == MAX_WAITING + 1
     assert (
-        gap == f"{2 * MOST_WAITING - 1} lines are missing here: they could not be written in time."
+        gap == f"{2 * MAX_WAITING - 1} lines are missing here: they could not be written in time."
     )
 
 
@@ -155,10 +155,10 @@ def test_lost_lines_are_reported_where_they_would_have_stood():
     aside = BackgroundHandler(blocked)
     aside.handle(record("kept or lost"))
     blocked.reached.wait()
-    for _ in range(2 * MOST_WAITING):
+    for _ in range(2 * MAX_WAITING):
         aside.handle(record("kept or lost"))
     blocked.go.set()
-    while len(blocked.taken) < MOST_WAITING + 1:
+    while len(blocked.taken) < MAX_WAITING + 1:
         time.sleep(0.001)
     aside.handle(record("later"))
     aside.close()

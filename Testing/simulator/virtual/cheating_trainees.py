@@ -36,7 +36,7 @@ BIAS_MM = 2.0
 BRISK_MM_S, SLOW_MM_S = 300.0, 60.0
 LIFT_MM = 35.0
 DRAG_MM_S, DRAG_PUSH_MM_S = 60.0, 20.0
-MOST_DRAG_S = 20.0
+MAX_DRAG_S = 20.0
 FOREVER = 5000
 """Ticks after which a motion that has not ended is a fault of the test."""
 
@@ -203,7 +203,7 @@ class Pilot:
     def slide_to(self, place: np.ndarray) -> bool:
         """Drag the tip over the skin; return whether it got within a millimeter."""
         least, stuck = np.inf, 0
-        for _ in range(round(MOST_DRAG_S / DT)):
+        for _ in range(round(MAX_DRAG_S / DT)):
             way = place - self.tip
             away = float(np.linalg.norm(way))
             if away < 1.0:

@@ -110,7 +110,7 @@ class Tour:
 
 
 LOOK_EVERY_MS = 100
-MOST_TRIES = 50
+MAX_TRIES = 50
 
 
 class Dialogs:
@@ -160,7 +160,7 @@ class Dialogs:
             self._present, self._tries = (text, self._take(text)), 0
         self._tries += 1
         answer = self._present[1]
-        if answer is None or self._tries > MOST_TRIES:
+        if answer is None or self._tries > MAX_TRIES:
             self.unexpected.append(text)
             dialog.reject()
         elif kind.endswith("MessageBox"):

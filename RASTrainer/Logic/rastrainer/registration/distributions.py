@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-MOST_STEPS = 40
+MAX_STEPS = 40
 """Of the search for a bracket; the bisection does what they leave."""
 
 
@@ -142,7 +142,7 @@ def _bracket(
     """
     (below, at_below), (above, at_above) = low, high
     moved = ""
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         if above - below <= tolerance * above:
             break
         tried = below + (above - below) * at_below / (at_below - at_above)

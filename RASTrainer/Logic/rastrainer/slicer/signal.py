@@ -35,7 +35,7 @@ class Signal:
 
 _logger = logging.getLogger("rastrainer.error_guard")
 
-MOST_REMEMBERED = 100
+MAX_REMEMBERED = 100
 
 
 class ErrorGuard:
@@ -50,7 +50,7 @@ class ErrorGuard:
             return work(*arguments)
         except Exception as error:
             failure = (what, repr(error))
-            if failure not in self._logged and len(self._logged) < MOST_REMEMBERED:
+            if failure not in self._logged and len(self._logged) < MAX_REMEMBERED:
                 self._logged.add(failure)
                 _logger.exception("%s failed.", what)
             return None

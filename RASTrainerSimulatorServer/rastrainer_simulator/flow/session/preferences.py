@@ -20,7 +20,7 @@ from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.teleoperation.tool_steering import ToolDirection
 
 PREFERENCES_FILE = "preferences.json"
-MOST_BYTES = 2**14
+MAX_BYTES = 2**14
 _ARROW_TASKS = 2
 """How many tasks after the trial run have an arrow, where guidance fades."""
 
@@ -119,7 +119,7 @@ def read_preferences(path: Path) -> Preferences:
     Raises:
         InputError: the file cannot be read, or holds what is no option.
     """
-    values = read_json(path, MOST_BYTES)
+    values = read_json(path, MAX_BYTES)
     if not isinstance(values, dict) or not values.keys() <= {*OPTIONS, EXPERT}:
         known = ", ".join((*OPTIONS, EXPERT))
         raise InputError(f"{path} must be a JSON object with any of {known}.")

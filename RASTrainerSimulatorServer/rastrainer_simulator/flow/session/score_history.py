@@ -16,7 +16,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.trainee_progress import PastTrial
 
-MOST_SHOWN = 20
+MAX_SHOWN = 20
 """Scores of a trend: those of the newest trials."""
 _TAIL_BYTES = 1 << 16
 _START = re.compile(
@@ -70,7 +70,7 @@ class ScoreHistory:
             for trial in self.of(trainee)
             if trial.mode == mode and trial.score_version == SCORE_VERSION
         ]
-        return tuple(scores[-MOST_SHOWN:])
+        return tuple(scores[-MAX_SHOWN:])
 
 
 def _past_trial(journal: Path) -> PastTrial | None:

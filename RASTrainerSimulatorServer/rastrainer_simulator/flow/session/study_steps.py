@@ -11,7 +11,7 @@ from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
 from rastrainer_simulator.ops.texts.texts import Texts
 
-MOST_TRAINEES = 1000
+MAX_TRAINEES = 1000
 """Of whom steps are kept; the oldest is forgotten first."""
 
 PLAYED, ANSWERED = "played", "answered"
@@ -41,7 +41,7 @@ class StudySteps:
         if step.kind != FREE:
             self._steps[name] = replace(step, kind=ANSWERED) if name in self._answers else step
             self._received_at[name] = self._clock()
-        if len(self._steps) > MOST_TRAINEES:
+        if len(self._steps) > MAX_TRAINEES:
             self._forget(next(iter(self._steps)))
 
     def step_of(self, trainee: str) -> StudyStep | None:

@@ -19,7 +19,7 @@ _CLOSE_TIMEOUT_S = 0.5
 _logger = logging.getLogger("rastrainer.igtl")
 
 _PERIOD_S = 1.0
-_MOST_KINDS = 20
+_MAX_KINDS = 20
 
 
 class LinkHandler(Protocol):
@@ -153,7 +153,7 @@ class LinkLog:
 
     def note(self, what: str, times: int = 1) -> None:
         """Log `what`, now or with others within a second."""
-        known = what in self._counts or len(self._counts) < _MOST_KINDS
+        known = what in self._counts or len(self._counts) < _MAX_KINDS
         self._counts[what if known else "more of other kinds"] += times
         if self._timer is None:
             self._write_in_turn()

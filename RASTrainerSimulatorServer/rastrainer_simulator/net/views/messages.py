@@ -29,8 +29,8 @@ VISIBILITY = "visibility"
 ALIVE = "alive"
 
 VIEW_KINDS = ("desktop", "page", "headset")
-MOST_AXES = 16
-MOST_BUTTONS = 32
+MAX_AXES = 16
+MAX_BUTTONS = 32
 # Pads go a little beyond their end; what is farther out is no position of a stick.
 SLACK = 1.5
 
@@ -67,7 +67,7 @@ _COUNT = whole_number(0, 10_000)
 MEMBERS: Mapping[str, Mapping[str, Callable[[Any], Any]]] = {
     HELLO: {"kind": one_of(*VIEW_KINDS), "device": _maybe_empty(80), "refreshHz": _RATE},
     KEY: {"code": text(32), "isDown": yes_or_no, "text": _maybe_empty(16)},
-    PAD: {"axes": _positions(MOST_AXES, -1.0), "buttons": _positions(MOST_BUTTONS, 0.0)},
+    PAD: {"axes": _positions(MAX_AXES, -1.0), "buttons": _positions(MAX_BUTTONS, 0.0)},
     STICKS: {
         "translation": numbers(3, 1),
         "rotation": numbers(2, 1),

@@ -24,7 +24,7 @@ _log = logging.getLogger(__name__)
 TOO_MANY_MESSAGES = "The view has sent more messages than a trainee's inputs can produce."
 TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
-MOST_KEYS = 32
+MAX_KEYS = 32
 _BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING)
 
 
@@ -163,7 +163,7 @@ class HeldInput:
         """Take a key; no hand holds more than a few, so further ones are passed over."""
         if not is_down:
             self._keys.pop(code, None)
-        elif code in self._keys or len(self._keys) < MOST_KEYS:
+        elif code in self._keys or len(self._keys) < MAX_KEYS:
             self._keys[code] = None
         else:
             return

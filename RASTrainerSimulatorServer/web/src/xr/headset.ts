@@ -17,7 +17,7 @@ import { SightArrow } from "./sight_arrow";
 import { Seating } from "./seating";
 
 const HIGHEST_HZ = 90;
-const MOST_FOVEATION = 1;
+const MAX_FOVEATION = 1;
 /** Beyond this the direction of the eyes has no way ahead of its own. */
 const STEEP = 0.9;
 
@@ -60,9 +60,9 @@ export class Headset {
     const { xr } = this.stage.renderer;
     xr.enabled = true;
     xr.setReferenceSpaceType("local-floor");
-    xr.setFoveation(MOST_FOVEATION);
+    xr.setFoveation(MAX_FOVEATION);
     await xr.setSession(this.session);
-    xr.setFoveation(MOST_FOVEATION);
+    xr.setFoveation(MAX_FOVEATION);
     this.base = xr.getReferenceSpace();
     this.base?.addEventListener("reset", () => (this.mustRecenter = true));
     this.mustRecenter = true;

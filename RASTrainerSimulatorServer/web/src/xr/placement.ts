@@ -9,7 +9,7 @@ import { yUp } from "../viewpoint";
 const AWAY_M = 0.62;
 const EYES_ABOVE_M = 0.45;
 const STEP_M = 0.03;
-const MOST_M = 0.45;
+const MAX_RISE_M = 0.45;
 const STORED = "rastrainer-table";
 
 export class Placement {
@@ -35,7 +35,7 @@ export class Placement {
 
   /** Raise the table by a number of steps. */
   raise(steps: number): void {
-    this.rise = Math.min(MOST_M, Math.max(-MOST_M, this.rise + steps * STEP_M));
+    this.rise = Math.min(MAX_RISE_M, Math.max(-MAX_RISE_M, this.rise + steps * STEP_M));
     localStorage.setItem(STORED, String(this.rise));
     this.settle();
   }

@@ -14,8 +14,8 @@ from vtk.util.numpy_support import vtk_to_numpy
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.volume import Volume, matrixOf
 
-MOST_FILES = 4000
-MOST_BYTES = 2_000_000_000
+MAX_FILES = 4000
+MAX_BYTES = 2_000_000_000
 FEWEST_SLICES = 8
 EVEN_WITHIN = 0.1
 """Share of a step by which steps may differ; more means that a slice is missing."""
@@ -40,7 +40,7 @@ def readDicomFolder(folder: Path) -> Volume:
     paths = [path for path in sorted(folder.iterdir()) if _isDicom(path)]
     if not paths:
         raise InputError(f"The folder {folder} contains no DICOM files.")
-    if len(paths) > MOST_FILES or sum(path.stat().st_size for path in paths) > MOST_BYTES:
+    if len(paths) > MAX_FILES or sum(path.stat().st_size for path in paths) > MAX_BYTES:
         raise InputError(f"The folder {folder} contains more DICOM files than one head needs.")
     series: dict[str, list[_Slice]] = {}
     for path in paths:

@@ -15,8 +15,8 @@ from rastrainer.slicer.head.volume import Volume, onRasGrid
 MARGIN = 14
 """Voxels added around the image, in which the nose and the ears may close."""
 
-MOST_TRIANGLES = 60_000
-MOST_DECIMATIONS, BASE_RESERVE = 3, 500
+MAX_TRIANGLES = 60_000
+MAX_DECIMATIONS, BASE_RESERVE = 3, 500
 HAIRS_MM = (0.0, 0.2, 0.4)
 LONGEST_HEAD_MM = 200.0
 """From the crown down: what a scan shows below of neck and shoulders is cut off."""
@@ -72,11 +72,11 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
     progress("Making the surface", 0.8)
     skin = surface.surfaceOf(_agreeing(head.level, head.body), head.origin, SPACING_MM)
     skin, wanted = surface.smoothed(skin), settings.triangles
-    for _ in range(MOST_DECIMATIONS):
+    for _ in range(MAX_DECIMATIONS):
         fewer = surface.decimated(skin, wanted, head.baseMm)
         mesh = _cut(fewer, head.baseMm)
         # The base is not decimated with the rest; how many it adds shows only afterwards.
-        over = len(mesh.triangles) - MOST_TRIANGLES
+        over = len(mesh.triangles) - MAX_TRIANGLES
         if over <= 0:
             break
         wanted -= over + BASE_RESERVE
@@ -141,8 +141,8 @@ def _check(mesh: HeadMesh) -> None:
         raise InputError(
             "No head was found: its surface could not be closed; try another threshold or base."
         )
-    if len(mesh.triangles) > MOST_TRIANGLES:
+    if len(mesh.triangles) > MAX_TRIANGLES:
         raise InputError(
-            f"The head's surface has {len(mesh.triangles)} triangles, more than {MOST_TRIANGLES}; "
+            f"The head's surface has {len(mesh.triangles)} triangles, more than {MAX_TRIANGLES}; "
             "aim at fewer."
         )

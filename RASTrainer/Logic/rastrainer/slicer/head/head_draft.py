@@ -113,7 +113,7 @@ def _skullMethod(found: HeadBody) -> str:
 
 
 FEWEST_VOXELS = 16
-MOST_VOXELS = 600_000_000
+MAX_VOXELS = 600_000_000
 SMALLEST_MM, LARGEST_MM = 90.0, 1000.0
 THICKEST_SLICES_MM = 6.0
 COARSE_MM = 2.5
@@ -136,7 +136,7 @@ def checkVolume(volume: Volume) -> list[str]:
             f"The volume has {' × '.join(map(str, shape))} voxels; a head needs a 3D volume of at "
             f"least {FEWEST_VOXELS} in each direction."
         )
-    if values.size > MOST_VOXELS:
+    if values.size > MAX_VOXELS:
         raise InputError(f"The volume has {values.size / 1e6:.0f} million voxels; crop it.")
     if not np.isfinite(values).all():
         raise InputError("The volume contains values that are not numbers (NaN or infinite).")

@@ -20,7 +20,7 @@ CT_WINDOW, CT_LEVEL = 400.0, 40.0
 BRIGHTEST_QUANTILE, WHITE_QUANTILE = 0.9995, 0.995
 """Of the MRI's values in the head: what 255 stands for, and what is shown white."""
 
-_MOST_GRAY = 255.0
+_MAX_GRAY = 255.0
 
 
 def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
@@ -53,9 +53,9 @@ def imageOf(volume: Volume, head: HeadBody) -> tuple[HeadVolume, str]:
 def _grays(values: np.ndarray, source: np.ndarray, body: np.ndarray) -> tuple[np.ndarray, str]:
     """Return an MRI's values as uint8, and a sentence on what they mean."""
     low, high = float(source.min()), float(np.quantile(values[body], BRIGHTEST_QUANTILE))
-    if low >= 0 and source.max() <= _MOST_GRAY and np.array_equal(source, np.rint(source)):
+    if low >= 0 and source.max() <= _MAX_GRAY and np.array_equal(source, np.rint(source)):
         return np.rint(values).astype(np.uint8), "Images: MRI, 1 mm, its own values, 0 to 255."
-    scaled = np.clip((values - low) * (_MOST_GRAY / max(high - low, 1e-30)), 0.0, _MOST_GRAY)
+    scaled = np.clip((values - low) * (_MAX_GRAY / max(high - low, 1e-30)), 0.0, _MAX_GRAY)
     method = f"Images: MRI, 1 mm, values from {low:.6g} to {high:.6g} as 0 to 255."
     return np.rint(scaled).astype(np.uint8), method
 

@@ -18,7 +18,7 @@ from rastrainer.slicer.scene.link_nodes import (
 )
 from rastrainer.slicer.signal import ErrorGuard, Signal
 
-MOST_KEPT = 256
+MAX_KEPT = 256
 """Most commands that wait. A sender of more has to repeat them, as the simulator does with trials
 and answers until they are acknowledged."""
 COMMANDS_A_TURN, CHARACTERS_A_TURN = 16, 200_000
@@ -51,7 +51,7 @@ class Arrivals:
 
         It is dropped if too many wait already.
         """
-        if len(self._commands) < MOST_KEPT:
+        if len(self._commands) < MAX_KEPT:
             self._commands.append((name, content))
 
     def emitNodes(self) -> None:

@@ -81,9 +81,9 @@ def _nameOf(peer: Peer) -> str:
     return _("another program")
 
 
-MOST_BYTES = 64 * 1024
+MAX_BYTES = 64 * 1024
 """Most bytes read; a simulator's heartbeat comes among the first hundreds."""
-MOST_STATUS_BYTES = 4096
+MAX_STATUS_BYTES = 4096
 
 _HEADERS = (b"\0\1", b"\0\2")
 _WEB_PAGES = (b"HTTP/", b"<")
@@ -113,7 +113,7 @@ class PeerRecognition:
         self.version = 0
         self._start = b""
         self._size = 0
-        self._reader = MessageReader({Status.TYPE: MOST_STATUS_BYTES})
+        self._reader = MessageReader({Status.TYPE: MAX_STATUS_BYTES})
 
     def feed(self, data: bytes) -> None:
         """Take what has arrived."""
@@ -148,4 +148,4 @@ class PeerRecognition:
                 return Peer.SIMULATOR
         if self._reader.refusal:
             return Peer.OTHER_OPENIGTLINK if self._reader.taken else Peer.OTHER_PROGRAM
-        return Peer.OTHER_OPENIGTLINK if self._size > MOST_BYTES else None
+        return Peer.OTHER_OPENIGTLINK if self._size > MAX_BYTES else None

@@ -17,7 +17,7 @@ from rastrainer.slicer.translation import _
 
 OnReply = Callable[[Reply], None]
 
-MOST_AT_ONCE = 16
+MAX_AT_ONCE = 16
 """Most commands without an answer; the simulator carries out as many at once."""
 SENDING_S = 0.01
 """How long may be sent in one turn: to send blocks while the simulator does not read."""
@@ -106,7 +106,7 @@ class PendingCommands:
             self._guard.run("The reply to a command", onReply, reply)
 
     def _sendSome(self, transmit: Callable[[Request], Any]) -> None:
-        while self._waiting and len(self._sent) < MOST_AT_ONCE and self._sendingS < SENDING_S:
+        while self._waiting and len(self._sent) < MAX_AT_ONCE and self._sendingS < SENDING_S:
             begin = self._clock()
             request = self._waiting.popleft()
             command = transmit(request)
@@ -114,7 +114,7 @@ class PendingCommands:
             now = self._clock()
             self._sendingS += now - begin
             self._sent.append(_Sent(request, command, now + request.timeoutS))
-        if self._waiting and len(self._sent) < MOST_AT_ONCE:
+        if self._waiting and len(self._sent) < MAX_AT_ONCE:
             self._arrived()
 
     def _noteArrival(self, _caller: Any, _event: str) -> None:

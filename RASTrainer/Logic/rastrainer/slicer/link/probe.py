@@ -74,7 +74,7 @@ ANSWER_S = 3.0
 """How long a name is looked up, and how long an answer is waited for."""
 _WAIT_S = 0.005
 _PIECE_BYTES = 4096
-_MOST_PIECES = 8
+_MAX_PIECES = 8
 
 
 class _Connection:
@@ -185,7 +185,7 @@ class Probe:
                 return Peer.NOBODY
             self._isAsked = True
             connection.ask(question())
-        for piece in range(_MOST_PIECES):
+        for piece in range(_MAX_PIECES):
             if not connection.isReady(_WAIT_S if piece == 0 else 0.0):
                 return None
             data = connection.receive()

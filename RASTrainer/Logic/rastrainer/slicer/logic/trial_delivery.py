@@ -24,7 +24,7 @@ T = TypeVar("T")
 Delivery = Mapping[str, Any]
 """The record of a trial as it was delivered, not yet checked."""
 
-MOST_WAITING = 32
+MAX_WAITING = 32
 """Trials that wait to be stored; a simulator that has more offers them again."""
 
 
@@ -95,7 +95,7 @@ class DeliveryQueue(Generic[T]):
         known = (*self._underWay, *self._waiting)
         if any(each.get("trialId") == trialId for each in known):
             return
-        if len(known) >= MOST_WAITING:
+        if len(known) >= MAX_WAITING:
             self.report(self._tooMany)
             return
         self._waiting.append(delivery)

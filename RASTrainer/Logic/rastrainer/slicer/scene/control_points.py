@@ -52,7 +52,7 @@ def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
     node.EndModify(wasModifying)
 
 
-MOST_LISTS = 6
+MAX_LISTS = 6
 
 
 def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
@@ -76,9 +76,9 @@ def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
                 "The point list {name} is left out: it has {count} placed points, not {all}."
             )
             leftOut.append(reason.format(name=node.GetName(), count=count, all=FIDUCIAL_COUNT))
-        elif len(taken) == MOST_LISTS:
+        elif len(taken) == MAX_LISTS:
             reason = _("The point list {name} is left out: a scenario has at most {most} tasks.")
-            leftOut.append(reason.format(name=node.GetName(), most=MOST_LISTS))
+            leftOut.append(reason.format(name=node.GetName(), most=MAX_LISTS))
         else:
             taken.append(_checked(node))
     if not taken:

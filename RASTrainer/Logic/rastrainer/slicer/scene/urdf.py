@@ -14,7 +14,7 @@ from rastrainer.files.reading import plain_xml, read_bytes
 from rastrainer.transforms import MM_PER_M
 
 Element = ElementTree.Element
-MOST_BYTES = 4 << 20
+MAX_BYTES = 4 << 20
 
 
 def readUrdf(path: Path) -> Element:
@@ -23,7 +23,7 @@ def readUrdf(path: Path) -> Element:
     Raises:
         InputError: the file is missing, too large or not well-formed.
     """
-    content = plain_xml(read_bytes(path, MOST_BYTES), f"The URDF {path}")
+    content = plain_xml(read_bytes(path, MAX_BYTES), f"The URDF {path}")
     try:
         return ElementTree.fromstring(content)
     except ElementTree.ParseError as error:

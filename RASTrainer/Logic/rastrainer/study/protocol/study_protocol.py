@@ -24,7 +24,7 @@ BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
     "after-mode",
     "after-all",
 )
-MOST_STEPS = 1000
+MAX_STEPS = 1000
 READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, "2", SCORE_VERSION)
 """A study started with an earlier one continues with the present; each score holds its own."""
 _KEYS = (
@@ -201,8 +201,8 @@ def _protocol(fields: Fields) -> StudyProtocol:
         else "",
         procedures=_procedures(fields, tasks),
     )
-    if len(modes) * len(tasks) * protocol.repetitions > MOST_STEPS:
-        raise fields.error("repetitions", f"so few that there are at most {MOST_STEPS} trials")
+    if len(modes) * len(tasks) * protocol.repetitions > MAX_STEPS:
+        raise fields.error("repetitions", f"so few that there are at most {MAX_STEPS} trials")
     return protocol
 
 

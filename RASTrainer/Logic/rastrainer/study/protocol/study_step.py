@@ -90,7 +90,7 @@ class StudyStep:
         return {name: value for name, value in asdict(self).items() if value not in ("", 0)}
 
 
-MOST_STEPS = 100_000
+MAX_STEPS = 100_000
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ class StepAnswers:
             raise fields.error("answers", "a list of whole numbers")
         return cls(
             fields.text("trainee", 64),
-            fields.whole_number("number", 1, MOST_STEPS),
+            fields.whole_number("number", 1, MAX_STEPS),
             questionnaire.name,
             questionnaire.checked(answers),
         )
