@@ -1,0 +1,134 @@
+"""A task played by a model that only looks, or by one that only reads, in simulated time."""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from collections.abc import Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+from rastrainer.protocol import Phase
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.setup import SimulationSetup, load_setup
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.flow.running_presenter import RunningPresenter
+from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE
+from rastrainer_simulator.flow.session.session import FlowServices
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.state import Answer
+from Testing.sdl_virtual_gamepad import VirtualGamepad
+from Testing.simulator.flow.trainee import Trainee
+from Testing.simulator.virtual.drawn_pictures import DrawnPictures
+from Testing.simulator.virtual.looking_trainee import LookingTrainee
+from Testing.simulator.virtual.reading_trainee import ReadingTrainee
+from Testing.simulator.virtual.trained_pad import TrainedPad
+from Testing.without_tutorial import leave_tutorial_out
+
+LIMIT_S = 300.0
+"""A trial ends here: the trial run lasts five minutes, and no model has longer for a task."""
+MODELS = ("looks", "reads")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a model did.
+
+    Attributes:
+        time_s: the trial's time at its last touch, or when it was ended.
+        touches: how many of the 15 points were touched.
+        error_mm: mean distance of the touches from their points; nan without touches.
+    """
+
+    time_s: float
+    touches: int
+    error_mm: float
+
+    def is_worse_than(self, other: Outcome) -> bool:
+        """Return whether fewer points were touched, or as many less accurately."""
+        is_as_many = self.touches == other.touches
+        return self.error_mm > other.error_mm if is_as_many else self.touches < other.touches
+
+
+def play(
+    setup: SimulationSetup, model: str, task: str, seed: int, limit_s: float = LIMIT_S
+) -> Outcome:
+    """Let a model (one of `MODELS`) play a task, until all is touched or its time is over.
+
+    The seed is that of the head's pose, and of the model's eyes or choices.
+    """
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        # A touch is told when it is on the disk: how long that takes is the machine's.
+        mock.patch("os.fsync"),
+        _at_work(setup, seed, Path(folder), model) as trainee,
+    ):
+        trainee.start(task)
+        if model == "looks":
+            LookingTrainee(trainee, trainee.hands, DrawnPictures(setup, seed)).play(limit_s)
+        else:
+            ReadingTrainee(trainee, trainee.hands).play(limit_s)
+        state, truth = trainee.state, trainee.loop.truth
+        touches = state.training.touches
+        errors = [
+            MM_PER_M * np.array(touch.position) - truth.in_world(truth.fiducials[touch.label])
+            for touch in touches
+        ]
+        error_mm = float(np.mean(np.linalg.norm(errors, axis=1))) if errors else float("nan")
+        is_complete = state.training.phase is Phase.COMPLETE
+        return Outcome(state.elapsed if is_complete else limit_s, len(touches), error_mm)
+
+
+@contextmanager
+def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Iterator[Trainee]:
+    """Give a trainee with a gamepad, at the start menu of a simulator of its own."""
+    done: Future[Answer] = Future()
+    done.set_result(Answer(0, True))
+    services = FlowServices(
+        config=folder / "config",
+        records=folder / "records",
+        use_settings=lambda _settings: done,
+        list_scenarios=lambda: done,
+        use_scenario=lambda _name: done,
+        is_slicer_connected=lambda: True,
+        quit=lambda: None,
+    )
+    leave_tutorial_out(services.config)
+    if model == "reads":
+        # The view stays, so that directions keep their meaning to who does not see it turn.
+        path = services.config / PREFERENCES_FILE
+        preferences = json.loads(path.read_text(encoding="utf-8"))
+        path.write_text(json.dumps({**preferences, "view": "never"}), encoding="utf-8")
+    gamepad = VirtualGamepad(lambda *_strengths: None)
+    with ControlLoop(Simulation(setup, seed), folder / "records", speed=None) as loop:
+        running = RunningPresenter(loop, services, has_gamepad=True)
+        gamepad.plug_in()
+        trainee = Trainee(
+            loop, running.presenter, lambda it: TrainedPad(it, gamepad), running.advance
+        )
+        try:
+            trainee.until_menu("start")
+            yield trainee
+        finally:
+            trainee.close()
+            gamepad.plug_out()
+            running.close()
+
+
+def main(*arguments: str) -> None:
+    """Print a line for each trial: `python -m Testing.simulator.virtual.played_models SEED…`."""
+    setup = load_setup()
+    for seed in map(int, arguments):
+        for task in setup.scenario.tasks:
+            for model in MODELS:
+                print(seed, task.name, model, play(setup, model, task.name, seed), flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
