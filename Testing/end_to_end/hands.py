@@ -41,9 +41,13 @@ class KeyHands:
             self.keyboard.tap(f"Key{letter}" if letter.isalpha() else f"Digit{letter}")
 
     def push(self, right: float, forward: float, up: float, fine: bool) -> None:
+        self._hold((right, forward, up), STICKS, fine)
+
+    def _hold(self, values: tuple, keys: tuple, fine: bool) -> None:
+        """Hold the keys of the larger values, each of which has two: below and above 0."""
         wanted = {"ShiftLeft"} if fine else set()
-        longest = max(abs(right), abs(forward), abs(up))
-        for value, (below, above) in zip((right, forward, up), STICKS, strict=True):
+        longest = max(map(abs, values))
+        for value, (below, above) in zip(values, keys, strict=True):
             if abs(value) > 0.5 * longest > 0.0:
                 wanted.add(above if value > 0.0 else below)
         for code in sorted(self._held - wanted):

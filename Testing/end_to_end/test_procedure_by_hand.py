@@ -45,16 +45,7 @@ class TurningKeys(KeyHands):
     """Turns the guide by the keys J, L, K and I."""
 
     def turn(self, right: float, up: float, fine: bool) -> None:
-        wanted = {"ShiftLeft"} if fine else set()
-        longest = max(abs(right), abs(up))
-        for value, (below, above) in zip((right, up), TURNS, strict=True):
-            if abs(value) > 0.5 * longest > 0.0:
-                wanted.add(above if value > 0.0 else below)
-        for code in sorted(self._held - wanted):
-            self.keyboard.hold(code, False)
-        for code in sorted(wanted - self._held):
-            self.keyboard.hold(code, True)
-        self._held = wanted
+        self._hold((right, up), TURNS, fine)
 
 
 class PageKeyboard:

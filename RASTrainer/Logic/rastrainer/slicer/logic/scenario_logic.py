@@ -198,14 +198,9 @@ class ScenarioFiles:
         Raises:
             InputError: there is one of that title already, or the plan cannot be carried out.
         """
-        folder = self._library / self._cache.newName(title)
         isLine = node.IsA("vtkMRMLMarkupsLineNode")
         plan = planWords(None, node) if isLine else planWords(node, None)
-        source = str(self._cache.find(name).folder)
-        words = ["plan", source, "-o", str(folder), f"--title={title}", *plan]
-        self.run(words, ownProgram, progress)
-        self._cache.refresh()
-        return load_scenario(folder)
+        return self._copy(name, title, plan, ownProgram, progress)
 
     def saveProcedure(
         self,
@@ -227,10 +222,15 @@ class ScenarioFiles:
         Raises:
             InputError: there is one of that title already, or the plan cannot be carried out.
         """
+        return self._copy(name, title, ["--procedure", str(procedure)], ownProgram, progress)
+
+    def _copy(
+        self, name: str, title: str, plan: list[str], ownProgram: str, progress: Progress
+    ) -> Scenario:
         folder = self._library / self._cache.newName(title)
         source = str(self._cache.find(name).folder)
-        words = ["plan", source, "-o", str(folder), f"--title={title}"]
-        self.run([*words, "--procedure", str(procedure)], ownProgram, progress)
+        words = ["plan", source, "-o", str(folder), f"--title={title}", *plan]
+        self.run(words, ownProgram, progress)
         self._cache.refresh()
         return load_scenario(folder)
 
