@@ -39,6 +39,12 @@ window.frames_ = (count) => new Promise((done) => {
   step();
 });
 """
+_DRAW_NOTHING = """(() => {
+  const { renderer, scene } = page.stage;
+  const { render } = renderer;
+  const empty = new scene.constructor();
+  renderer.render = (_scene, camera) => render.call(renderer, empty, camera);
+})()"""
 _PADS = """
 window.pad = { connected: true, mapping: "standard", index: 0, id: "Test pad",
   axes: [0, 0, 0, 0],
@@ -79,9 +85,11 @@ def open_page(
     has_pad: bool = False,
     size: dict[str, int] = SMALL,
     has_touch: bool = False,
+    draws: bool = True,
 ) -> Page:
     """Open the page, pair it by the code in its address, and wait until it shows the scene.
 
+    Pictures take both processors: tests that look at none let it draw an empty scene.
     Its `problems` are what went wrong in it, and `loaded` has the bytes of each address.
     """
     context = browser.new_context(viewport=size, ignore_https_errors=True, has_touch=has_touch)
@@ -98,7 +106,14 @@ def open_page(
     page.on("response", lambda answer: page.loaded.update({answer.url: _size(answer)}))
     page.goto(f"{url}/#code={code}")
     page.wait_for_selector("body[data-scene][data-menu]")
+    if not draws:
+        draw_nothing(page)
     return page
+
+
+def draw_nothing(page: Page) -> None:
+    """Let a page draw an empty scene from now on; menus and texts stay."""
+    page.evaluate(_DRAW_NOTHING)
 
 
 def _size(answer: Response) -> int:

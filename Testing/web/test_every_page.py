@@ -18,7 +18,7 @@ SHOWN = "document.body.dataset.menu"
 def show(browser, loop, loop_thread):  # noqa: F811
     """Return a function that shows a screen in the page and returns what its parts hold."""
     served = ServedViews(loop_thread, loop)
-    page = open_page(browser, served.url, served.code)
+    page = open_page(browser, served.url, served.code, draws=False)
 
     def show(screen):
         served.tell(screen)

@@ -74,7 +74,7 @@ def place(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def worn(place, browser):
-    page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest2")
+    page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest2", draws=False)
     enter_headset(page)
     yield page
     assert page.problems == []

@@ -27,7 +27,7 @@ def relay(place):
 
 
 def begin(place, relay, browser, headset):
-    page = open_page(browser, relay.url, place.simulator.code, headset)
+    page = open_page(browser, relay.url, place.simulator.code, headset, draws=False)
     if headset:
         enter_headset(page)
     trainee = place.carried_trainee((Controllers if headset else PageKeys)(page))

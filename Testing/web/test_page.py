@@ -6,7 +6,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from Testing.web.chromium import open_page, pixels
+from Testing.web.chromium import draw_nothing, open_page, pixels
 from Testing.web.hands import BrowserPad, PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place, scored_trial
 
@@ -34,6 +34,7 @@ def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
     trainee.begin("task-1", page)
     page.wait_for_selector("body[data-scene=task-1]")
     assert pixels(page).std() > 20.0
+    draw_nothing(page)
     page.wait_for_selector("#control:has-text('You drive: keyboard')")
     trainee.touch_all(1)
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")

@@ -91,13 +91,9 @@ def page(place, browser):
 
 
 def checked_page(browser, url: str, code: str):
-    """Open the page with axe-core in it, and draw nothing.
-
-    A picture of 4K takes a processor seconds, and nothing here depends on it.
-    """
-    page = open_page(browser, url, code)
+    """Open the page with axe-core in it."""
+    page = open_page(browser, url, code, draws=False)
     page.evaluate(accessibility_checker())
-    page.evaluate("page.stage.renderer.render = () => undefined")
     return page
 
 

@@ -85,7 +85,7 @@ def foreign_url():
 
 
 def test_a_page_of_another_origin_cannot_connect(place, browser, foreign_url):
-    own = open_page(browser, place.simulator.url, place.simulator.code)
+    own = open_page(browser, place.simulator.url, place.simulator.code, draws=False)
     foreign = own.context.new_page()
     foreign.goto(foreign_url)
     assert foreign.evaluate(TRY_TO_JOIN, place.simulator.url.replace("http", "ws", 1)) == "refused"
@@ -113,7 +113,9 @@ def test_a_code_in_the_address_does_not_stay_there(place, stranger):
 
 
 def test_a_second_operator_cannot_take_the_control_unasked(place, browser):
-    pages = [open_page(browser, place.simulator.url, place.simulator.code) for _ in range(2)]
+    pages = [
+        open_page(browser, place.simulator.url, place.simulator.code, draws=False) for _ in range(2)
+    ]
     first = place.trainee(PageKeys(pages[0]))
     first.choose("train")
     # Whoever rests may be relieved, and a slow machine would let them rest.

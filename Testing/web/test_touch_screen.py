@@ -23,7 +23,9 @@ def trainee(place, page):
 
 @pytest.fixture(scope="module")
 def page(place, browser):
-    page = open_page(browser, place.simulator.url, place.simulator.code, size=PHONE, has_touch=True)
+    page = open_page(
+        browser, place.simulator.url, place.simulator.code, size=PHONE, has_touch=True, draws=False
+    )
     yield page
     assert page.problems == []
 

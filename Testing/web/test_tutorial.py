@@ -108,13 +108,6 @@ class Way:
     speed: str = "1"
 
 
-DRAW_NOTHING = """(() => {
-  const { renderer, scene } = page.stage;
-  const { render } = renderer;
-  const empty = new scene.constructor();
-  renderer.render = (_scene, camera) => render.call(renderer, empty, camera);
-})()"""
-"""A picture takes a processor long, and nothing here depends on it."""
 SLOW = "0.5"
 """Simulated seconds in a second, for hands on a busy machine."""
 WAYS = (
@@ -156,10 +149,10 @@ def test_the_tutorial_is_played_from_the_id_to_the_trial_run_by(way, tmp_path, b
             way.headset,
             size=size,
             has_touch=has_touch,
+            draws=False,
         )
         if way.headset:
             enter_headset(page)
-        page.evaluate(DRAW_NOTHING)
         trainee = way.make_trainee(place, page)
         trainee.go_to_experiment()
         if has_touch:
