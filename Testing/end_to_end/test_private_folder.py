@@ -40,7 +40,7 @@ def folder(tmp_path_factory):
     """What a set-up makes of a checkout: packages in one folder, and a file that leads to ours."""
     target = tmp_path_factory.mktemp("private") / "simulator"
     target.mkdir()
-    for place in map(Path, site.getsitepackages()):
+    for place in filter(Path.is_dir, map(Path, site.getsitepackages())):
         for entry in place.iterdir():
             if "rastrainer" not in entry.name:
                 (target / entry.name).symlink_to(entry)
