@@ -17,6 +17,8 @@ from rastrainer_simulator.viewpoint.orbit import FRONT
 
 STEP_MM = 5.0
 """The distance to the target is shown in such steps: a running figure cannot be read."""
+LOOKED_AT_MM = 20.0
+"""Nearer than this, a point is found by looking at it."""
 DEPTH_STEP_MM = 0.5
 """The same of the depth: a screen reader says each change of a warning."""
 _LEVEL = (
@@ -105,9 +107,14 @@ class ArmScreen:
         )
 
     def _toward(self, label: str, target: Vector) -> str:
-        """Return how far and in which directions a point is (World, m), in words."""
+        """Return how far and in which directions a point is (World, m), in words.
+
+        Near the point nothing but that is said: words that lead onto it would replace looking.
+        """
         session = self._session
         away = MM_PER_M * distance(session.tip, target)
+        if away < LOOKED_AT_MM:
+            return session.texts.say("status.near", point=label, distance=f"{LOOKED_AT_MM:.0f}")
         words = direction_words(session.tip, target, self._axes())
         return session.texts.say(
             "status.toward",

@@ -116,6 +116,9 @@ class ReadingTrainee:
 
     def _follow(self, away_mm: float, ways: tuple[str, ...]) -> None:
         """Go the ways that are told; on the skin press Touch where no nearer place is told."""
+        # Where the words end, the search begins.
+        self._moved[:] = 0.0
+        self._radius = FIRST_M
         reads = 0
         while self._is_on_skin and away_mm > 0.0 and reads < BETTER_READS:
             self._move(CENTER_M_S * _way(ways))

@@ -674,6 +674,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "panel.mm": "{value:.1f} mm",
         "panel.deg": "{value:.1f}°",
         "status.left": "{time} left",
+        "status.near": "Point {point}: less than {distance} mm away",
         "status.toward": "Point {point}: {distance} mm {direction}",
         "way.left": "left",
         "way.right": "right",

@@ -790,6 +790,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "panel.mm": "{value:.1f} mm",
         "panel.deg": "{value:.1f}°",
         "status.left": "noch {time}",
+        "status.near": "Punkt {point}: weniger als {distance} mm entfernt",
         "status.toward": "Punkt {point}: {distance} mm {direction}",
         "way.left": "links",
         "way.right": "rechts",
