@@ -153,9 +153,12 @@ def is_in_use(trainee):
 def feed(trainee, to_mm):
     """Feed what is in the guide until the screen's state shows it so deep."""
     tool = trainee.state.tool
-    while trainee.state.tool is tool and 1000 * trainee.state.feed < to_mm:
+    for _ in range(50):
+        if trainee.state.tool is not tool or 1000 * trainee.state.feed >= to_mm:
+            return
         do(trainee, "Feed", velocityMmS=10.0, durationS=2.0)
         trainee.step(100)
+    raise AssertionError(f"It is only {1000 * trainee.state.feed:.1f} mm deep.")
 
 
 def test_without_a_slicer_the_simulator_registers_for_a_procedure_and_scores_it(trainee, outside):
@@ -170,7 +173,7 @@ def test_without_a_slicer_the_simulator_registers_for_a_procedure_and_scores_it(
     trainee.until(lambda: trainee.state.alignment.is_exact, "the guide on the plan")
     do(trainee, "LockGuide")
     trainee.until(lambda: trainee.state.tool is Tool.DRILL, "the drill")
-    feed(trainee, 45.0)
+    feed(trainee, 60.0)
     do(trainee, "StartInsertion")
     trainee.until(lambda: trainee.state.tool is Tool.ELECTRODE, "the needle")
     feed(trainee, 60.0)

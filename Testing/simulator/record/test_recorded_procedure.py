@@ -221,7 +221,8 @@ def test_the_views_are_shown_the_procedure_again(finished, planned):
     assert {state.tool for state in states} == set(Tool)
     fed = [state for state in states if state.tool is Tool.ELECTRODE]
     deepest_mm = max(each.instrument_depth_mm for each in record.procedure.instruments)
-    assert MM_PER_M * max(state.feed for state in fed) == pytest.approx(deepest_mm)
+    # A tenth of a second feeds 1 mm.
+    assert MM_PER_M * max(state.feed for state in fed) == pytest.approx(deepest_mm, abs=1.0)
     assert {state.plan_in_world.name for state in fed} == {"Line 0", "Line 1"}
     for state in fed:
         assert state.alignment.is_exact

@@ -360,8 +360,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "procedure-errors.no inner table": "beside the inner table",
         "procedure-errors.kept": "{distance:.1f} mm away",
         "procedure-errors.hit": "hit",
-        "procedure-lines.title": "Green: the plan. Yellow: the plan by your registration. Blue: "
-        "what you placed.",
+        "procedure-lines.title": "Green: plan. Yellow: by your registration. Blue: placed.",
         "procedure-lines.back": "Back",
         "errors.title": "Your error at each point, {longer:.0f} times as long: green up to "
         "{good:.0f} mm, red from {poor:.0f} mm",

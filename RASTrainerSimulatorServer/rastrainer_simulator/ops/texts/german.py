@@ -470,8 +470,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "procedure-errors.no inner table": "neben der Innentafel",
         "procedure-errors.kept": "{distance:.1f} mm entfernt",
         "procedure-errors.hit": "getroffen",
-        "procedure-lines.title": "Grün: der Plan. Gelb: der Plan nach deiner Registrierung. Blau: "
-        "was du gesetzt hast.",
+        "procedure-lines.title": "Grün: Plan. Gelb: nach deiner Registrierung. Blau: gesetzt.",
         "procedure-lines.back": "Zurück",
         "errors.title": "Dein Fehler an jedem Punkt, {longer:.0f}-mal so lang: grün bis "
         "{good:.0f} mm, rot ab {poor:.0f} mm",
