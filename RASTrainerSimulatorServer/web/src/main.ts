@@ -260,7 +260,8 @@ export class Page {
     model.mark(state);
     this.showProcedure(model, state);
     const isWorking = this.screen?.menu == null;
-    const inset = isWorking ? flat.insetName : "";
+    // The title of a clear head, whose lines it explains, needs the place.
+    const inset = isWorking && !this.screen?.is_head_clear ? flat.insetName : "";
     this.overlay.showInset(inset);
     this.overlay.showError(isWorking && isTouchError(state.touch));
     this.ring?.show(model, state, flat.camera, isWorking);
