@@ -185,13 +185,14 @@ class RegistrationLogic:
 
     def process(self) -> None:
         """Register again if a list or the target has changed."""
-        if self._snapshot() == self._seen:
+        seen = self._snapshot()
+        if seen == self._seen:
             return
         work = self._work
         if work is None:
             self._compute()
             return
-        self._seen = self._snapshot()
+        self._seen = seen
         work.later(lambda: self._registerNow(work))
 
     def _snapshot(self) -> tuple:

@@ -9,6 +9,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
+from rastrainer.json_checks import is_number
 from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, TRIAL_RUN, CommandName, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link import Link
@@ -257,5 +258,4 @@ def procedureOf(state: Mapping[str, Any]) -> str:
 
 def knownNumber(value: Any) -> float | None:
     """Return a number that the simulator has told; None where it is none."""
-    isNumber = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return float(value) if isNumber else None
+    return float(value) if is_number(value) else None
