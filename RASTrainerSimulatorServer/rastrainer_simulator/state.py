@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.protocol import Phase, Proximity
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer_simulator.procedure_state import (
     GuideAlignment,
     GuideAxis,
@@ -18,11 +19,15 @@ from rastrainer_simulator.procedure_state import (
     Tool,
 )
 from rastrainer_simulator.registration_state import FinalRegistration, TouchState
+from rastrainer_simulator.trace_state import TraceState
 from rastrainer_simulator.vectors import Vector, vector
 
 
 class EventKind(str, Enum):
-    """What happened in a tick; sounds, vibration and the journal follow from these."""
+    """What happened in a tick; sounds, vibration and the journal follow from these.
+
+    `TRACE` is one point of a trace, `STROKE` the beginning, the end or the undoing of a stroke.
+    """
 
     PHASE = "phase"
     REGISTRATION = "registration"
@@ -36,6 +41,8 @@ class EventKind(str, Enum):
     REACH = "reach"
     CHECKPOINT = "checkpoint"
     FEED = "feed"
+    TRACE = "trace"
+    STROKE = "stroke"
 
 
 class TouchStage(str, Enum):
@@ -117,9 +124,10 @@ class TrainingState:
 
     `revision` rises with every change that must not be lost (phase, touch, undo, score).
     `registration` is what a client has submitted, None before.
-    `next_point` is the label of the fiducial to touch, None when there is none; `rejected` and
-    `undone` count the touches that were refused and undone. `procedure` is None in a trial of
-    touches alone.
+    `next_point` is the label of the fiducial or landmark to touch, None when there is none;
+    `rejected` and `undone` count the touches that were refused and undone. `procedure` is None in a
+    trial of touches alone. `method` is how the trial is registered, `trace` None where nothing is
+    traced; the points of a stroke do not raise the revision, its beginning and its end do.
     """
 
     revision: int = 0
@@ -136,6 +144,19 @@ class TrainingState:
     registration: FinalRegistration | None = None
     result: TrialResult | None = None
     procedure: ProcedureState | None = None
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS
+    trace: TraceState | None = None
+
+    @property
+    def is_marked(self) -> bool:
+        """Whether the points to touch are marked on the skin."""
+        return self.method is RegistrationMethod.FIDUCIALS
+
+    @property
+    def completed_s(self) -> float:
+        """The trial's time at the last point that was touched or traced, s."""
+        traced = () if self.trace is None else self.trace.points
+        return traced[-1].elapsed if traced else self.touches[-1].elapsed
 
 
 @dataclass(frozen=True)

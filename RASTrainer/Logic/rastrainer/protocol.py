@@ -31,6 +31,10 @@ DEFAULT_PORT = 18944
 DEFAULT_VIEW_PORT = 18945
 FIDUCIAL_COUNT = 15
 TRIAL_RUN = "trial-run"
+MIN_TRACE_POINTS, MAX_TRACE_POINTS = 30, 500
+"""Of a trace over the skin: fewer do not hold a registration, more add next to nothing."""
+TRACE_SPACING_MM = 1.0
+"""How far the tip moves from one point of a trace to the next."""
 
 
 class DeviceName:
@@ -181,6 +185,7 @@ class CommandName:
     JOG = "Jog"
     MOVE_TIP_TO = "MoveTipTo"
     CAPTURE = "Capture"
+    TRACE = "Trace"
     UNDO = "Undo"
     REGISTER = "Register"
     USE_REGISTRATION = "UseRegistration"
@@ -241,6 +246,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "mode": Argument(one_of(*(mode.value for mode in Mode)), Mode.DESKTOP.value),
         "seed": Argument(whole_number(0, 2**63 - 1), None),
         "procedure": Argument(text(40, 0), ""),
+        "method": Argument(text(40, 0), ""),
     },
     CommandName.JOG: {
         "velocityMmS": Argument(numbers(3, SPEED_LIMIT_MM_S, "mm/s")),
@@ -253,6 +259,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "speedMmS": Argument(number(0, SPEED_LIMIT_MM_S, "mm/s"), 100.0),
     },
     CommandName.CAPTURE: {},
+    CommandName.TRACE: {"on": Argument(yes_or_no)},
     CommandName.UNDO: {},
     CommandName.REGISTER: {},
     CommandName.USE_REGISTRATION: _REGISTRATION,

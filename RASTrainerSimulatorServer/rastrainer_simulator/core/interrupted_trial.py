@@ -23,14 +23,15 @@ from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.state import StartingPoint
 from rastrainer_simulator.training.feed import NO_FEED, Feed
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE
-from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TouchMoment
+from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TRACED, TouchMoment
 from rastrainer_simulator.vectors import ZERO, vector
 
 _OVER = frozenset({"registered", "aborted", "attempt"})
 _EFFECTS: Mapping[str, frozenset[str]] = {
     CommandName.START_TASK: frozenset({"phase"}),
     CommandName.CAPTURE: frozenset({"touch", "checkpoint", "rejected"}),
-    CommandName.UNDO: frozenset({"undo"}),
+    CommandName.TRACE: frozenset({"stroke"}),
+    CommandName.UNDO: frozenset({"undo", "stroke"}),
     CommandName.PAUSE: frozenset({"phase"}),
     CommandName.RESUME: frozenset({"phase"}),
     CommandName.REGISTER: frozenset({"phase"}),
@@ -154,14 +155,18 @@ def _steps(
     """
     for _tick, group in itertools.groupby(entries, key=lambda entry: entry["tick"]):
         together = list(group)
-        for place, entry in enumerate(together):
+        for number, entry in enumerate(together):
             recorded.take(entry)
             if entry["kind"] == "continued":
                 yield OperatorCommand(INTERRUPTED), TouchMoment(entry["since"], ZERO, 0.0)
+            if entry["kind"] == "trace":
+                # It was left at the end of its tick, unlike the effect of a command.
+                place = vector(map(metres, entry["positionMm"]))
+                yield OperatorCommand(TRACED), TouchMoment(entry["simTime"], place, 0.0)
             if entry["kind"] != "command" or entry["name"] not in _EFFECTS:
                 continue
             kinds = _EFFECTS[entry["name"]]
-            effect = next((each for each in together[place:] if each["kind"] in kinds), None)
+            effect = next((each for each in together[number:] if each["kind"] in kinds), None)
             if effect is not None:
                 # Commands are carried out at the state reached, one tick before their line.
                 moment = TouchMoment(

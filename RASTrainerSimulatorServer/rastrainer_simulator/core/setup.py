@@ -17,6 +17,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.collision.capsules import Capsule
@@ -146,6 +147,7 @@ class SimulationSetup:
         settings: how it behaves.
         scenario_sha256: of what a trial depends on, which identifies the scenario in a journal.
         sha256_with_skull: the same of a scenario that had its skull before its procedures.
+        landmarks_sha256: of what a trial by landmarks depends on besides.
         procedure_sha256: name of a procedure → of what a trial with it depends on besides.
     """
 
@@ -155,6 +157,7 @@ class SimulationSetup:
     settings: SimulationSettings = field(default_factory=SimulationSettings)
     scenario_sha256: str = ""
     sha256_with_skull: str = ""
+    landmarks_sha256: str = ""
     procedure_sha256: Mapping[str, str] = field(default_factory=dict)
 
     def is_of(self, sha256: object) -> bool:
@@ -172,14 +175,31 @@ class SimulationSetup:
             return True
         return self.procedure_sha256.get(recorded["name"]) == recorded["sha256"]
 
-    def description(self, procedure: str = "") -> dict[str, Any]:
+    def has_landmarks_of(self, header: Mapping[str, Any]) -> bool:
+        """Return whether the landmarks of a journal's header, if it has any, are those in here.
+
+        Raises:
+            KeyError, TypeError: the header is not usable.
+        """
+        recorded = header.get("method")
+        return recorded is None or recorded["landmarksSha256"] == self.landmarks_sha256
+
+    def description(
+        self,
+        procedure: str = "",
+        method: RegistrationMethod = RegistrationMethod.FIDUCIALS,
+    ) -> dict[str, Any]:
         """Return the fields of a journal's header, ready for JSON.
 
-        `procedure` is the name of the trial's procedure, "" without one.
+        Args:
+            procedure: name of the trial's procedure, "" without one.
+            method: by which the trial is registered.
         """
         named = {"name": procedure, "sha256": self.procedure_sha256.get(procedure, "")}
+        by = {"name": method.value, "landmarksSha256": self.landmarks_sha256}
         return {
             **({"procedure": named} if procedure else {}),
+            **({} if method is RegistrationMethod.FIDUCIALS else {"method": by}),
             "scenario": {"name": self.scenario.name, "sha256": self.scenario_sha256},
             "robot": self.robot.name,
             "settings": settings_to_json(self.settings),
@@ -207,6 +227,7 @@ def load_setup(
         settings=settings or SimulationSettings(),
         scenario_sha256=scenario_sha256(scenario),
         sha256_with_skull=scenario_sha256(scenario, keeps_skull=True),
+        landmarks_sha256=landmarks_sha256(scenario),
         procedure_sha256=_procedure_sha256(scenario),
     )
 
@@ -232,16 +253,17 @@ def _robot_and_shape(
 def scenario_sha256(scenario: Scenario, keeps_skull: bool = False) -> str:
     """Return one hash of what a trial of touches depends on: `scenario.json`, head and fiducials.
 
-    It excludes the volume, which the simulator never reads, and the procedures with the skull that
-    they need: journals that were recorded before a scenario had them remain valid. A trial with a
-    procedure has a hash of its own (`Procedure.sha256`) in its journal.
+    It excludes the volume, which the simulator never reads, the landmarks, and the procedures with
+    the skull that they need: journals that were recorded before a scenario had them remain valid. A
+    trial with a procedure, or by landmarks, has a hash of its own (`Procedure.sha256`,
+    `landmarks_sha256`) in its journal.
 
     Args:
         scenario: read from its folder.
         keeps_skull: for a scenario that had a skull before it had procedures: leave only the
             procedures out.
     """
-    left_out = ["volume", "procedures"]
+    left_out = ["volume", "procedures", "landmarks"]
     if scenario.procedures and not keeps_skull:
         left_out.append("skull")
     whole = hashlib.sha256()
@@ -252,6 +274,15 @@ def scenario_sha256(scenario: Scenario, keeps_skull: bool = False) -> str:
         whole.update(hashlib.sha256(content).digest())
     for task in scenario.tasks:
         whole.update(task.name.encode() + task.fiducials.astype("<f8").tobytes())
+    return whole.hexdigest()
+
+
+def landmarks_sha256(scenario: Scenario) -> str:
+    """Return one hash of a scenario's landmarks: names and places, in their order."""
+    whole = hashlib.sha256()
+    for landmark in scenario.landmarks:
+        name = json.dumps(landmark.name).encode()
+        whole.update(name + np.asarray(landmark.position, dtype="<f8").tobytes())
     return whole.hexdigest()
 
 

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import math
 
-from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN, CommandName, Guidance, Phase, StepKind
+from rastrainer.protocol import (
+    FIDUCIAL_COUNT,
+    PROCEDURE_PHASES,
+    TRIAL_RUN,
+    CommandName,
+    Guidance,
+    Phase,
+    StepKind,
+)
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.start import StartPage
@@ -33,6 +41,7 @@ class TrialScreen(ArmScreen):
         super().__init__(session)
         self.guidance = Guidance.NONE
         self._points: dict[str, Vector] = {}
+        self._count = FIDUCIAL_COUNT
         self._center: Vector = (0.0, 0.0, 0.0)
         self._is_beside = False
         self._was_refused = False
@@ -80,8 +89,12 @@ class TrialScreen(ArmScreen):
         return self._is_practice_end_shown
 
     def begin(self, points: dict[str, Vector], center: Vector) -> None:
-        """Forget the trial before; points and the head's center are in World, m."""
-        self._points = points
+        """Forget the trial before; points and the head's center are in World, m.
+
+        Nobody is led to points that are not marked.
+        """
+        self._points = points if self._session.training.is_marked else {}
+        self._count = len(points)
         self._center = center
         self._is_beside = self._was_refused = self._is_practice_end_shown = False
         self._forget_arm()
@@ -125,6 +138,9 @@ class TrialScreen(ArmScreen):
         """Return what to do now."""
         session = self._session
         training = session.training
+        if training.trace is not None and training.next_point is None and not self._was_refused:
+            tone = Tone.GOOD if training.phase is Phase.COMPLETE else Tone.PLAIN
+            return ScreenMessage(session.texts.again(training.instruction), tone)
         if training.phase is Phase.COMPLETE:
             key = session.label(ControlName.TOUCH)
             text = session.texts.say(
@@ -150,7 +166,7 @@ class TrialScreen(ArmScreen):
         training, say = session.training, session.texts.say
         facts = [
             session.task_title(training.task),
-            say("status.points", kept=len(training.touches), count=len(self._points) or 15),
+            say("status.points", kept=len(training.touches), count=self._count),
             self._clock(),
         ]
         target = self._points.get(training.next_point or "")

@@ -172,7 +172,7 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
     )
     phase = [entry["phase"] for entry in entries if entry["kind"] in ("phase", "continued")][-1]
     if phase == Phase.COMPLETE.value:
-        elapsed_s = trajectory.touches[-1].time_s
+        elapsed_s = trajectory.intended[-1].time_s
     else:
         # Samples are taken while the trial's time runs.
         elapsed_s = float(trajectory.times_s[-1]) if len(trajectory.times_s) else 0.0

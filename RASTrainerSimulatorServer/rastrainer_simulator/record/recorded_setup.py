@@ -63,8 +63,16 @@ def setup_of(
         )
     try:
         is_same_procedure = setup.has_procedure_of(header)
+        has_same_landmarks = setup.has_landmarks_of(header)
     except (KeyError, TypeError, AttributeError):
-        raise InputError("The journal's header does not tell its procedure as it should.") from None
+        raise InputError(
+            "The journal's header does not tell its procedure or method as it should."
+        ) from None
+    if not has_same_landmarks:
+        raise InputError(
+            f"The trial was recorded with other landmarks than those of {setup.scenario.name!r} "
+            "here: give its folder with --scenario."
+        )
     if not is_same_procedure:
         raise InputError(
             f"The trial was recorded with a procedure {header['procedure']['name']!r} that differs "

@@ -14,9 +14,11 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.scenario.method_task import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.procedure_state import Tool
@@ -45,6 +47,7 @@ MUST_LAST = frozenset(
         EventKind.REGISTRATION,
         EventKind.TOUCH,
         EventKind.UNDO,
+        EventKind.STROKE,
         EventKind.CHECKPOINT,
     }
 )
@@ -53,6 +56,7 @@ MUST_LAST = frozenset(
 _KIND_OF_PHASE = {Phase.REGISTERED: "registered", Phase.IDLE: "aborted"}
 _SAMPLED = (Phase.RUNNING, Phase.COMPLETE, *PROCEDURE_PHASES)
 _TOUCHED = (EventKind.TOUCH.value, EventKind.CHECKPOINT.value)
+_DATED = (*_TOUCHED, EventKind.TRACE.value)
 _Q = struct.Struct("<7d")
 
 
@@ -90,7 +94,7 @@ class TrialEntries:
         """
         state = result.state
         training = state.training
-        task = simulation.setup.scenario.task(training.task)
+        task = task_by_method(simulation.setup.scenario, training.task, training.method)
         times = stamp(state.tick, state.sim_time)
         entries = cls(simulation, training.trial_id, times["utc"], dt)
         entries._append(
@@ -109,7 +113,8 @@ class TrialEntries:
                 "tickS": dt,
                 "before": asdict(StartingPoint.after(before)),
                 **simulation.setup.description(
-                    "" if training.procedure is None else training.procedure.name
+                    "" if training.procedure is None else training.procedure.name,
+                    training.method,
                 ),
                 "versions": entries.versions,
             }
@@ -136,6 +141,8 @@ class TrialEntries:
             entries._collect(entry)
             if entry["kind"] in _TOUCHED:
                 entries._utc[entry["simTime"] - dt] = entry["utc"]
+            elif entry["kind"] == EventKind.TRACE.value:
+                entries._utc[entry["simTime"]] = entry["utc"]
             elif entry["kind"] == "display":
                 entries._display.add(DisplayReport.of(entry))
             elif entry["kind"] == "guidance":
@@ -178,7 +185,7 @@ class TrialEntries:
             self._append(self._command_entry(times, command))
         registered = None
         for event in result.events:
-            if event.kind.value in _TOUCHED:
+            if event.kind.value in _DATED:
                 self._utc[event.sim_time] = times["utc"]
             entry = self._event_entry(times, event)
             if entry["kind"] == "registered":
@@ -223,9 +230,11 @@ class TrialEntries:
         arguments = dict(command.arguments)
         if command.name == CommandName.START_TASK:
             arguments |= {"seed": self._seed, "trialId": self.trial_id}
+            # As in journals older than procedures and methods.
             if not arguments.get("procedure"):
-                # As in journals older than procedures.
                 arguments.pop("procedure", None)
+            if method_of(arguments.get("method")) is RegistrationMethod.FIDUCIALS:
+                arguments.pop("method", None)
         return {
             "kind": "command",
             **times,
@@ -277,7 +286,8 @@ class TrialEntries:
 
     def _record(self, state: SimulationState) -> TrialRecord:
         training = state.training
-        points = self._points(training)
+        points, trace = self._points(training), _trace(training)
+        completed = trace[-1][3] if trace else training.touches[-1].sim_time
         return TrialRecord(
             trial_id=training.trial_id,
             trainee=training.trainee,
@@ -285,8 +295,8 @@ class TrialEntries:
             mode=training.mode,
             scenario=self._setup.scenario.name,
             started_utc=self.started_utc,
-            completed_utc=points[-1].utc,
-            completion_time_s=training.touches[-1].elapsed,
+            completed_utc=self._utc[completed],
+            completion_time_s=training.completed_s,
             points=points,
             rejected_touches=training.rejected,
             undone_touches=training.undone,
@@ -294,6 +304,8 @@ class TrialEntries:
             touch_rule=self._setup.settings.training.touch_rule.value,
             display=self._display.summary(),
             procedure=self._procedure_record(training),
+            method=training.method,
+            trace=trace,
         )
 
     def _procedure_record(self, training: TrainingState) -> ProcedureRecord | None:
@@ -303,6 +315,13 @@ class TrialEntries:
         plan = self._setup.scenario.procedure(done.name)
         sha256 = self._setup.procedure_sha256[done.name]
         return procedure_record(done, plan, sha256, self._feeds)
+
+
+def _trace(training: TrainingState) -> tuple[TracePoint, ...]:
+    points = () if training.trace is None else training.trace.points
+    return tuple(
+        (*vector(MM_PER_M * value for value in point.position), point.sim_time) for point in points
+    )
 
 
 def _input_entry(times: dict[str, Any], operator_input: OperatorInput) -> dict[str, Any]:

@@ -13,6 +13,8 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.journal.replay_track import RecordedEvent, ReplayTrack, read_track
 from rastrainer.procedure.plan import Procedure
 from rastrainer.protocol import Phase, Proximity
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.scenario.method_task import TRACED_METHODS, method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
@@ -31,6 +33,7 @@ from rastrainer_simulator.state import (
     SimulationState,
     TrainingState,
 )
+from rastrainer_simulator.trace_state import TracedPoint, TraceState
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.vectors import Vector
 
@@ -82,6 +85,8 @@ class RecordedTrial:
             raise InputError("The trial was recorded with another scenario or robot.")
         if not setup.has_procedure_of(header):
             raise InputError("The trial was recorded with another procedure.")
+        if not setup.has_landmarks_of(header):
+            raise InputError("The trial was recorded with other landmarks.")
         if not track.events:
             raise InputError("The trial cannot be shown again: its journal holds no event.")
         self.trainee, self.task = str(header["trainee"]), str(header["task"])
@@ -95,17 +100,19 @@ class RecordedTrial:
         self._event_times = [event.time_s for event in track.events]
         self.duration_s = max(float(track.trajectory.times_s[-1]), self._event_times[-1])
         settings = setup.settings
+        method = method_of(header.get("method", {}).get("name"))
+        task = task_by_method(scenario, self.task, method)
         name = header["procedure"]["name"] if "procedure" in header else ""
         self._situations = _situations(
             track,
-            scenario.task(self.task).labels,
+            task.labels,
             header["before"]["camera"] or settings.camera,
             scenario.procedure(name) if name else None,
+            method,
         )
-        places = self._head_to_world[:3, :3] @ (scenario.task(self.task).fiducials / MM_PER_M).T
+        places = self._head_to_world[:3, :3] @ (task.fiducials / MM_PER_M).T
         places = (places + self._head_to_world[:3, 3:]).T
-        labels = scenario.task(self.task).labels
-        self._goals = dict(zip(labels, map(tuple, places.tolist()), strict=True))
+        self._goals = dict(zip(task.labels, map(tuple, places.tolist()), strict=True))
         self._training_settings = settings.training
         self._start_tick, self._tick_s = int(header["before"]["tick"]), float(header["tickS"])
         self._start_s = float(header["simTime"]) - self._tick_s
@@ -195,7 +202,11 @@ class TrialLoading:
 
 
 def _situations(
-    track: ReplayTrack, labels: tuple[str, ...], camera: str, plan: Procedure | None
+    track: ReplayTrack,
+    labels: tuple[str, ...],
+    camera: str,
+    plan: Procedure | None,
+    method: RegistrationMethod,
 ) -> list[_Situation]:
     """Return the situation after each event; `plan` is that of the trial's procedure, if any."""
     header = track.header
@@ -205,6 +216,8 @@ def _situations(
         mode=header["mode"],
         trial_id=header["trialId"],
         procedure=None if plan is None else ProcedureState(plan.name),
+        method=method,
+        trace=TraceState() if method in TRACED_METHODS else None,
     )
     situation = _Situation(training, Proximity.FREE, camera)
     situations = []
@@ -241,6 +254,8 @@ def _training_after(
         return replace(before, rejected=before.rejected + counts, instruction=entry["message"])
     if entry["kind"] == "checkpoint":
         return before
+    if before.trace is not None and entry["kind"] in ("trace", "stroke"):
+        return replace(before, trace=_trace_after(before.trace, event))
     if entry["kind"] == "touch":
         place = _metres(entry["positionMm"])
         touch = TouchState(entry["label"], place, entry["simTime"], event.time_s)
@@ -263,7 +278,18 @@ def _training_after(
         next_point=following,
         instruction=entry["instruction"],
         touches=touches[:kept],
+        trace=None if before.trace is None else before.trace.cut(entry["traced"]),
     )
+
+
+def _trace_after(before: TraceState, event: RecordedEvent) -> TraceState:
+    entry = event.entry
+    if entry["kind"] == "trace":
+        place = _metres(entry["positionMm"])
+        return before.with_point(TracedPoint(place, entry["simTime"], event.time_s))
+    if entry["on"]:
+        return before.begun()
+    return before.undone() if "undone" in entry else before.ended()
 
 
 def _elapsed(training: TrainingState, time_s: float) -> float:
@@ -271,7 +297,7 @@ def _elapsed(training: TrainingState, time_s: float) -> float:
         return 0.0
     if training.procedure is not None or training.phase in (Phase.RUNNING, Phase.PAUSED):
         return time_s
-    return training.touches[-1].elapsed
+    return training.completed_s
 
 
 def _event(event: RecordedEvent) -> Event:

@@ -27,6 +27,7 @@ from rastrainer_simulator.registration_state import (
     RegistrationAttempt,
 )
 from rastrainer_simulator.state import EventKind, TrainingState
+from rastrainer_simulator.trace_state import TraceState
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
@@ -155,7 +156,7 @@ class ProcedurePhases:
         return PhaseStep(running, AT_EACH_STAGE[procedure.stage], {"name": name})
 
     def _verify(self, moment: ProcedureMoment, _command: OperatorCommand) -> PhaseStep:
-        elapsed_s = moment.state.touches[-1].elapsed
+        elapsed_s = moment.state.completed_s
         data = {"completionTimeS": elapsed_s}
         return PhaseStep(moment.entering(Phase.VERIFYING), "verifying", data=data)
 
@@ -259,7 +260,8 @@ class ProcedurePhases:
         state = moment.entering(
             Phase.RUNNING, registration=None, checkpoints=(), trajectories=(), attempts=attempts
         )
-        again = replace(state, touches=(), next_point=self._labels[0])
+        trace = None if state.trace is None else TraceState()
+        again = replace(state, touches=(), next_point=self._labels[0], trace=trace)
         return PhaseStep(again, "register again", {"point": self._labels[0]})
 
     def _lock(self, moment: ProcedureMoment, _command: OperatorCommand) -> PhaseStep | RefusedStep:

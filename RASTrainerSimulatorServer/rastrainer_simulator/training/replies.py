@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, TrainingState
 from rastrainer_simulator.training.feed import Feed
@@ -39,11 +40,24 @@ def summary(state: TrainingState) -> dict[str, Any]:
     if state.procedure is not None:
         at = {"name": state.procedure.name, "stage": state.procedure.stage.value}
         told["procedure"] = {**at, "trajectory": state.procedure.trajectory}
+    if state.method is not RegistrationMethod.FIDUCIALS:
+        # As in journals older than methods.
+        told["method"] = state.method.value
+    if state.trace is not None:
+        told["traced"] = len(state.trace.points)
     return told
 
 
-def touched(state: TrainingState) -> list[dict[str, Any]]:
-    """Return the touches of a trial, in double precision."""
+def given(state: TrainingState) -> dict[str, Any]:
+    """Return what a trial is registered by: its touches and its trace, in double precision."""
+    trace = state.trace
+    if trace is None:
+        return {"touches": _touched(state)}
+    traced = [[*(MM_PER_M * x for x in p.position), p.sim_time] for p in trace.points]
+    return {"touches": _touched(state), "trace": traced}
+
+
+def _touched(state: TrainingState) -> list[dict[str, Any]]:
     return [
         {
             "label": touch.label,

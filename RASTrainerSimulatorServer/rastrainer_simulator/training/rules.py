@@ -9,6 +9,8 @@ from rastrainer.motion.trajectory import RELEASED_MM
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     FINISHED_PHASES,
+    MAX_TRACE_POINTS,
+    MIN_TRACE_POINTS,
     OPEN_PHASES,
     PROCEDURE_PHASES,
     CommandName,
@@ -16,6 +18,7 @@ from rastrainer.protocol import (
     Proximity,
     TouchRule,
 )
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
@@ -28,6 +31,9 @@ RECORDING_FAILED = "RecordingFailed"
 
 INTERRUPTED = "Interrupted"
 """Pauses a trial that a server's end has cut short; clients cannot send it."""
+
+TRACED = "Traced"
+"""Adds the point where the tip is to the stroke that is being drawn; clients cannot send it."""
 
 _AT_THE_PROCEDURE = {
     Phase.VERIFYING: "verifying now",
@@ -67,6 +73,8 @@ REFUSALS: Mapping[str, Mapping[Phase, str]] = {
         for phase, key in {**_AT_THE_TOUCHES, Phase.COMPLETE: "all touched"}.items()
         if phase is not Phase.VERIFYING
     },
+    CommandName.TRACE: _AT_THE_TOUCHES,
+    TRACED: _AT_THE_TOUCHES,
     CommandName.UNDO: _AT_THE_TOUCHES,
     CommandName.REGISTER: {**_AT_THE_TOUCHES, Phase.RUNNING: "not all touched"},
     CommandName.USE_REGISTRATION: _only_in(Phase.VERIFYING),
@@ -106,10 +114,13 @@ ENDING_A_TRIAL = (CommandName.SUBMIT_REGISTRATION, CommandName.TRIAL_SCORED)
 NAMING_A_TRIAL = (*ENDING_A_TRIAL, CommandName.USE_REGISTRATION, CommandName.GET_TRIAL)
 
 
-def refusal(command: OperatorCommand, state: TrainingState, texts: Texts) -> str | None:
+def refusal(
+    command: OperatorCommand, state: TrainingState, texts: Texts, count: int = FIDUCIAL_COUNT
+) -> str | None:
     """Return the sentence that refuses a command in the trial's phase, None if it is allowed.
 
     A command that names a trial is right for the present trial only: an Abort may arrive late.
+    `count` is how many points the trial has to touch.
     """
     if command.name not in REFUSALS:
         return texts.say("not a simulation command", command=command.name)
@@ -117,7 +128,7 @@ def refusal(command: OperatorCommand, state: TrainingState, texts: Texts) -> str
     is_other = named not in (None, state.trial_id)
     if command.name in NAMING_A_TRIAL and is_other:
         return texts.say("no such trial", trial_id=named)
-    key = REFUSALS[command.name].get(state.phase)
+    key = _trace_key(command.name, state, REFUSALS[command.name].get(state.phase))
     if key is None and command.name == CommandName.ABORT and is_other:
         key = "another trial is open"
     if key is None:
@@ -128,8 +139,39 @@ def refusal(command: OperatorCommand, state: TrainingState, texts: Texts) -> str
         task=state.task,
         point=state.next_point,
         kept=len(state.touches),
-        count=FIDUCIAL_COUNT,
+        count=count,
+        traced=0 if state.trace is None else len(state.trace.points),
+        least=MIN_TRACE_POINTS,
+        most=MAX_TRACE_POINTS,
     )
+
+
+_OF_A_TRACE = {"all touched": "all traced", "not paused": "not paused trace"}
+
+
+def _trace_key(command: str, state: TrainingState, key: str | None) -> str | None:
+    """Return the key of a refusal where the trial has a trace, or the command needs one.
+
+    `key` is that of the phase.
+    """
+    trace, is_running = state.trace, state.phase is Phase.RUNNING
+    if command in (CommandName.TRACE, TRACED) and key is None:
+        return _why_not_traced(state)
+    if trace is None or state.next_point is not None:
+        return key
+    if command == CommandName.REGISTER and is_running:
+        return "still tracing" if trace.is_on else "too few traced"
+    if command == CommandName.CAPTURE and is_running:
+        return "landmarks touched"
+    return _OF_A_TRACE.get(key or "", key)
+
+
+def _why_not_traced(state: TrainingState) -> str | None:
+    if state.trace is None:
+        return "nothing is traced"
+    if state.next_point is not None:
+        return "landmarks first"
+    return "trace is full" if state.trace.is_full else None
 
 
 @dataclass(frozen=True)
@@ -138,6 +180,7 @@ class TrainingSettings:
 
     Attributes:
         acceptance_radius: the longest distance of the tip to the fiducial, m.
+        landmark_radius: the same of a landmark, which is not marked on the skin.
         touch_rule: whether the tip has to be on the skin.
         skin_tolerance: the longest distance of the tip to the skin at which it is on it, m.
     """
@@ -145,6 +188,12 @@ class TrainingSettings:
     acceptance_radius: float = 0.010
     touch_rule: TouchRule = TouchRule.ON_SKIN
     skin_tolerance: float = 0.0005
+    landmark_radius: float = 0.020
+
+    def radius(self, method: RegistrationMethod) -> float:
+        """Return the longest distance of the tip to a point that a method has touched, m."""
+        is_marked = method is RegistrationMethod.FIDUCIALS
+        return self.acceptance_radius if is_marked else self.landmark_radius
 
 
 @dataclass(frozen=True)
@@ -175,17 +224,19 @@ def refused_touch(
     fiducials: Mapping[str, Vector],
     settings: TrainingSettings,
     texts: Texts,
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS,
 ) -> str | None:
     """Return why a touch does not count, None where it does.
 
     Args:
         now: where the tip is.
-        next_point: label of the fiducial that is next.
-        fiducials: label → position, World, m.
+        next_point: label of the fiducial or landmark that is next.
+        fiducials: label → position, World, m, of all of them.
         settings: what counts as a touch.
         texts: the sentences.
+        method: of the trial.
     """
-    away, radius = distance(now.tip, fiducials[next_point]), settings.acceptance_radius
+    away, radius = distance(now.tip, fiducials[next_point]), settings.radius(method)
     if away > radius:
         label = min(fiducials, key=lambda key: distance(now.tip, fiducials[key]))
         nearest = distance(now.tip, fiducials[label])
@@ -200,6 +251,7 @@ def refused_touch(
     return None
 
 
+_TOUCHING = (Phase.RUNNING, Phase.COMPLETE)
 TOO_DEEP_MM = 0.5
 """How deep the tip may be pressed in before that is an error."""
 
@@ -232,11 +284,13 @@ def touch_stage(
         return TouchStage.SHAFT
     if obstacle:
         return TouchStage.ARM
-    radius = settings.acceptance_radius
+    is_on_skin = now.tip_clearance <= settings.skin_tolerance
+    radius, is_open = settings.radius(training.method), training.phase in _TOUCHING
+    if is_open and training.trace is not None and training.next_point is None:
+        # Wherever the skin is traced.
+        return TouchStage.ON_SKIN if is_on_skin else TouchStage.NEAR
     if goal is not None and distance(now.tip, goal) <= radius:
-        is_on_skin = now.tip_clearance <= settings.skin_tolerance
         return TouchStage.ON_SKIN if is_on_skin else TouchStage.NEAR
     # The tip still is where the last touch was made, or no trial is open.
     is_just_touched = any(distance(now.tip, t.position) <= radius for t in training.touches[-1:])
-    is_open = training.phase in (Phase.RUNNING, Phase.COMPLETE)
     return TouchStage.ELSEWHERE if is_open and not is_just_touched else TouchStage.NEAR

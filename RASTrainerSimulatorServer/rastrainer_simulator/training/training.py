@@ -1,4 +1,4 @@
-"""The trial: from StartTask over fifteen touches, and perhaps a procedure, to the score."""
+"""The trial: from StartTask over touches or a trace, and perhaps a procedure, to the score."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
+from rastrainer.scenario.method_task import TRACED_METHODS, method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.procedure_state import ProcedureState
 from rastrainer_simulator.registration_state import FinalRegistration, TouchState
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
+from rastrainer_simulator.trace_state import TraceState
+from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
 from rastrainer_simulator.training.kept_states import KeptStates
 from rastrainer_simulator.training.procedure_phases import (
@@ -24,10 +27,11 @@ from rastrainer_simulator.training.procedure_phases import (
     ProcedurePhases,
     RefusedStep,
 )
-from rastrainer_simulator.training.replies import TrainingReply, revealed, summary, touched
+from rastrainer_simulator.training.replies import TrainingReply, given, revealed, summary
 from rastrainer_simulator.training.rules import (
     INTERRUPTED,
     RECORDING_FAILED,
+    TRACED,
     TouchMoment,
     TrainingSettings,
     refusal,
@@ -75,6 +79,8 @@ class Training:
         self._handlers: dict[str, Callable[[OperatorCommand, TouchMoment], TrainingReply]] = {
             CommandName.START_TASK: self._start,
             CommandName.CAPTURE: self._capture,
+            CommandName.TRACE: self._trace,
+            TRACED: self._traced,
             CommandName.UNDO: self._undo,
             CommandName.REGISTER: self._register,
             CommandName.ABORT: self._abort,
@@ -118,7 +124,7 @@ class Training:
 
     def handle(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Carry out a command, or refuse it with a sentence about what would be right."""
-        sentence = refusal(command, self.state, self._texts)
+        sentence = refusal(command, self.state, self._texts, self._count)
         if sentence is not None:
             return TrainingReply(False, sentence)
         left = self.state.revision
@@ -127,10 +133,21 @@ class Training:
             self._kept.leave(left, now.feed)
         return reply
 
+    def trace(self, now: TouchMoment) -> tuple[Event, ...]:
+        """Leave a point where the tip is if a stroke is being drawn there; return the events."""
+        if not tracing.takes_point(self.state.trace, now, self._settings):
+            return ()
+        return self.handle(OperatorCommand(TRACED), now).events
+
+    @property
+    def _count(self) -> int:
+        """How many points the trial has to touch."""
+        return len(self._task.labels) if self._task else 0
+
     def elapsed(self, sim_time: float) -> float:
         """Return the trial's time in s, pauses excluded.
 
-        It ends with the last touch, or with the procedure.
+        It ends with the last point that was touched or traced, or with the procedure.
         """
         phase, procedure = self.state.phase, self.state.procedure
         if phase is Phase.IDLE:
@@ -139,13 +156,14 @@ class Training:
             return procedure.ended_s
         if procedure is not None or phase in (Phase.RUNNING, Phase.PAUSED):
             return self._clock.elapsed(sim_time)
-        return self.state.touches[-1].elapsed
+        return self.state.completed_s
 
     def _start(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         arguments = command.arguments
         chosen_procedure = arguments.get("procedure") or ""
         try:
-            task = self._scenario.task(arguments["task"])
+            method = method_of(arguments.get("method"))
+            task = task_by_method(self._scenario, arguments["task"], method)
             self._phases = self._phases_of(chosen_procedure, task)
         except InputError as error:
             return TrainingReply(False, str(error))
@@ -171,6 +189,8 @@ class Training:
             next_point=task.labels[0],
             revision=self.state.revision,
             procedure=ProcedureState(chosen_procedure) if chosen_procedure else None,
+            method=method,
+            trace=TraceState() if method in TRACED_METHODS else None,
         )
         event = self._enter(started, "start", now)
         return TrainingReply(True, data=summary(self.state), events=(event,))
@@ -220,7 +240,9 @@ class Training:
         label, task = state.next_point, self._task
         assert label is not None
         assert task is not None, "the phase allows no touch before a task is chosen"
-        sentence = refused_touch(now, label, self._fiducials, self._settings, self._texts)
+        sentence = refused_touch(
+            now, label, self._fiducials, self._settings, self._texts, state.method
+        )
         place = {
             "label": label,
             "positionMm": [MM_PER_M * value for value in now.tip],
@@ -237,6 +259,9 @@ class Training:
         touches = (*state.touches, touch)
         data = {**place, "kept": len(touches)}
         event = Event(EventKind.TOUCH, now.sim_time, data)
+        if len(touches) == len(task.labels) and state.trace is not None:
+            self._keep_traced(replace(state, touches=touches, next_point=None))
+            return TrainingReply(True, data={**data, "nextPoint": None}, events=(event,))
         if len(touches) == len(task.labels):
             complete = replace(state, phase=Phase.COMPLETE, touches=touches, next_point=None)
             return TrainingReply(
@@ -247,8 +272,44 @@ class Training:
         self._keep(touched, "touched", label=label)
         return TrainingReply(True, data={**data, "nextPoint": following}, events=(event,))
 
+    def _trace(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+        """Begin or end a stroke; a command that has come before changes nothing."""
+        trace, on = self.state.trace, command.arguments["on"]
+        assert trace is not None, "the method has a trace"
+        if on == trace.is_on:
+            return TrainingReply(True, data=tracing.stroke_data(trace))
+        state = tracing.begun(self.state) if on else tracing.ended(self.state)
+        return self._stroke(state, now)
+
+    def _traced(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
+        """Add a point to the stroke, which ends with the last one that a trial takes."""
+        elapsed = self._clock.elapsed(now.sim_time)
+        self.state = tracing.with_point(self.state, now, elapsed)
+        event, trace = tracing.point_event(self.state, now), self.state.trace
+        if trace is None or not trace.is_full:
+            return TrainingReply(True, events=(event,))
+        over = self._stroke(tracing.ended(self.state), now)
+        return replace(over, events=(event, *over.events))
+
+    def _stroke(self, state: TrainingState, now: TouchMoment, **others: bool) -> TrainingReply:
+        """Take on a state in which a stroke has begun, is ended or undone."""
+        assert state.trace is not None
+        data = {**tracing.stroke_data(state.trace), **others}
+        event = Event(EventKind.STROKE, now.sim_time, data)
+        if state.phase is self.state.phase:
+            self._keep_traced(state)
+            return TrainingReply(True, data=data, events=(event,))
+        phase = self._enter(state, tracing.instruction(state), now, **tracing.told(state.trace))
+        return TrainingReply(True, data=data, events=(event, phase))
+
+    def _keep_traced(self, state: TrainingState) -> None:
+        assert state.trace is not None
+        self._keep(state, tracing.instruction(state), **tracing.told(state.trace))
+
     def _undo(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         state = self.state
+        if state.trace is not None and state.trace.strokes:
+            return self._stroke(tracing.undone(state), now, undone=True)
         if not state.touches:
             return TrainingReply(False, self._texts.say("nothing to undo", point=state.next_point))
         label = state.touches[-1].label
@@ -271,7 +332,7 @@ class Training:
         if self._phases is not None:
             return self._in_procedure(command, now)
         event = self._enter(replace(self.state, phase=Phase.REGISTERED), "registered", now)
-        data = {**summary(self.state), "completionTimeS": self.state.touches[-1].elapsed}
+        data = {**summary(self.state), "completionTimeS": self.state.completed_s}
         return TrainingReply(True, data=data, events=(event,))
 
     def _abort(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
@@ -284,9 +345,8 @@ class Training:
 
     def _pause(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         self._clock.pause(now.sim_time)
-        return TrainingReply(
-            True, events=(self._enter(replace(self.state, phase=Phase.PAUSED), "paused", now),)
-        )
+        paused = replace(tracing.ended(self.state), phase=Phase.PAUSED)
+        return TrainingReply(True, events=(self._enter(paused, "paused", now),))
 
     def _resume(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         self._clock.resume(now.sim_time)
@@ -294,9 +354,13 @@ class Training:
         if procedure is not None and procedure.stage in PROCEDURE_PHASES:
             assert self._phases is not None
             return self._taken(self._phases.resumed(self.state), now)
-        return TrainingReply(
-            True, events=(self._enter(replace(self.state, phase=Phase.RUNNING), "resumed", now),)
-        )
+        running, trace = replace(self.state, phase=Phase.RUNNING), self.state.trace
+        if trace is None or self.state.next_point is not None:
+            return TrainingReply(True, events=(self._enter(running, "resumed", now),))
+        resumed = tracing.ended(running)
+        key = tracing.instruction(resumed)
+        event = self._enter(resumed, key, now, **tracing.told(trace))
+        return TrainingReply(True, events=(event,))
 
     def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Accept a registration, which becomes final, and reveal the truth."""
@@ -339,7 +403,7 @@ class Training:
 
     def _get_trial(self, _command: OperatorCommand, _now: TouchMoment) -> TrainingReply:
         state = self.state
-        data = {**summary(state), "touches": touched(state)}
+        data = {**summary(state), **given(state)}
         if state.registration is not None:
             data.update(revealed(self.truth, state, state.registration.matrix))
         return TrainingReply(True, data=data)
@@ -353,7 +417,7 @@ class Training:
         sentence = self._texts.say("not recorded", reason=command.arguments["reason"])
         if kept.phase in (Phase.RUNNING, *PROCEDURE_PHASES):
             self._clock.pause(now.sim_time)
-            kept = replace(kept, phase=Phase.PAUSED)
+            kept = replace(tracing.ended(kept), phase=Phase.PAUSED)
         if kept.phase is Phase.IDLE:
             self._leave()
         back = replace(kept, revision=self.state.revision)
@@ -363,15 +427,16 @@ class Training:
 
     def _interrupted(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Pause a trial that runs; one whose points are all touched has no time to stop."""
+        trace = self.state.trace
+        values = {} if trace is None else tracing.told(trace)
         if self.state.phase is Phase.COMPLETE:
-            event = self._enter(self.state, "interrupted complete", now)
+            key = "interrupted complete" if trace is None else "interrupted trace"
+            event = self._enter(self.state, key, now, **values)
         else:
             self._clock.pause(now.sim_time)
-            paused = replace(self.state, phase=Phase.PAUSED)
-            procedure = paused.procedure
-            is_touching = procedure is None or procedure.stage not in PROCEDURE_PHASES
-            key = "interrupted" if is_touching else "interrupted procedure"
-            event = self._enter(paused, key, now, kept=len(paused.touches))
+            paused = replace(tracing.ended(self.state), phase=Phase.PAUSED)
+            key = _interruption(paused)
+            event = self._enter(paused, key, now, kept=len(paused.touches), **values)
         return TrainingReply(True, events=(event,))
 
     def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
@@ -389,7 +454,7 @@ class Training:
         words = {
             "trainee": state.trainee,
             "point": state.next_point,
-            "count": len(self._task.labels) if self._task else 0,
+            "count": self._count,
             **values,
         }
         revision = state.revision + 1
@@ -401,3 +466,11 @@ class Training:
         """Between trials the head is where it nominally is."""
         self.truth = Truth.of(self._scenario, self._scenario.head_to_world)
         self._fiducials = {}
+
+
+def _interruption(state: TrainingState) -> str:
+    """Return the key of what is said of a trial that was interrupted in its midst."""
+    procedure = state.procedure
+    if procedure is not None and procedure.stage in PROCEDURE_PHASES:
+        return "interrupted procedure"
+    return "interrupted" if state.next_point is not None else "interrupted trace"

@@ -59,6 +59,11 @@ class Trial:
         moment = TouchMoment(self.now, tip, height, direction=direction, feed=feed)
         return self.training.handle(command, moment)
 
+    def at(self, tip, above_mm=0.0, depth_mm=0.0):
+        """Have the tip be somewhere at the end of a tick; return the events of a trace."""
+        height, depth = above_mm / MM_PER_M, depth_mm / MM_PER_M
+        return self.training.trace(TouchMoment(self.now, tip, height, depth))
+
     def must(self, name, *places, **arguments):
         reply = self.do(name, *places, **arguments)
         assert reply.ok, reply.message

@@ -39,6 +39,7 @@ class Recording:
         self._samples = array("d")
         self._touches: list[Touch] = []
         self._refused: list[Touch] = []
+        self._traced: list[Touch] = []
         self._undone = self._cameras = self._pauses = 0
         self._near: list[Interval] = []
         self._contacts: list[Interval] = []
@@ -89,6 +90,7 @@ class Recording:
             clearance_mm=clearance,
             touches=tuple(self._touches),
             refused=tuple(self._refused),
+            traced=tuple(self._traced),
             undone=self._undone,
             near=tuple(_with_clearance(interval, times, clearance) for interval in near),
             contacts=tuple(_with_clearance(interval, times, clearance) for interval in contacts),
@@ -144,6 +146,14 @@ class Recording:
         self._undone += 1
         del self._touches[entry["kept"] :]
 
+    def _trace(self, entry: Mapping[str, Any]) -> None:
+        # A point is left at the end of its tick, unlike a touch.
+        x, y, z = entry["positionMm"]
+        self._traced.append(Touch("", (x, y, z), self._trial_time(entry["simTime"])))
+
+    def _stroke(self, entry: Mapping[str, Any]) -> None:
+        del self._traced[entry["kept"] :]
+
     def _camera(self, _entry: Mapping[str, Any]) -> None:
         self._cameras += 1
 
@@ -156,7 +166,9 @@ class Recording:
         elif self._paused_since is not None:
             self._paused_s += now - self._paused_since
             self._paused_since = None
-        # Touches that could not be written were undone, back to this fiducial.
+        # Points that could not be written are undone: those of a trace beyond these, and touches
+        # back to this fiducial.
+        del self._traced[entry.get("traced", 0) :]
         labels = [touch.label for touch in self._touches]
         if entry.get("nextPoint") in labels:
             del self._touches[labels.index(entry["nextPoint"]) :]
@@ -217,6 +229,8 @@ _HANDLERS = {
     "touch": Recording._touch,
     "rejected": Recording._rejected,
     "undo": Recording._undo,
+    "trace": Recording._trace,
+    "stroke": Recording._stroke,
     "camera": Recording._camera,
     "phase": Recording._phase,
     "continued": Recording._continued,

@@ -20,6 +20,8 @@ EVENTS = frozenset(
         "phase",
         "touch",
         "undo",
+        "trace",
+        "stroke",
         "rejected",
         "checkpoint",
         "proximity",

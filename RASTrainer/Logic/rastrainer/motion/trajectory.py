@@ -5,7 +5,7 @@ All times are the trial's own, in s from its start, excluding pauses.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -41,7 +41,10 @@ class Interval:
 
 @dataclass(frozen=True)
 class Touch:
-    """A touch: the fiducial due, the position of the tip (World, mm) and the time."""
+    """A touch: the fiducial due, the position of the tip (World, mm) and the time.
+
+    A point of a trace is one without a label.
+    """
 
     label: str
     position_mm: tuple[float, float, float]
@@ -58,6 +61,7 @@ class Trajectory:
         clearance_mm: (n,) float, signed distance of the tool to the head.
         touches: kept touches, in order.
         refused: refused touches.
+        traced: kept points of a trace, in order.
         undone: number of undone touches.
         near: intervals with the tip near the head, or the tool in contact.
         contacts: intervals in contact.
@@ -84,6 +88,14 @@ class Trajectory:
     fiducials_mm: Mapping[str, np.ndarray] = field(default_factory=dict)
     shortest_path_mm: float | None = None
     depth_mm: np.ndarray | None = None
+    traced: tuple[Touch, ...] = ()
+
+    @property
+    def intended(self) -> tuple[Touch, ...]:
+        """Where contact is intended: the kept touches and the points of the trace, by time."""
+        if not self.traced:
+            return self.touches
+        return tuple(sorted((*self.touches, *self.traced), key=lambda touch: touch.time_s))
 
     @property
     def touch_times_s(self) -> np.ndarray:
@@ -104,9 +116,9 @@ def unintended_contact(trajectory: Trajectory) -> tuple[float, float]:
     """Return the time (s) of unintended contact and the path (mm) of the tip during it.
 
     Contact is unintended while the tip is farther than `INTENDED_MM` from both the next and the
-    previous kept touch; without touches, always. The tip is interpolated linearly between samples.
-    Between neighboring samples or touches the midpoint decides, for the part of the time in
-    contact. Repeated contact cannot lower the result.
+    previous kept touch or traced point; without any, always. The tip is interpolated linearly
+    between samples. Between neighboring samples or touches the midpoint decides, for the part of
+    the time in contact. Repeated contact cannot lower the result.
     """
     contacts, samples_s = trajectory.contacts, trajectory.times_s
     if not contacts or not len(samples_s):
@@ -118,7 +130,7 @@ def unintended_contact(trajectory: Trajectory) -> tuple[float, float]:
     tip = np.column_stack([np.interp(times, samples_s, axis) for axis in trajectory.tip_mm.T])
     starts, steps = times[:-1], np.diff(times)
     middle = (tip[:-1] + tip[1:]) / 2
-    counts = _distance_to_touches(trajectory, starts + steps / 2, middle) > INTENDED_MM
+    counts = _distance_to_touches(trajectory.intended, starts + steps / 2, middle) > INTENDED_MM
     in_contact = np.zeros(len(steps))
     for contact in contacts:
         in_contact += np.clip(contact.end_s, starts, times[1:]) - np.clip(
@@ -133,8 +145,8 @@ def pressing_depth(trajectory: Trajectory) -> float | None:
     """Return how deep the tool was pressed into the head, mm; None if not recorded.
 
     sqrt(Σ kᵢ·dᵢ² / n) with dᵢ the greatest depth in contact i, kᵢ the number of kept touches in it,
-    at least 1, and n the number of fiducials, or of kept touches while these are secret. Further
-    contacts can only add to the sum.
+    at least 1, and n the number of fiducials, or of kept touches while these are secret, and of
+    the contacts in which something was traced. Further contacts can only add to the sum.
     """
     if trajectory.depth_mm is None:
         return None
@@ -143,14 +155,19 @@ def pressing_depth(trajectory: Trajectory) -> float | None:
     for contact in trajectory.contacts:
         touched = (contact.start_s <= touch_times) & (touch_times <= contact.end_s)
         total += max(1, int(touched.sum())) * contact.greatest_depth_mm**2
-    return float(np.sqrt(total / (len(trajectory.fiducials_mm) or len(touch_times) or 1)))
+    count = len(trajectory.fiducials_mm) or len(touch_times)
+    traced = [touch.time_s for touch in trajectory.traced]
+    strokes = sum(any(c.start_s <= t <= c.end_s for t in traced) for c in trajectory.contacts)
+    return float(np.sqrt(total / (count + strokes or 1)))
 
 
-def _distance_to_touches(trajectory: Trajectory, times: np.ndarray, tip: np.ndarray) -> np.ndarray:
+def _distance_to_touches(
+    touches: Sequence[Touch], times: np.ndarray, tip: np.ndarray
+) -> np.ndarray:
     """Return the tip's distance to the previous or next touch, the nearer one, (n,) float, mm."""
-    places = trajectory.touch_positions_mm
+    places = np.array([touch.position_mm for touch in touches], dtype=float).reshape(-1, 3)
     if not len(places):
         return np.full(len(times), np.inf)
-    following = np.searchsorted(trajectory.touch_times_s, times)
+    following = np.searchsorted(np.array([touch.time_s for touch in touches]), times)
     neighbors = (np.maximum(following - 1, 0), np.minimum(following, len(places) - 1))
     return np.minimum(*(np.linalg.norm(tip - places[rows], axis=1) for rows in neighbors))

@@ -134,8 +134,8 @@ def trial_motion(trajectory: Trajectory) -> dict[str, float]:
 
 
 def _end_s(trajectory: Trajectory) -> float:
-    """Return when the trainee's work ends: what follows the last touch waits for the result."""
-    return float(trajectory.touch_times_s[-1]) if trajectory.touches else math.inf
+    """Return when the trainee's work ends: what follows the last point waits for the result."""
+    return trajectory.intended[-1].time_s if trajectory.intended else math.inf
 
 
 def _counts(trajectory: Trajectory) -> dict[str, float]:
@@ -161,7 +161,7 @@ def _counts(trajectory: Trajectory) -> dict[str, float]:
     if depth_mm is not None:
         metrics["pressing_depth_mm"] = depth_mm
     if len(touch_times):
-        metrics["completion_time_s"] = touch_times[-1]
+        metrics["completion_time_s"] = _end_s(trajectory)
     if trajectory.fiducials_mm:
         metrics["wrong_order_touches"] = sum(
             _is_wrong(touch, trajectory) for touch in trajectory.refused
@@ -170,13 +170,14 @@ def _counts(trajectory: Trajectory) -> dict[str, float]:
 
 
 def _is_meant(contact: Interval, trajectory: Trajectory) -> bool:
-    """Return whether a contact started near the next or the previous touch."""
+    """Return whether a contact started near the next or the previous touch or traced point."""
     if not len(trajectory.times_s):
         return False
     start = int(np.searchsorted(trajectory.times_s, contact.start_s))
     row = min(start, len(trajectory.times_s) - 1)
-    following = int(np.searchsorted(trajectory.touch_times_s, contact.start_s))
-    neighbors = trajectory.touches[max(following - 1, 0) : following + 1]
+    touches = trajectory.intended
+    following = int(np.searchsorted([touch.time_s for touch in touches], contact.start_s))
+    neighbors = touches[max(following - 1, 0) : following + 1]
     distances = [float(np.linalg.norm(trajectory.tip_mm[row] - t.position_mm)) for t in neighbors]
     return min(distances, default=np.inf) <= ACCEPTANCE_MM
 

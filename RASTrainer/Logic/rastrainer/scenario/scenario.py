@@ -21,6 +21,7 @@ from rastrainer.head.volume import VolumeFile, read_volume_file
 from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
 from rastrainer.procedure.plan import Procedure, read_procedures
 from rastrainer.protocol import WORLD_LIMIT_MM
+from rastrainer.scenario.landmarks import Landmark, read_landmarks
 from rastrainer.scenario.tasks import (
     PlannedTarget,
     PlannedTrajectory,
@@ -108,6 +109,7 @@ class Scenario:
         trajectory: the planned trajectory, or None.
         volume: the images, or None.
         procedures: planned; a trial may carry one of them out.
+        landmarks: by which a trial may be registered without fiducials, in order of touching.
     """
 
     folder: Path
@@ -128,6 +130,7 @@ class Scenario:
     trajectory: PlannedTrajectory | None = None
     volume: VolumeFile | None = None
     procedures: tuple[Procedure, ...] = ()
+    landmarks: tuple[Landmark, ...] = ()
 
     @property
     def preview(self) -> Path | None:
@@ -204,6 +207,7 @@ def _load(folder: Path) -> Scenario:
         trajectory=read_trajectory(fields),
         volume=read_volume_file(fields),
         procedures=read_procedures(fields),
+        landmarks=read_landmarks(fields),
     )
 
 

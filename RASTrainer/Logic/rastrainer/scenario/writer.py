@@ -150,6 +150,10 @@ def scenario_json(
             "entryRas": _listed(scenario.trajectory.entry),
             "targetRas": _listed(scenario.trajectory.target),
         }
+    if scenario.landmarks:
+        content["landmarks"] = [
+            _named_point(each.name, each.position) for each in scenario.landmarks
+        ]
     if scenario.procedures and has_skull:
         content["procedures"] = [procedure_json(each) for each in scenario.procedures]
     return content

@@ -11,14 +11,14 @@ from typing import Any
 
 from rastrainer import json_checks
 from rastrainer.json_checks import Argument
-from rastrainer.protocol import FIDUCIAL_COUNT, MIN_ABORTED_S, OPEN_PHASES, TRIAL_RUN, Phase
+from rastrainer.protocol import MIN_ABORTED_S, OPEN_PHASES, TRIAL_RUN, Phase
 from rastrainer.trial.record import (
     SHARED_CHECKS,
     TIME_LIMIT_S,
     TouchedPoint,
+    points_up_to_all,
     record_from_json,
     record_to_json,
-    touched_point,
     utc_time,
 )
 
@@ -97,17 +97,11 @@ class AbortedTrial:
         return record_to_json(self)
 
 
-def _points_so_far(value: Any) -> tuple[TouchedPoint, ...]:
-    if not isinstance(value, (list, tuple)) or len(value) > FIDUCIAL_COUNT:
-        raise ValueError(f"a list of at most {FIDUCIAL_COUNT} points")
-    return tuple(touched_point(item) for item in value)
-
-
 _CHECKS = {
     **SHARED_CHECKS,
     "abortedUtc": Argument(utc_time),
     "elapsedS": Argument(json_checks.number(0, TIME_LIMIT_S, "s")),
     "phase": Argument(json_checks.one_of(*(phase.value for phase in OPEN_PHASES))),
     "reason": Argument(json_checks.text()),
-    "points": Argument(_points_so_far),
+    "points": Argument(points_up_to_all),
 }

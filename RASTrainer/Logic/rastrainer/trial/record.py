@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 from collections.abc import Callable, Mapping
@@ -15,13 +16,25 @@ from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.json_checks import Argument, checked_keys
 from rastrainer.procedure.record import ProcedureRecord
-from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM, Mode, TouchRule
+from rastrainer.protocol import (
+    FIDUCIAL_COUNT,
+    MAX_TRACE_POINTS,
+    MIN_TRACE_POINTS,
+    WORLD_LIMIT_MM,
+    Mode,
+    TouchRule,
+)
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.scenario.method_task import COARSE_LANDMARKS, PLAYED_METHODS, TRACED_METHODS
 
 TIME_LIMIT_S = 1e6
 TOUCH_LIMIT = 1_000_000
 VERSIONS_LIMIT = 32
 MOTION_LIMIT = 100
 DISPLAY_LIMIT = 16
+
+TracePoint = tuple[float, float, float, float]
+"""Position of the tool tip in `World`, in mm, and the simulated time, in s."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +78,7 @@ Record = TypeVar("Record", bound=DeliveredRecord)
 
 @dataclass(frozen=True)
 class TrialRecord:
-    """A finished trial: who, what, when, and the fifteen touches that were kept, in their order.
+    """A finished trial: who, what, when, and the touches that were kept, in their order.
 
     Attributes:
         trial_id: UUID in its canonical spelling.
@@ -75,8 +88,10 @@ class TrialRecord:
         scenario: Name of the scenario.
         started_utc: ISO 8601 in UTC; the wall clock may jump, so no duration is taken from it.
         completed_utc: ISO 8601 in UTC.
-        completion_time_s: Simulated time from the start to the last kept touch, without pauses.
-        points: The kept touches; their labels differ and their times do not fall.
+        completion_time_s: Simulated time from the start to the last kept touch, or the last point
+            of the trace, without pauses.
+        points: The kept touches, of all fifteen fiducials or of landmarks; their labels differ and
+            their times do not fall.
         rejected_touches: Number of touches that were refused (too far off, wrong fiducial).
         undone_touches: Number of touches that the trainee undid.
         versions: Name and version of each program and format that made the record.
@@ -88,6 +103,9 @@ class TrialRecord:
             `GhostRule`); empty where no view reported it.
         procedure: What was done after the touches; None in a trial of touches alone. The points
             are those of the accepted registration.
+        method: How the trial is registered; a `PLAYED_METHODS`.
+        trace: The points that were traced over the skin, in order of time; empty where the method
+            has no trace.
     """
 
     trial_id: str
@@ -107,10 +125,12 @@ class TrialRecord:
     motion: Mapping[str, float] = field(default_factory=dict)
     display: Mapping[str, str | float] = field(default_factory=dict)
     procedure: ProcedureRecord | None = None
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS
+    trace: tuple[TracePoint, ...] = ()
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Labels of the touched fiducials, in the order of touching."""
+        """Labels of the touched points, in the order of touching."""
         return tuple(point.label for point in self.points)
 
     @property
@@ -123,6 +143,11 @@ class TrialRecord:
         """Simulated time of each touch, (n,) float, in s."""
         return np.array([point.sim_time_s for point in self.points], dtype=float)
 
+    @property
+    def trace_mm(self) -> np.ndarray:
+        """Traced points in `World`, (n, 3) float, in mm."""
+        return np.array(self.trace, dtype=float).reshape(-1, 4)[:, :3]
+
     @classmethod
     def from_json(cls, value: object) -> TrialRecord:
         """Return the record that a decoded JSON object holds.
@@ -132,15 +157,23 @@ class TrialRecord:
         Raises:
             InputError: a key is missing or holds something else than it should.
         """
-        return record_from_json(cls, value, _CHECKS, "The trial record")
+        record = record_from_json(cls, value, _CHECKS, "The trial record")
+        _check_method(record)
+        return record
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON object that `from_json` reads."""
         values = record_to_json(self)
-        del values["procedure"]
-        # Records of touches alone stay as they were before there were procedures.
-        procedure = {} if self.procedure is None else {"procedure": self.procedure.to_json()}
-        return values | procedure
+        # Records of touched fiducials alone stay as they were before there was anything else.
+        for added in ("procedure", "method", "trace"):
+            del values[added]
+        if self.procedure is not None:
+            values["procedure"] = self.procedure.to_json()
+        if self.method is not RegistrationMethod.FIDUCIALS:
+            values["method"] = self.method.value
+        if self.trace:
+            values["trace"] = [list(point) for point in self.trace]
+        return values
 
 
 def utc_time(value: Any) -> str:
@@ -165,10 +198,64 @@ def touched_point(value: Any) -> TouchedPoint:
     return TouchedPoint(point["label"], point["positionMm"], point["simTime"], point["utc"])
 
 
-def _all_points(value: Any) -> tuple[TouchedPoint, ...]:
-    if not isinstance(value, (list, tuple)) or len(value) != FIDUCIAL_COUNT:
-        raise ValueError(f"a list of {FIDUCIAL_COUNT} points")
+def points_up_to_all(value: Any) -> tuple[TouchedPoint, ...]:
+    """Accept a list of points, no more than a task has fiducials.
+
+    Raises:
+        ValueError: anything else; the words follow "must be".
+        InputError: one of them is invalid.
+    """
+    if not isinstance(value, (list, tuple)) or len(value) > FIDUCIAL_COUNT:
+        raise ValueError(f"a list of at most {FIDUCIAL_COUNT} points")
     return tuple(touched_point(item) for item in value)
+
+
+def trace_points(value: Any) -> tuple[TracePoint, ...]:
+    """Accept a trace: a list of positions in World with their times, `[x, y, z, simTime]`.
+
+    Raises:
+        ValueError: anything else, also where the times fall; the words follow "must be".
+    """
+    if isinstance(value, (list, tuple)) and len(value) <= MAX_TRACE_POINTS:
+        with contextlib.suppress(ValueError, TypeError, LookupError):
+            points = tuple(_trace_point(item) for item in value)
+            if all(later[3] >= earlier[3] for earlier, later in itertools.pairwise(points)):
+                return points
+    raise ValueError(
+        f"a list of at most {MAX_TRACE_POINTS} points [x, y, z, simTime], mm and s, in order of "
+        "time"
+    )
+
+
+def _trace_point(item: Any) -> TracePoint:
+    x, y, z, time = item
+    x, y, z = _IN_WORLD([x, y, z])
+    return x, y, z, _AT_TIME(time)
+
+
+def _check_method(record: TrialRecord) -> None:
+    """Raise `InputError` unless a record has the touches and the trace of its method."""
+    method, count = record.method, len(record.points)
+    if method is RegistrationMethod.FIDUCIALS and count != FIDUCIAL_COUNT:
+        raise InputError(
+            f"The trial record's points must be a list of {FIDUCIAL_COUNT} points, not {count}."
+        )
+    if count < COARSE_LANDMARKS:
+        raise InputError(
+            f"The trial record holds {count} touched landmarks; {method.value} needs at least "
+            f"{COARSE_LANDMARKS}."
+        )
+    if method not in TRACED_METHODS and record.trace:
+        raise InputError(f"The trial record must hold no trace where the method is {method.value}.")
+    if method in TRACED_METHODS and len(record.trace) < MIN_TRACE_POINTS:
+        raise InputError(
+            f"The trial record's trace has {len(record.trace)} points; {method.value} needs at "
+            f"least {MIN_TRACE_POINTS}."
+        )
+
+
+def _played_method(value: Any) -> RegistrationMethod:
+    return RegistrationMethod(_METHOD_NAME(value))
 
 
 def _mapping(
@@ -247,10 +334,13 @@ def _check_points(points: tuple[TouchedPoint, ...]) -> None:
             )
 
 
+_IN_WORLD = json_checks.numbers(3, WORLD_LIMIT_MM, "mm")
+_AT_TIME = json_checks.number(0, TIME_LIMIT_S, "s")
+_METHOD_NAME = json_checks.one_of(*(method.value for method in PLAYED_METHODS))
 _POINT_KEYS = {
     "label": Argument(json_checks.text()),
-    "positionMm": Argument(json_checks.numbers(3, WORLD_LIMIT_MM, "mm")),
-    "simTime": Argument(json_checks.number(0, TIME_LIMIT_S, "s")),
+    "positionMm": Argument(_IN_WORLD),
+    "simTime": Argument(_AT_TIME),
     "utc": Argument(utc_time),
 }
 
@@ -274,7 +364,7 @@ _CHECKS = {
     **SHARED_CHECKS,
     "completedUtc": Argument(utc_time),
     "completionTimeS": Argument(json_checks.number(0, TIME_LIMIT_S, "s")),
-    "points": Argument(_all_points),
+    "points": Argument(points_up_to_all),
     "seed": Argument(_optional(json_checks.whole_number(0, 2**63 - 1)), None),
     # Records older than this key are of the paper's rule.
     "touchRule": Argument(SHARED_CHECKS["touchRule"].check, TouchRule.WITHIN_RADIUS.value),
@@ -285,4 +375,6 @@ _CHECKS = {
         _mapping(DISPLAY_LIMIT, "names with texts or finite numbers", _text_or_number), {}
     ),
     "procedure": Argument(_optional(ProcedureRecord.from_json), None),
+    "method": Argument(_played_method, RegistrationMethod.FIDUCIALS),
+    "trace": Argument(trace_points, ()),
 }

@@ -14,7 +14,7 @@ from rastrainer.journal.journal_file import (
 )
 from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase
 
-_TAIL_BYTES = 1 << 16
+_TAIL_BYTES = 1 << 17
 _REGISTERED = b'"kind":"registered"'
 _PRACTICED = (
     f'"phase":"{Phase.COMPLETE.value}"'.encode(),

@@ -18,7 +18,7 @@ from rastrainer.trial.trainee_progress import PastTrial
 
 MAX_SHOWN = 20
 """Scores of a trend: those of the newest trials."""
-_TAIL_BYTES = 1 << 16
+_TAIL_BYTES = 1 << 17
 _START = re.compile(
     rb'\{"n":(\d+),"previous":"([0-9a-f]{64})","kind":"(registered|scored|attempt)"'
 )

@@ -380,8 +380,8 @@ class TrainingSession:
         """
         training, step = self.training, self.study.step_of(self.training.trainee)
         choice = self.preferences.ghost if step is None else step.ghost
-        # Trial runs are not scored: there is no best one.
-        is_none = not choice or training.task == TRIAL_RUN
+        # Trial runs are not scored: there is no best one. Elsewhere, a ghost would lead to points.
+        is_none = not choice or training.task == TRIAL_RUN or not training.is_marked
         rule = GhostRule.OFF if is_none else GhostRule(choice)
         who = training.trainee if rule is GhostRule.OWN else self.preferences.expert
         journals = () if rule is GhostRule.OFF else self.history.best(who, training.task)

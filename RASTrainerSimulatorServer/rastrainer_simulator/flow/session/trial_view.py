@@ -48,7 +48,8 @@ class TrialView:
         self.close()
         training = state.training
         self._trial_id = training.trial_id
-        self._best.look(setup, training.task, truth.head_to_world)
+        if training.is_marked:
+            self._best.look(setup, training.task, truth.head_to_world)
         self.control.reset()
 
     def close(self) -> None:

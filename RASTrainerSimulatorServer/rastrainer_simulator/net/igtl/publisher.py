@@ -22,6 +22,7 @@ from rastrainer_simulator.net.igtl.connection import ClientConnection
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.procedure_state import ProcedureState, Tool
 from rastrainer_simulator.state import SimulationState, TrainingState
+from rastrainer_simulator.training.tracing import stroke_data
 
 
 def tool_tip(state: SimulationState, seq: int) -> Message:
@@ -73,6 +74,8 @@ def what_changes(state: SimulationState) -> dict[str, Any]:
         "depthMm": _rounded(MM_PER_M * state.depth, 3),
         "q": [_rounded(angle, 6) for angle in state.q],
         "operator": state.operator,
+        "method": training.method.value,
+        "trace": None if training.trace is None else stroke_data(training.trace),
         "procedure": None if training.procedure is None else _procedure(state, training.procedure),
     }
 

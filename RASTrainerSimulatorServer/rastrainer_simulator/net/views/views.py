@@ -134,7 +134,9 @@ class Views:
                 view.outbox.put_latest(outgoing.CONTROL, outgoing.control(update, view.number))
 
     def _look_for_scene(self, now: SimulationState) -> None:
-        setup, task = self._source.setup, now.training.task
+        setup, training = self._source.setup, now.training
+        # Landmarks are not marked: the trainee has to find them.
+        task = training.task if training.is_marked else ""
         if setup is self._setup and task == self._task:
             return
         self._setup, self._task = setup, task

@@ -32,6 +32,14 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "touched": "{trainee}, point {label} is recorded. Now touch point {point}.",
         "undone": "{trainee}, point {label} was undone. Touch it again.",
         "complete": "{trainee}, all {count} points are touched. Register them now.",
+        # Tracing the skin, one point a millimeter.
+        "trace": "{trainee}, the landmarks are touched. Now draw the tip over the skin: {least} "
+        "points or more, one a millimeter.",
+        "tracing": "{trainee}, draw the tip over the skin, to parts that face different ways.",
+        "traced": "{trainee}, {traced} points are traced. Trace on: {least} are needed.",
+        "traced enough": "{trainee}, {traced} points are traced. Register them, or trace on.",
+        "traced all": "{trainee}, {traced} points are traced, the most that a trial takes. "
+        "Register them now.",
         "paused": "{trainee}, the trial is paused. Resume when you are ready.",
         "resumed": "{trainee}, continue with point {point}.",
         "registered": "{trainee}, your points are being registered and scored.",
@@ -105,6 +113,19 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "target, then ReleaseInstrument.",
         "not all touched": "{kept} of {count} points are touched: Register comes after the last; "
         "point {point} is next.",
+        "nothing is traced": "Nothing is traced in this trial: StartTask with the method surface "
+        "or landmarks-surface begins one in which the skin is.",
+        "landmarks first": "{kept} of {count} landmarks are touched: Capture point {point} before "
+        "Trace.",
+        "landmarks touched": "All {count} landmarks are touched: Trace the skin now, or Undo the "
+        "last landmark.",
+        "trace is full": "{traced} points are traced, the most that a trial takes: Register them, "
+        "or Undo the last stroke.",
+        "all traced": "{traced} points are traced: Register them, Trace on, or Undo the last "
+        "stroke.",
+        "still tracing": "A stroke is being drawn: end it with Trace before Register.",
+        "too few traced": "{traced} points are traced: Register needs {least}, so Trace on.",
+        "not paused trace": "The trial is not paused: Trace the skin, or Pause it first.",
         "not paused": "The trial is not paused: Capture point {point}, or Pause it first.",
         "is paused": "The trial is paused: Resume it first.",
         "already paused": "The trial is paused already: Resume or Abort it.",
@@ -128,6 +149,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "Continue with point {point} when you are ready, or abort it.",
         "interrupted complete": "{trainee}, this trial was interrupted; all {count} points are "
         "kept. Register them now.",
+        "interrupted trace": "{trainee}, this trial was interrupted; {traced} traced points are "
+        "kept. Trace on when you are ready, or abort it; {least} points can be registered.",
         # When nobody could see the trial, which pauses it.
         "unseen.left": "Paused: the view that showed the trial was closed or lost.",
         "unseen.unplugged": "Paused: the gamepad was unplugged.",

@@ -127,6 +127,16 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "touched": "{trainee}, Punkt {label} ist aufgenommen. Berühre jetzt Punkt {point}.",
         "undone": "{trainee}, Punkt {label} ist zurückgenommen. Berühre ihn noch einmal.",
         "complete": "{trainee}, alle {count} Punkte sind berührt. Registriere sie jetzt.",
+        # Über die Haut ziehen, ein Punkt je Millimeter.
+        "trace": "{trainee}, die Landmarken sind berührt. Zieh die Spitze jetzt über die Haut: "
+        "{least} Punkte oder mehr, einer je Millimeter.",
+        "tracing": "{trainee}, zieh die Spitze über die Haut, auch dorthin, wo sie anders "
+        "gerichtet ist.",
+        "traced": "{trainee}, {traced} Punkte sind gezogen. Mach weiter: {least} sind nötig.",
+        "traced enough": "{trainee}, {traced} Punkte sind gezogen. Registriere sie, oder zieh "
+        "weiter.",
+        "traced all": "{trainee}, {traced} Punkte sind gezogen, mehr nimmt ein Versuch nicht auf. "
+        "Registriere sie jetzt.",
         "paused": "{trainee}, der Versuch ist angehalten. Mach weiter, wenn du bereit bist.",
         "resumed": "{trainee}, weiter mit Punkt {point}.",
         "registered": "{trainee}, deine Punkte werden nun registriert und bewertet.",
@@ -205,6 +215,21 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "zum Ziel, dann ReleaseInstrument.",
         "not all touched": "{kept} von {count} Punkten sind berührt: Register kommt nach dem "
         "letzten; Punkt {point} ist an der Reihe.",
+        "nothing is traced": "In diesem Versuch wird nicht über die Haut gezogen: StartTask mit "
+        "der Methode surface oder landmarks-surface beginnt einen solchen.",
+        "landmarks first": "{kept} von {count} Landmarken sind berührt: Vor Trace kommt Capture "
+        "für Punkt {point}.",
+        "landmarks touched": "Alle {count} Landmarken sind berührt: jetzt Trace über die Haut, "
+        "oder Undo für die letzte.",
+        "trace is full": "{traced} Punkte sind gezogen, mehr nimmt ein Versuch nicht auf: "
+        "Register, oder Undo für den letzten Strich.",
+        "all traced": "{traced} Punkte sind gezogen: Register, weiter mit Trace, oder Undo für "
+        "den letzten Strich.",
+        "still tracing": "Ein Strich wird gezogen: erst mit Trace beenden, dann Register.",
+        "too few traced": "{traced} Punkte sind gezogen: Register braucht {least}, also weiter "
+        "mit Trace.",
+        "not paused trace": "Der Versuch ist nicht angehalten: Trace über die Haut, oder erst "
+        "Pause.",
         "not paused": "Der Versuch ist nicht angehalten: Capture für Punkt {point}, oder erst "
         "Pause.",
         "is paused": "Der Versuch ist angehalten: erst Resume.",
@@ -231,6 +256,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "sind gesichert. Mach mit Punkt {point} weiter, wenn du bereit bist, oder brich ihn ab.",
         "interrupted complete": "{trainee}, dieser Versuch wurde unterbrochen; alle {count} Punkte "
         "sind gesichert. Registriere sie jetzt.",
+        "interrupted trace": "{trainee}, dieser Versuch wurde unterbrochen; {traced} gezogene "
+        "Punkte sind gesichert. Zieh weiter, wenn du bereit bist, oder brich ihn ab; {least} "
+        "Punkte lassen sich registrieren.",
         # Wenn niemand den Versuch sehen konnte, was ihn anhält.
         "unseen.left": "Angehalten: Die Ansicht des Versuchs wurde geschlossen oder ging verloren.",
         "unseen.unplugged": "Pause: Das Gamepad wurde abgesteckt.",

@@ -187,6 +187,8 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
         "depthMm": 1.234,
         "q": [0.0] * 7,
         "operator": "gamepad",
+        "method": "fiducials",
+        "trace": None,
         "procedure": None,
     }
 

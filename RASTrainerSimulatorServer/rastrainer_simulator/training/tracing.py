@@ -1,0 +1,95 @@
+"""Tracing: where the tip leaves a point, what ends a stroke, and what is said of it.
+
+A point is left where the tip is on the skin, a millimeter or more from the last one. That follows
+from the last point alone, so that a trial that was interrupted goes on exactly as it would have.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from rastrainer.protocol import MIN_TRACE_POINTS, TRACE_SPACING_MM, Phase
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.state import Event, EventKind, TrainingState
+from rastrainer_simulator.trace_state import TracedPoint, TraceState
+from rastrainer_simulator.training.rules import TOO_DEEP_MM, TouchMoment, TrainingSettings
+from rastrainer_simulator.vectors import distance
+
+
+def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSettings) -> bool:
+    """Return whether the tip leaves a point of a trace where it is.
+
+    It has to be on the skin, whatever the rule for touches, and not pressed in.
+    """
+    if trace is None or not trace.is_on or now.tip_clearance > settings.skin_tolerance:
+        return False
+    if MM_PER_M * now.depth > TOO_DEEP_MM:
+        return False
+    last = trace.points[-1:]
+    return not last or MM_PER_M * distance(now.tip, last[0].position) >= TRACE_SPACING_MM
+
+
+def with_point(state: TrainingState, now: TouchMoment, elapsed: float) -> TrainingState:
+    """Return the state of a trial with a point where the tip is; `elapsed` is its time, s."""
+    assert state.trace is not None
+    point = TracedPoint(now.tip, now.sim_time, elapsed)
+    return replace(state, trace=state.trace.with_point(point))
+
+
+def point_event(state: TrainingState, now: TouchMoment) -> Event:
+    """Return the event of the point that was just traced."""
+    assert state.trace is not None
+    place = [MM_PER_M * value for value in now.tip]
+    data = {"positionMm": place, "kept": len(state.trace.points)}
+    return Event(EventKind.TRACE, now.sim_time, data)
+
+
+def stroke_data(trace: TraceState) -> dict[str, Any]:
+    """Return what is told of a trace where a stroke begins, ends or is undone."""
+    return {"on": trace.is_on, "kept": len(trace.points), "strokes": len(trace.strokes)}
+
+
+def begun(state: TrainingState) -> TrainingState:
+    """Return the state of a trial in which a stroke begins."""
+    assert state.trace is not None
+    return replace(state, phase=Phase.RUNNING, trace=state.trace.begun())
+
+
+def ended(state: TrainingState) -> TrainingState:
+    """Return the state of a trial in which no stroke is being drawn; what was drawn is kept.
+
+    With enough points the trial may be registered.
+    """
+    if state.trace is None:
+        return state
+    return _with_rest(state, state.trace.ended())
+
+
+def undone(state: TrainingState) -> TrainingState:
+    """Return the state of a trial without its last stroke."""
+    assert state.trace is not None
+    return _with_rest(state, state.trace.undone())
+
+
+def _with_rest(state: TrainingState, trace: TraceState) -> TrainingState:
+    may_register = state.next_point is None and trace.is_enough
+    return replace(state, phase=Phase.COMPLETE if may_register else Phase.RUNNING, trace=trace)
+
+
+def instruction(state: TrainingState) -> str:
+    """Return the key of what a trainee is told who traces, or may; values as of `told`."""
+    trace = state.trace
+    assert trace is not None
+    if trace.is_on:
+        return "tracing"
+    if trace.is_full:
+        return "traced all"
+    if trace.is_enough:
+        return "traced enough"
+    return "traced" if trace.points else "trace"
+
+
+def told(trace: TraceState) -> dict[str, int]:
+    """Return the values of the sentences about a trace."""
+    return {"traced": len(trace.points), "least": MIN_TRACE_POINTS}

@@ -1,0 +1,187 @@
+"""A trace survives the simulator's end, goes with its trial, and is played again exactly."""
+
+import random
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.protocol import MIN_TRACE_POINTS, CommandName, Phase
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.core.interrupted_trial import find_interrupted
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.replay.resimulation import replay
+from Testing.simulator.landmarked import LANDMARKS, with_landmarks
+from Testing.simulator.record.test_interrupted_trial import Server, cut
+
+
+@pytest.fixture(scope="module")
+def airy(anywhere):
+    """Return a setup with landmarks, in which everything counts, also a trace through the air."""
+    training = replace(anywhere.settings.training, landmark_radius=10.0, skin_tolerance=10.0)
+    return replace(
+        anywhere,
+        scenario=with_landmarks(anywhere.scenario),
+        settings=replace(anywhere.settings, training=training),
+        landmarks_sha256="of these",
+    )
+
+
+@pytest.fixture(scope="module")
+def traced_in_air(airy):
+    return Simulation(airy, 3)
+
+
+def start(server, method="surface"):
+    server.do(CommandName.ABORT)
+    answer = server.do(CommandName.START_TASK, task="task-1", trainee="P01", method=method)
+    assert answer.ok, answer.message
+    while server.training.next_point is not None:
+        assert server.do(CommandName.CAPTURE).ok
+
+
+def stroke(server, ticks, translation=(0.9, -0.3, 0.2), ends=True):
+    assert server.do(CommandName.TRACE, on=True).ok
+    server.move(translation, ticks)
+    if ends:
+        assert server.do(CommandName.TRACE, on=False).ok
+
+
+def positions(entries):
+    return [tuple(entry["positionMm"]) for entry in entries]
+
+
+def test_a_stroke_cut_off_by_a_kill_keeps_its_written_points_and_the_trial_replays_bit_by_bit(
+    traced_in_air, airy, tmp_path
+):
+    with Server(traced_in_air, tmp_path) as server:
+        start(server)
+        stroke(server, 60)
+        assert server.do(CommandName.UNDO).ok
+        stroke(server, 60, (-0.9, 0.1, 0.0))
+        stroke(server, 150, ends=False)
+        server.loop.stop()
+        size = server.path.read_bytes().rindex(b'{"n"', 0, -200)
+    cut(server.path, size)
+    written = positions(read_journal(server.path).of_kind("trace"))
+
+    with Server(traced_in_air, tmp_path) as server:
+        training = server.taken_up.training
+        assert training.phase is Phase.PAUSED
+        assert not training.trace.is_on
+        assert "traced points are kept" in training.instruction
+        assert len(training.trace.strokes) == 2
+        kept = len(training.trace.points)
+        assert kept > training.trace.strokes[-1] > 0
+        assert server.do(CommandName.RESUME).ok
+        while len(server.training.trace.points) < MIN_TRACE_POINTS:
+            stroke(server, 60, (0.2, 0.9, 0.1))
+        assert server.training.phase is Phase.COMPLETE
+        assert server.do(CommandName.REGISTER).ok
+        (record,) = server.loop.unacknowledged()
+    reading = read_journal(server.path)
+    assert reading.integrity is Integrity.INTACT
+    report = replay(reading, airy)
+    assert report.difference is None
+    assert report.compared["trace"] == len(reading.of_kind("trace"))
+    assert record.method is RegistrationMethod.SURFACE
+    assert [point[:3] for point in record.trace[:kept]] == written[-kept:]
+    assert record.completion_time_s < record.trace[-1][3]
+    assert TrialRecord.from_json(record.to_json()) == record
+    assert [point.label for point in record.points] == [each.name for each in LANDMARKS[:3]]
+
+
+def test_a_journal_cut_at_any_byte_is_resumed_with_every_traced_point_that_is_whole(
+    traced_in_air, tmp_path
+):
+    with Server(traced_in_air, tmp_path / "original") as server:
+        start(server)
+        stroke(server, 40)
+        stroke(server, 40, (0.0, 0.9, 0.1))
+        assert server.do(CommandName.UNDO).ok
+        stroke(server, 40, (-0.9, 0.0, 0.1))
+    data = server.path.read_bytes()
+    rng = random.Random(6)
+    for number in range(20):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        path = folder / server.path.name
+        path.write_bytes(data[: rng.randrange(len(data) // 3, len(data))])
+        traced_in_air.resume_trial(find_interrupted(folder)[1])
+        kept = []
+        for entry in read_journal(path).entries:
+            if entry["kind"] == "trace":
+                kept.append(entry)
+            elif entry["kind"] == "stroke":
+                kept = kept[: entry["kept"]]
+        assert len(traced_in_air.state.training.trace.points) == len(kept)
+
+
+def test_the_journal_of_a_trial_of_fiducials_tells_of_no_method(traced_in_air, tmp_path):
+    with Server(traced_in_air, tmp_path) as server:
+        start(server, "fiducials")
+        assert server.do(CommandName.REGISTER).ok
+    text = server.path.read_text(encoding="utf-8")
+    assert '"method"' not in text
+    assert '"trace"' not in text
+
+
+def test_a_trial_by_other_landmarks_than_those_of_the_scenario_is_not_played_again(airy):
+    header = {"method": {"name": "surface", "landmarksSha256": "of others"}}
+    assert not airy.has_landmarks_of(header)
+    assert airy.has_landmarks_of({})
+
+
+def record_of(**changes):
+    point = {"positionMm": [1.0, 2.0, 3.0], "simTime": 1.0, "utc": "2024-05-17T09:30:00Z"}
+    values = {
+        "trialId": "a3bb189e-8bf9-4888-9912-ace4e6543002",
+        "trainee": "P01",
+        "task": "task-1",
+        "mode": "desktop",
+        "scenario": "colin27",
+        "startedUtc": "2024-05-17T09:30:00Z",
+        "completedUtc": "2024-05-17T09:31:00Z",
+        "completionTimeS": 50.0,
+        "points": [point | {"label": name} for name in ("Nasion", "Right", "Left")],
+        "rejectedTouches": 0,
+        "undoneTouches": 0,
+        "versions": {},
+        "method": "surface",
+        "trace": [[1.0, 2.0, float(number), 2.0 + number] for number in range(30)],
+    }
+    return {**values, **changes}
+
+
+def test_a_record_with_a_trace_is_read():
+    record = TrialRecord.from_json(record_of())
+    assert record.trace_mm.shape == (30, 3)
+    assert record.to_json() | record_of() == record.to_json()
+
+
+LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        pytest.param({"trace": LINE}, "at most 500 points", id="too long"),
+        pytest.param({"trace": LINE[:29]}, "needs at least 30", id="too short"),
+        pytest.param({"trace": [[1, 2, 3]] * 30}, "x, y, z, simTime", id="without time"),
+        pytest.param({"trace": [["1", 2, 3, 4]] * 30}, "x, y, z, simTime", id="text"),
+        pytest.param({"trace": [{"x": 1}] * 30}, "x, y, z, simTime", id="objects"),
+        pytest.param({"trace": [[1, 2, 9e9, 4]] * 30}, "x, y, z, simTime", id="far"),
+        pytest.param({"trace": "long"}, "x, y, z, simTime", id="no list"),
+        pytest.param({"trace": [[1, 2, 3, 4 - n / 50] for n in range(30)]}, "time", id="back"),
+        pytest.param({"method": "landmarks"}, "must hold no trace", id="unwanted"),
+        pytest.param({"method": "scan"}, "method", id="not played"),
+        pytest.param({"method": 3}, "method", id="no text"),
+        pytest.param({"points": []}, "0 touched landmarks", id="no landmark"),
+        pytest.param({"method": "fiducials", "trace": []}, "list of 15 points", id="fiducials"),
+    ],
+)
+def test_a_record_that_does_not_fit_its_method_is_refused_with_a_sentence(changes, said):
+    with pytest.raises(InputError, match=said):
+        TrialRecord.from_json(record_of(**changes))

@@ -1,0 +1,201 @@
+"""A trial that is registered by landmarks or by a trace: what is touched, traced, undone, said."""
+
+import pytest
+
+from rastrainer.protocol import MAX_TRACE_POINTS, MIN_TRACE_POINTS, CommandName, Phase
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer_simulator.state import EventKind
+from Testing.simulator.landmarked import LANDMARKS, with_landmarks
+from Testing.simulator.training.hand_driven import Trial
+
+NAMES = [landmark.name for landmark in LANDMARKS]
+
+
+@pytest.fixture
+def landmarked(scenario):
+    return with_landmarks(scenario)
+
+
+def begun(scenario, method="surface", **others):
+    trial = Trial(scenario)
+    reply = trial.start(method=method, **others)
+    assert reply.ok, reply.message
+    return trial
+
+
+def traced(scenario, count, method="surface", **others):
+    """Return a trial with one ended stroke of so many points."""
+    trial = begun(scenario, method, **others)
+    trial.touch(3 if method == "surface" else len(NAMES))
+    stroke(trial, count)
+    return trial
+
+
+def stroke(trial, count, first=0):
+    trial.must(CommandName.TRACE, on=True)
+    drag(trial, count, first)
+    if trial.state.trace.is_on:
+        trial.must(CommandName.TRACE, on=False)
+
+
+def drag(trial, count, first=0, above_mm=0.0, spacing_mm=1.01):
+    """Draw the tip along a line; return the events."""
+    events = []
+    for number in range(first, first + count):
+        trial.now += 0.02
+        events += trial.at((0.001 * spacing_mm * number, 0.2, 0.3), above_mm)
+    return events
+
+
+def test_landmarks_are_touched_by_name_in_their_order_with_a_radius_of_their_own(landmarked):
+    trial = begun(landmarked, "landmarks")
+    assert trial.state.method is RegistrationMethod.LANDMARKS
+    for number, name in enumerate(NAMES):
+        assert trial.state.next_point == name
+        x, y, z = trial.fiducial(name)
+        assert trial.do(CommandName.CAPTURE, (x + 0.021, y, z)).ok is False
+        assert trial.do(CommandName.CAPTURE, (x, y, z), above_mm=3.0).ok is False
+        assert trial.must(CommandName.CAPTURE, (x + 0.019, y, z)).data["kept"] == number + 1
+    assert trial.state.phase is Phase.COMPLETE
+    assert trial.must(CommandName.REGISTER).data["method"] == "landmarks"
+
+
+def test_a_surface_trial_has_three_landmarks_touched_and_then_waits_for_the_trace(landmarked):
+    trial = begun(landmarked)
+    early = trial.do(CommandName.TRACE, on=True)
+    assert early.message == "0 of 3 landmarks are touched: Capture point Nasion before Trace."
+    trial.touch(3)
+    assert (trial.state.phase, trial.state.next_point) == (Phase.RUNNING, None)
+    assert "draw the tip over the skin" in trial.state.instruction
+    assert "Trace the skin now" in trial.do(CommandName.CAPTURE, (0, 0, 0)).message
+    assert "0 points are traced: Register needs 30" in trial.do(CommandName.REGISTER).message
+
+
+def test_landmarks_with_a_trace_have_all_of_them_touched_first(landmarked):
+    trial = traced(landmarked, MIN_TRACE_POINTS, "landmarks-surface")
+    assert [touch.label for touch in trial.state.touches] == NAMES
+    assert trial.state.phase is Phase.COMPLETE
+
+
+def test_the_tip_leaves_a_point_each_millimeter_and_only_on_the_skin(landmarked):
+    trial = begun(landmarked)
+    trial.touch(3)
+    trial.must(CommandName.TRACE, on=True)
+    assert len(drag(trial, 10, spacing_mm=0.26)) == 3
+    assert drag(trial, 10, first=100, above_mm=0.6) == []
+    assert trial.at((0.5, 0.2, 0.3), depth_mm=0.6) == ()
+    assert len(drag(trial, 3, first=100, above_mm=0.4)) == 3
+    trial.must(CommandName.TRACE, on=False)
+    assert drag(trial, 5, first=200) == []
+    assert len(trial.state.trace.points) == 6
+
+
+def test_a_point_does_not_raise_the_revision_and_a_stroke_does(landmarked):
+    trial = begun(landmarked)
+    trial.touch(3)
+    before = trial.state.revision
+    (event,) = trial.must(CommandName.TRACE, on=True).events
+    assert (event.kind, event.data["on"]) == (EventKind.STROKE, True)
+    drag(trial, 5)
+    assert trial.state.revision == before + 1
+    assert trial.must(CommandName.TRACE, on=True).events == ()
+    (event,) = trial.must(CommandName.TRACE, on=False).events
+    assert event.data == {"on": False, "kept": 5, "strokes": 1}
+    assert trial.state.revision == before + 2
+
+
+def test_from_thirty_points_on_the_trial_is_registered(landmarked):
+    trial = traced(landmarked, MIN_TRACE_POINTS - 1)
+    assert trial.state.phase is Phase.RUNNING
+    assert not trial.do(CommandName.REGISTER).ok
+    trial.must(CommandName.TRACE, on=True)
+    drag(trial, 1, first=500)
+    assert "end it with Trace" in trial.do(CommandName.REGISTER).message
+    trial.must(CommandName.TRACE, on=False)
+    assert trial.state.phase is Phase.COMPLETE
+    assert "30 points are traced. Register them, or trace on." in trial.state.instruction
+    told = trial.must(CommandName.GET_TRIAL).data
+    assert len(told["trace"]) == MIN_TRACE_POINTS
+    last = trial.state.trace.points[-1]
+    assert told["trace"][-1] == [*(1000.0 * x for x in last.position), last.sim_time]
+    trial.now += 100.0
+    reply = trial.must(CommandName.REGISTER)
+    assert reply.data["completionTimeS"] == last.elapsed == trial.training.elapsed(trial.now)
+    assert trial.state.phase is Phase.REGISTERED
+
+
+def test_the_five_hundredth_point_ends_the_stroke_and_no_more_are_taken(landmarked):
+    trial = traced(landmarked, MAX_TRACE_POINTS + 5)
+    assert len(trial.state.trace.points) == MAX_TRACE_POINTS
+    assert trial.state.phase is Phase.COMPLETE
+    assert "the most that a trial takes" in trial.state.instruction
+    assert "the most that a trial takes" in trial.do(CommandName.TRACE, on=True).message
+    trial.must(CommandName.UNDO)
+    assert trial.must(CommandName.TRACE, on=True).ok
+
+
+def test_undo_takes_back_the_last_stroke_and_then_the_last_landmark(landmarked):
+    trial = traced(landmarked, 40)
+    stroke(trial, 12, first=100)
+    assert trial.must(CommandName.UNDO).data == {
+        "on": False,
+        "kept": 40,
+        "strokes": 1,
+        "undone": True,
+    }
+    assert trial.state.phase is Phase.COMPLETE
+    trial.must(CommandName.UNDO)
+    assert (trial.state.phase, trial.state.trace.points) == (Phase.RUNNING, ())
+    assert trial.must(CommandName.UNDO).data["label"] == NAMES[2]
+    assert trial.state.next_point == NAMES[2]
+
+
+def test_undo_amid_a_stroke_ends_it(landmarked):
+    trial = traced(landmarked, 8)
+    trial.must(CommandName.TRACE, on=True)
+    drag(trial, 4, first=100)
+    trial.must(CommandName.UNDO)
+    assert len(trial.state.trace.points) == 8
+    assert not trial.state.trace.is_on
+
+
+def test_a_pause_ends_the_stroke_and_keeps_its_points(landmarked):
+    trial = begun(landmarked)
+    trial.touch(3)
+    trial.must(CommandName.TRACE, on=True)
+    drag(trial, 31)
+    trial.must(CommandName.PAUSE)
+    assert drag(trial, 5, first=100) == []
+    trial.must(CommandName.RESUME)
+    assert trial.state.phase is Phase.COMPLETE
+    assert len(trial.state.trace.points) == 31
+
+
+def test_the_points_are_touched_and_traced_again_where_the_registration_is_not_accepted(landmarked):
+    trial = traced(landmarked, 30, procedure="dbs")
+    trial.must(CommandName.REGISTER)
+    trial.must(CommandName.USE_REGISTRATION, **trial.exact_registration())
+    trial.must(CommandName.REGISTER_AGAIN)
+    assert trial.state.next_point == "Nasion"
+    assert trial.state.trace.points == ()
+
+
+@pytest.mark.parametrize(
+    ("method", "said"),
+    [
+        ("scan", "there are fiducials, landmarks, surface, landmarks-surface"),
+        ("laser", "there are fiducials, landmarks, surface, landmarks-surface"),
+        ("surface", "has 0 landmarks"),
+    ],
+)
+def test_a_method_that_cannot_be_played_is_refused_with_the_reason(scenario, method, said):
+    reply = Trial(scenario).start(method=method)
+    assert not reply.ok
+    assert said in reply.message
+
+
+def test_nothing_is_traced_in_a_trial_of_fiducials(scenario):
+    trial = Trial(scenario)
+    trial.start(method="fiducials")
+    assert "method surface" in trial.do(CommandName.TRACE, on=True).message
+    assert "method" not in trial.must(CommandName.GET_TRIAL).data
