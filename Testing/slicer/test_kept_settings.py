@@ -6,7 +6,7 @@ import slicer
 from rastrainer.scenario.package import pack
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer import settings
-from rastrainer.slicer.settings import HOST, PORT, Setting
+from rastrainer.slicer.settings import PORT, Setting
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.slicer.host.host import Host
 
@@ -98,12 +98,3 @@ def test_settings_that_cannot_be_used_leave_what_is_usual(start):
     host = start()
     assert host.find("portSpinBox").value == PORT.usual
     assert host.find("modeComboBox").currentText == "Desktop screen"
-
-
-def test_the_self_tests_change_no_setting(start):
-    host = start()
-    host.type("hostLineEdit", "10.0.0.7")
-    before = sorted(slicer.app.settings().allKeys())
-    host.run_self_tests()
-    assert sorted(slicer.app.settings().allKeys()) == before
-    assert slicer.app.settings().value(HOST.key) == "10.0.0.7"

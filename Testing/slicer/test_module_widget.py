@@ -9,6 +9,7 @@ import slicer
 
 from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.slicer.settings import HOST
 
 pytestmark = pytest.mark.usefixtures("module_widget")
 
@@ -69,8 +70,12 @@ def test_any_node_may_be_deleted_while_connected(host, simulator):
     host.wait_until(is_connected_again, "it is connected again")
 
 
-def test_the_self_tests_pass(host):
+def test_the_self_tests_pass_and_change_no_setting(host):
+    host.type("hostLineEdit", "10.0.0.7")
+    before = sorted(slicer.app.settings().allKeys())
     host.run_self_tests()
+    assert sorted(slicer.app.settings().allKeys()) == before
+    assert slicer.app.settings().value(HOST.key) == "10.0.0.7"
 
 
 def test_a_trajectory_is_placed_by_two_clicks(host):

@@ -39,12 +39,26 @@ window.frames_ = (count) => new Promise((done) => {
   step();
 });
 """
-_DRAW_NOTHING = """(() => {
-  const { renderer, scene } = page.stage;
-  const { render } = renderer;
-  const empty = new scene.constructor();
-  renderer.render = (_scene, camera) => render.call(renderer, empty, camera);
-})()"""
+_DRAW_NOTHING = """
+window.drawsNothing = true;
+for (const name of Object.getOwnPropertyNames(WebGL2RenderingContext.prototype)) {
+  if (!/^(clear|draw)[A-Z]|^clear$/.test(name)) continue;
+  const draw = WebGL2RenderingContext.prototype[name];
+  WebGL2RenderingContext.prototype[name] = function (...values) {
+    if (!window.drawsNothing) draw.apply(this, values);
+  };
+}
+const { getContext } = HTMLCanvasElement.prototype;
+HTMLCanvasElement.prototype.getContext = function (kind, ...options) {
+  if (kind === "webgl2") {
+    for (const [name, value] of [["width", 400], ["height", 220]]) {
+      this[name] = value;
+      Object.defineProperty(this, name, { get: () => value, set: () => {} });
+    }
+  }
+  return getContext.call(this, kind, ...options);
+};
+"""
 _PADS = """
 window.pad = { connected: true, mapping: "standard", index: 0, id: "Test pad",
   axes: [0, 0, 0, 0],
@@ -89,7 +103,7 @@ def open_page(
 ) -> Page:
     """Open the page, pair it by the code in its address, and wait until it shows the scene.
 
-    Pictures take both processors: tests that look at none let it draw an empty scene.
+    Pictures take both processors: tests that look at none have it draw nothing in its canvas.
     Its `problems` are what went wrong in it, and `loaded` has the bytes of each address.
     """
     context = browser.new_context(viewport=size, ignore_https_errors=True, has_touch=has_touch)
@@ -100,20 +114,28 @@ def open_page(
         page.add_init_script(emulator() + _EMULATE % (headset, *EYES_M))
     if has_pad:
         page.add_init_script(_PADS)
+    if not draws:
+        draw_nothing(page)
     page.problems = []
     page.on("pageerror", lambda error: page.problems.append(str(error)))
     page.loaded = {}
     page.on("response", lambda answer: page.loaded.update({answer.url: _size(answer)}))
     page.goto(f"{url}/#code={code}")
     page.wait_for_selector("body[data-scene][data-menu]")
-    if not draws:
-        draw_nothing(page)
     return page
 
 
 def draw_nothing(page: Page) -> None:
-    """Let a page draw an empty scene from now on; menus and texts stay."""
-    page.evaluate(_DRAW_NOTHING)
+    """Let a page draw no scene in what it loads from now on; menus and texts stay."""
+    page.add_init_script(_DRAW_NOTHING)
+
+
+def draw_a_while(page: Page) -> np.ndarray:
+    """Let a page that draws nothing draw some pictures; return the last as `pixels` does."""
+    page.evaluate("drawsNothing = false; frames_(3)")
+    picture = pixels(page)
+    page.evaluate("drawsNothing = true")
+    return picture
 
 
 def _size(answer: Response) -> int:

@@ -3,6 +3,10 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import sync_playwright
 
+from rastrainer_simulator.loop.control_loop import ControlLoop
+from Testing.simulator.conftest import setup  # noqa: F401
+from Testing.simulator.flow.conftest import outside, presenter, put_back, shared  # noqa: F401
+from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import launch
 
 
@@ -18,3 +22,19 @@ def browser(driver):
     browser = launch(driver)
     yield browser
     browser.close()
+
+
+@pytest.fixture
+def loop(shared, tmp_path):  # noqa: F811
+    """A control loop in this process, which leaves the processors to the browser."""
+    put_back(shared)
+    with ControlLoop(shared, tmp_path / "records") as loop:
+        yield loop
+
+
+@pytest.fixture
+def served(loop, loop_thread):
+    """Views of that loop, served to pages that are shown what a test tells them."""
+    served = ServedViews(loop_thread, loop)
+    yield served
+    served.close()

@@ -5,9 +5,6 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, Screen, Tone
-from Testing.simulator.conftest import setup  # noqa: F401
-from Testing.simulator.flow.conftest import loop, shared  # noqa: F401
-from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import open_page, wait_for
 
 DRAWN = """
@@ -21,9 +18,9 @@ def arrow(tone, height):
     return ErrorArrow((0.5, 0.0, 0.4), (0.5, 0.0, height), tone)
 
 
-def test_arrows_come_with_the_screen_and_go_with_it(browser, loop, loop_thread):  # noqa: F811
-    served = ServedViews(loop_thread, loop)
-    page = open_page(browser, served.url, served.code, size={"width": 960, "height": 600})
+def test_arrows_come_with_the_screen_and_go_with_it(browser, served):
+    size = {"width": 960, "height": 600}
+    page = open_page(browser, served.url, served.code, size=size, draws=False)
     arrows = tuple(map(arrow, (Tone.GOOD, Tone.WARNING, Tone.ERROR), (0.41, 0.42, 0.43)))
     served.tell(Screen(errors=arrows, hints=(Hint("Esc", "Result", "back"), Hint("D", "Turn"))))
     wait_for(page, "page.errors.group.children.length === 6")
@@ -38,4 +35,3 @@ def test_arrows_come_with_the_screen_and_go_with_it(browser, loop, loop_thread):
     served.tell(Screen())
     wait_for(page, "page.errors.group.children.length === 0")
     assert page.problems == []
-    served.close()

@@ -5,19 +5,15 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.net.views.screen import Screen
-from Testing.simulator.conftest import setup  # noqa: F401
-from Testing.simulator.flow.conftest import loop, outside, presenter, shared  # noqa: F401
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
-from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import open_page
 
 SHOWN = "document.body.dataset.menu"
 
 
 @pytest.fixture
-def show(browser, loop, loop_thread):  # noqa: F811
+def show(browser, served):
     """Return a function that shows a screen in the page and returns what its parts hold."""
-    served = ServedViews(loop_thread, loop)
     page = open_page(browser, served.url, served.code, draws=False)
 
     def show(screen):
@@ -29,11 +25,10 @@ def show(browser, loop, loop_thread):  # noqa: F811
 
     yield show
     assert page.problems == []
-    served.close()
 
 
 @pytest.mark.soak
-def test_every_page_is_shown_the_same_when_it_is_opened_again(show, presenter):  # noqa: F811
+def test_every_page_is_shown_the_same_when_it_is_opened_again(show, presenter):
     screens = every_screen(presenter)
     assert names_of_pages() <= screens.keys()
     for name, screen in screens.items():

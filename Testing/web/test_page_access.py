@@ -10,10 +10,8 @@ import pytest
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from Testing.simulator.conftest import setup  # noqa: F401
-from Testing.simulator.flow.conftest import loop, outside, shared  # noqa: F401
+from rastrainer_simulator.net.views.screen import Screen
 from Testing.simulator.flow.every_page import every_screen
-from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import accessibility_checker, open_page
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
@@ -73,12 +71,12 @@ OVERLAPS = """() => {
 }"""
 
 
-@pytest.fixture(scope="module", params=["en", "de"])
+@pytest.fixture(scope="module", params=[pytest.param("en", marks=pytest.mark.soak), "de"])
 def place(request, tmp_path_factory):
+    """A place in German, whose words are longer; in English in the soak tests."""
     folder = tmp_path_factory.mktemp(request.param)
     language = request.param
     with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS, language=language) as place:
-        place.language = language
         yield place
 
 
@@ -113,14 +111,8 @@ def complaints(page, screen: str, axe_sizes: tuple[str, ...]) -> list[str]:
 @AXE_SIZES
 @pytest.mark.parametrize("language", ["en", pytest.param("de", marks=pytest.mark.soak)])
 def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_any_size(
-    browser,
-    loop,  # noqa: F811
-    loop_thread,
-    outside,  # noqa: F811
-    language,
-    axe_sizes,
+    browser, served, loop, outside, language, axe_sizes
 ):
-    served = ServedViews(loop_thread, loop)
     page = checked_page(browser, served.url, served.code)
     preferences = Preferences(language=language)
     presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
@@ -132,7 +124,6 @@ def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_
         found += complaints(page, name, axe_sizes)
     presenter.close()
     page.context.close()
-    served.close()
     assert found == []
 
 
@@ -158,10 +149,19 @@ def test_no_part_of_a_trial_breaks_a_rule_of_accessibility_or_overlaps_at_any_si
     assert found == []
 
 
-def test_the_page_says_its_language(place, page):
-    assert page.get_attribute("html", "lang") == place.language
-    name = {"en": "Robot, head and operating room", "de": "Roboter, Kopf und Operationssaal"}
-    assert page.get_attribute("#picture", "aria-label") == name[place.language]
+NAMES_OF_PICTURE = {
+    "en": "Robot, head and operating room",
+    "de": "Roboter, Kopf und Operationssaal",
+}
+
+
+def test_the_page_says_its_language(browser, served):
+    page = checked_page(browser, served.url, served.code)
+    for language, name in NAMES_OF_PICTURE.items():
+        served.tell(Screen(language=language))
+        page.wait_for_selector(f"html[lang={language}]")
+        assert page.get_attribute("#picture", "aria-label") == name
+    page.context.close()
 
 
 def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(place, page):

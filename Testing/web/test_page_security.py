@@ -13,7 +13,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message, pack
-from Testing.web.chromium import PATIENCE_MS, SMALL, open_page
+from Testing.web.chromium import PATIENCE_MS, SMALL, draw_nothing, open_page
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
 
@@ -42,6 +42,7 @@ def place(tmp_path_factory):
 def stranger(browser):
     context = browser.new_context(viewport=SMALL, ignore_https_errors=True)
     page = context.new_page()
+    draw_nothing(page)
     page.set_default_timeout(PATIENCE_MS)
     yield page
     context.close()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from Testing.web.chromium import PATIENCE_MS, launch
+from Testing.web.chromium import PATIENCE_MS, draw_nothing, launch
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
 
@@ -37,6 +37,7 @@ def test_without_javascript_the_page_says_so_in_both_languages(place, browser):
 
 def test_the_scene_tells_how_much_of_it_has_come(place, browser):
     page = new_page(browser)
+    draw_nothing(page)
     network = page.context.new_cdp_session(page)
     network.send("Network.enable")
     network.send("Network.emulateNetworkConditions", SLOW_LINE)
@@ -49,8 +50,26 @@ def test_the_scene_tells_how_much_of_it_has_come(place, browser):
     page.context.close()
 
 
+def test_without_webgl_menus_are_read_and_chosen_and_the_page_says_what_is_missing(place, driver):
+    browser = launch(driver, "--disable-3d-apis")
+    page = new_page(browser)
+    problems = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.goto(address(place))
+    page.wait_for_selector("body[data-menu=start]")
+    page.wait_for_selector("#warnings li:has-text('WebGL')")
+    trainee = place.trainee(PageKeys(page))
+    trainee.choose("settings")
+    page.wait_for_selector("body[data-menu=settings]")
+    assert page.inner_text("#menu h2") == trainee.menu.title
+    assert problems == []
+    browser.close()
+
+
 def test_a_code_that_is_no_longer_valid_says_so_and_so_does_a_new_one(place, browser):
+    # The place has another code afterwards: this test is the last.
     page = new_page(browser, locale="de-DE")
+    draw_nothing(page)
     wrong = "000000" if place.simulator.code != "000000" else "000001"
     page.goto(f"{place.simulator.url}/#code={wrong}")
     page.wait_for_selector("#pairing output:has-text('gilt nicht mehr')")
@@ -63,22 +82,3 @@ def test_a_code_that_is_no_longer_valid_says_so_and_so_does_a_new_one(place, bro
     page.click("#pairing button")
     page.wait_for_selector("#pairing output:has-text('zeigt jetzt einen neuen Code')")
     page.context.close()
-
-
-def test_without_webgl_menus_are_read_and_chosen_and_the_page_says_what_is_missing(
-    driver, tmp_path
-):
-    with Place(tmp_path) as place:
-        browser = launch(driver, "--disable-3d-apis")
-        page = new_page(browser)
-        problems = []
-        page.on("pageerror", lambda error: problems.append(str(error)))
-        page.goto(address(place))
-        page.wait_for_selector("body[data-menu=start]")
-        page.wait_for_selector("#warnings li:has-text('WebGL')")
-        trainee = place.trainee(PageKeys(page))
-        trainee.choose("settings")
-        page.wait_for_selector("body[data-menu=settings]")
-        assert page.inner_text("#menu h2") == trainee.menu.title
-        assert problems == []
-        browser.close()

@@ -5,9 +5,6 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.net.views.screen import DepthRuler, Screen
-from Testing.simulator.conftest import setup  # noqa: F401
-from Testing.simulator.flow.conftest import loop, shared  # noqa: F401
-from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import enter_headset, open_page, wait_for
 
 RULER = DepthRuler(30.0, 37.0, 44.5, 126.0)
@@ -50,15 +47,8 @@ def at(tool, feed_mm=0.0, aim=None):
     return {"name": "biopsy", "tool": tool, "feedMm": feed_mm, "aim": aim}
 
 
-@pytest.fixture
-def served(loop, loop_thread):  # noqa: F811
-    served = ServedViews(loop_thread, loop)
-    yield served
-    served.close()
-
-
 def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(served, browser):
-    page = open_page(browser, served.url, served.code, "metaQuest2")
+    page = open_page(browser, served.url, served.code, "metaQuest2", draws=False)
     served.tell(Screen())
     wait_for(page, "page.stage.model !== null && page.state !== null")
     assert page.evaluate(SEEN, at("pointer")).items() >= NOTHING.items()

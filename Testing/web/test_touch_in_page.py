@@ -6,9 +6,6 @@ import pytest
 
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
-from Testing.simulator.conftest import setup  # noqa: F401
-from Testing.simulator.flow.conftest import loop, shared  # noqa: F401
-from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import open_page
 
 RED = 0xFF0D0D
@@ -30,15 +27,14 @@ DRAW = """
 
 
 @pytest.fixture
-def draw(browser, loop, loop_thread):  # noqa: F811
+def draw(browser, served):
     """Return a function that draws a state with some changes and returns what is seen of it."""
-    served = ServedViews(loop_thread, loop)
-    page = open_page(browser, served.url, served.code)
+    page = open_page(browser, served.url, served.code, draws=False)
     served.tell(Screen(status=("Task 1",)))
     page.wait_for_selector("#status:has-text('Task 1')")
     yield lambda **changes: page.evaluate(DRAW, changes)
     assert page.problems == []
-    served.close()
+    page.context.close()
 
 
 def test_tip_ring_and_frame_are_red_only_where_a_touch_goes_wrong(draw):
