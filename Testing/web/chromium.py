@@ -59,6 +59,13 @@ HTMLCanvasElement.prototype.getContext = function (kind, ...options) {
   return getContext.call(this, kind, ...options);
 };
 """
+_SHOW_NOTHING = """(() => {
+  const { renderer, scene } = page.stage;
+  const { render } = renderer;
+  const empty = new scene.constructor();
+  renderer.render = (shown, camera) =>
+    render.call(renderer, window.drawsNothing ? empty : shown, camera);
+})()"""
 _PADS = """
 window.pad = { connected: true, mapping: "standard", index: 0, id: "Test pad",
   axes: [0, 0, 0, 0],
@@ -122,6 +129,8 @@ def open_page(
     page.on("response", lambda answer: page.loaded.update({answer.url: _size(answer)}))
     page.goto(f"{url}/#code={code}")
     page.wait_for_selector("body[data-scene][data-menu]")
+    if not draws:
+        page.evaluate(_SHOW_NOTHING)
     return page
 
 

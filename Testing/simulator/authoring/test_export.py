@@ -184,7 +184,13 @@ def test_the_brain_stays_but_for_what_is_close_behind_the_face(colin27):
     assert (after.values != before.values)[inside].mean() < 0.06
 
 
-@pytest.mark.parametrize("axes", [np.eye(3) * 2.0, OBLIQUE], ids=["RAS", "oblique"])
+@pytest.mark.parametrize(
+    "axes",
+    [
+        pytest.param(np.eye(3) * 2.0, id="RAS", marks=pytest.mark.soak),
+        pytest.param(OBLIQUE, id="oblique"),
+    ],
+)
 def test_two_people_who_differ_in_the_face_alone_have_the_same_images_without_it(axes):
     one, other = ball_with_a_face(brow_mm=4.0), ball_with_a_face(brow_mm=-3.0)
     first, second = images_of(one, axes), images_of(other, axes)

@@ -119,7 +119,7 @@ def test_a_copy_with_targets_reports_the_error_at_the_first(tmp_path):
     ("words", "sentence"),
     [
         (("--trajectory", "Biopsy", "0", "-20", "60", *INSIDE), "Biopsy enters"),
-        (("--target", "Tumor", "0", "-100", "95"), "Tumor is"),
+        pytest.param(("--target", "Tumor", "0", "-100", "95"), "Tumor is", marks=pytest.mark.soak),
     ],
 )
 def test_a_plan_that_cannot_be_carried_out_is_reported_and_nothing_is_written(
