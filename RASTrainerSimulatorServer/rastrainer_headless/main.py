@@ -27,11 +27,12 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError, RASTrainerError
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, Phase
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.heartbeat import LinkStatus
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
@@ -83,6 +84,8 @@ class HeadlessHost:
         self._aborted.kept.connect(
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
+        self._procedure = ProcedureLogic(self.application.scene, self.link, cache.find, self._work)
+        self._procedure.answered.connect(self._tellUnregistered)
         self.link.statusChanged.connect(self._tellStatus)
         self.link.pointsChanged.connect(self._tellPoints)
         self._presenter.trialScored.connect(self._tellTrial)
@@ -113,6 +116,7 @@ class HeadlessHost:
 
     def close(self) -> None:
         """Disconnect and close the study."""
+        self._procedure.close()
         self._presenter.close()
         self._aborted.close()
         self._work.close()
@@ -132,6 +136,12 @@ class HeadlessHost:
         if len(labels) < self._touches:
             printEvent("removed", count=len(labels))
         self._touches = len(labels)
+
+    def _tellUnregistered(self, sentence: str) -> None:
+        """Say why the touches of a procedure wait, unless somebody else has registered them."""
+        waits = self._procedure.status.phase == Phase.VERIFYING.value
+        if waits and not self._procedure.status.isRegistered:
+            printEvent("problem", sentence=sentence)
 
     def _tellTrial(self, analysis: TrialAnalysis) -> None:
         results = results_json(analysis)

@@ -34,6 +34,30 @@ PAINTED = """(procedure) => {
   CanvasRenderingContext2D.prototype.fillText = fillText;
   return written;
 }"""
+STEERED = """async (procedure) => {
+  const sent = [];
+  const { send } = page.connection;
+  page.connection.send = (type, message) => {
+    if (type === "sticks" || type === "press") sent.push(structuredClone(message));
+  };
+  page.takeState = () => undefined;
+  page.state = { ...page.state, procedure };
+  const { right } = device.controllers;
+  await frames_(2);
+  right.updateAxes("thumbstick", 0.6, -0.5);
+  await frames_(3);
+  right.updateButtonValue("trigger", 1);
+  await frames_(3);
+  right.updateButtonValue("trigger", 0);
+  right.updateAxes("thumbstick", 0, 0);
+  right.updateButtonValue("b-button", 1);
+  await frames_(3);
+  right.updateButtonValue("b-button", 0);
+  await frames_(2);
+  page.connection.send = send;
+  delete page.takeState;
+  return sent;
+}"""
 AIM = {
     "entryMm": [12.0, -3.0],
     "targetMm": [4.0, 7.0],
@@ -77,5 +101,17 @@ def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(serv
     wait_for(page, "page.screen.ruler !== null")
     worn = page.evaluate(SEEN, at("drill", 41.5))
     assert worn["board"]
+    check_steering(page.evaluate(STEERED, at("guide", aim=AIM)))
     assert not page.evaluate(SEEN, at("pointer"))["tools"]
     assert page.problems == []
+
+
+def check_steering(sent):
+    """The right stick lifts and turns the guide; with its trigger held, it tilts it instead."""
+    sticks = [each for each in sent if "translation" in each]
+    lifting, tilting = sticks[0], [each for each in sticks if each["fine"]][-1]
+    assert lifting["translation"][2] > 0.3
+    assert lifting["rotation"] == [pytest.approx(0.545, abs=0.01), 0]
+    assert tilting["translation"] == [0, 0, 0]
+    assert min(tilting["rotation"]) > 0.3
+    assert {"control": "undo"} in sent

@@ -175,13 +175,14 @@ class ProcedureScreen(ArmScreen):
         )
 
     def _stick_hints(self, phase: Phase) -> tuple[Hint, ...]:
-        """Return what the sticks do; in a headset they are drawn in the hands."""
+        """Return what the sticks do; in a headset what is not drawn in the hands."""
         session, say = self._session, self._session.texts.say
         up_and_down = session.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
         if phase in FED:
             return (Hint(up_and_down, say("hint.feed")),)
         if session.is_typing_possible((SourceKind.XR,)):
-            return ()
+            is_aligning = phase is Phase.ALIGNING
+            return (Hint(say("headset.tilt"), say("hint.tilt")),) if is_aligning else ()
         if phase is not Phase.ALIGNING:
             return self._movement_hints()
         turn = session.pair_label(ControlName.TURN_LEFT, ControlName.TURN_RIGHT)

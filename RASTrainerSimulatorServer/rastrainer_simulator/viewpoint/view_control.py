@@ -43,9 +43,10 @@ class _Travel:
 
 @dataclass(frozen=True)
 class Pictures:
-    """What the views draw: the main picture's camera, and that of the inset along the skin.
+    """What the views draw: the main picture's camera, and that of the inset.
 
-    The inset is None where no touch is to be judged. `yaw_deg` is where the operator's eyes look,
+    The inset looks along the skin at the next touch, or across the line of a procedure; it is None
+    where there is neither. `yaw_deg` is where the operator's eyes look,
     degrees from World's x, in a headset; else None.
     """
 

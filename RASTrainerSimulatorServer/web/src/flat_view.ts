@@ -2,13 +2,15 @@
 
 import { PerspectiveCamera, Vector2 } from "three";
 
-import type { SceneNews, StateNews } from "./messages";
+import { hasGuide, type SceneNews, type StateNews } from "./messages";
 import type { Stage } from "./stage";
 import { Flight, Viewpoint } from "./viewpoint";
 
 export const INSET_SHARE = 0.22;
 /** Name of the view along the skin. */
 export const BESIDE = "beside";
+/** Name of the view across the line of a procedure. */
+export const ACROSS = "across";
 const NEAR = 0.05;
 const FAR = 12;
 
@@ -21,6 +23,7 @@ export class FlatView {
   private scene: SceneNews | null = null;
   private chosen = "";
   private isBeside = false;
+  private hasLine = false;
 
   constructor(
     private readonly stage: Stage,
@@ -34,7 +37,8 @@ export class FlatView {
 
   /** Name of what is in the corner, "" without anything. */
   get insetName(): string {
-    return this.isBeside ? BESIDE : this.otherCamera;
+    if (!this.isBeside) return this.otherCamera;
+    return this.hasLine ? ACROSS : BESIDE;
   }
 
   private get otherCamera(): string {
@@ -47,6 +51,7 @@ export class FlatView {
     this.chosen = state.camera;
     this.flight.go(state.camera, state.view, now);
     this.isBeside = state.inset !== null;
+    this.hasLine = hasGuide(state);
     const other = state.inset ?? this.scene.cameras[this.otherCamera];
     if (other !== undefined) this.inset.take(other);
   }
@@ -84,6 +89,8 @@ export class FlatView {
     renderer.render(scene, this.camera);
     if (!hasInset) return;
     const box = this.frame.getBoundingClientRect();
+    // A low window has no room for it beside the bull's-eye.
+    if (box.height === 0) return;
     this.inset.look(this.other, box.width / box.height);
     renderer.setScissorTest(true);
     renderer.setViewport(box.left, height - box.bottom, box.width, box.height);

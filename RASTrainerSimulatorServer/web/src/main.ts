@@ -9,7 +9,7 @@ import { FrameCount } from "./frame_count";
 import { Ghost } from "./ghost";
 import { Gamepads } from "./gamepads";
 import { Keyboard } from "./keyboard";
-import { isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "./messages";
+import { hasGuide, isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "./messages";
 import { Loading } from "./loading";
 import { Overlay } from "./overlay";
 import { pair } from "./pairing";
@@ -260,8 +260,9 @@ export class Page {
     model.mark(state);
     this.showProcedure(model, state);
     const isWorking = this.screen?.menu == null;
-    // The title of a clear head, whose lines it explains, needs the place.
-    const inset = isWorking && !this.screen?.is_head_clear ? flat.insetName : "";
+    // After the score the title of a clear head, whose lines it explains, needs the place.
+    const hasRoom = !this.screen?.is_head_clear || hasGuide(state);
+    const inset = isWorking && hasRoom ? flat.insetName : "";
     this.overlay.showInset(inset);
     this.overlay.showError(isWorking && isTouchError(state.touch));
     this.ring?.show(model, state, flat.camera, isWorking);

@@ -145,13 +145,18 @@ export interface StateNews {
   readonly camera: string;
   /** Where the main picture is looked from: the camera of that name, as it is turned now. */
   readonly view: CameraPlace;
-  /** Where the corner's picture looks along the skin; null while no touch is to be judged. */
+  /** Where the corner's picture looks along the skin, or across the line of a procedure; null without either. */
   readonly inset: CameraPlace | null;
   readonly phase: string;
   readonly next: string | null;
   readonly touched: readonly string[];
   readonly elapsed: number;
   readonly procedure: ProcedureNews | null;
+}
+
+/** Whether a procedure is at one of its lines: the guide is aligned, or something is fed through it. */
+export function hasGuide({ procedure }: StateNews): boolean {
+  return procedure !== null && procedure.tool !== "pointer";
 }
 
 export interface ScreenNews {

@@ -1,13 +1,16 @@
 /** The simulator's screen over a flat picture: each part is rebuilt when it has changed. */
 
-import { BESIDE } from "./flat_view";
+import { ACROSS, BESIDE } from "./flat_view";
 import type { Connection } from "./connection";
 import { byId, element } from "./elements";
 import { MenuView } from "./menu_view";
 import type { ControlNews, Menu, Message, PairingNews, Screen } from "./messages";
 import { controlsPicture, inputsOf } from "./panels/controls_picture";
 import { trendPlot } from "./panels/trend_plot";
-import { say, sayHolder } from "./texts";
+import { say, sayHolder, type TextName } from "./texts";
+
+/** What is written on the corner's picture. */
+const INSETS: Readonly<Record<string, TextName>> = { "close-up": "closeUp", [BESIDE]: "beside", [ACROSS]: "across" };
 
 export class Overlay {
   private readonly shown = new Map<string, string>();
@@ -74,7 +77,7 @@ export class Overlay {
   showInset(name: string): void {
     const frame = byId("inset");
     frame.hidden = name === "";
-    frame.dataset.name = say(name === "close-up" ? "closeUp" : name === BESIDE ? "beside" : "far");
+    frame.dataset.name = say(INSETS[name] ?? "far");
   }
 
   private showWarnings(): void {

@@ -14,6 +14,7 @@ from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.viewpoint.best_view import BestView
+from rastrainer_simulator.viewpoint.line_view import across_line
 from rastrainer_simulator.viewpoint.orbit import heading_deg, orbit_to
 from rastrainer_simulator.viewpoint.touch_views import BestViews
 from rastrainer_simulator.viewpoint.view_control import (
@@ -91,10 +92,14 @@ class TrialView:
         """Return where the pictures of a state are looked from."""
         self.control.use(now.camera)
         main = self.control.pose(cameras[now.camera])
+        tip = vector(now.tool_tip_to_world[:3, 3].tolist())
+        procedure = now.training.procedure
+        if procedure is not None and procedure.present is not None:
+            line = across_line(main.position, procedure.present.line, tip)
+            return Pictures(main, line, self.yaw_deg)
         view = self._view_of(now)
         if view is None or view.beside is None:
             return Pictures(main, yaw_deg=self.yaw_deg)
-        tip = vector(now.tool_tip_to_world[:3, 3].tolist())
         beside = along_skin(view.beside, view.fiducial, view.normal, tip)
         return Pictures(main, beside, self.yaw_deg)
 

@@ -622,6 +622,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "headset.down": "Stick down",
         "headset.left": "Stick left",
         "headset.right": "Stick right",
+        "headset.tilt": "Right trigger + stick",
         # What is written on the buttons that the page has on a touch screen.
         "touch screen.touch": "Touch",
         "touch screen.undo": "Undo",

@@ -743,6 +743,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "headset.down": "Stick runter",
         "headset.left": "Stick links",
         "headset.right": "Stick rechts",
+        "headset.tilt": "Rechter Trigger + Stick",
         # What is written on the buttons that the page has on a touch screen.
         "touch screen.touch": "Berühren",
         "touch screen.undo": "Zurücknehmen",

@@ -9,6 +9,8 @@ const PAD = 24;
 const GOOD = TONES.good;
 const OFF = "#ffcc0d";
 const FIGURE = { size: 40, color: COLORS.text, isBold: true };
+/** So that three digits of millimeters leave a gap before the angle. */
+const PAIR = { ...FIGURE, size: 34 };
 const SMALL = { size: 26, color: COLORS.soft };
 
 const RADIUS = 156;
@@ -51,8 +53,8 @@ function paintAim(pen: Pen, aim: Aim): void {
   pen.circle(targetX, targetY, 15, color, 5);
   pen.circle(entryX, entryY, 9, color);
   const y = GUIDING_WIDTH + 36;
-  pen.line(`${figure(aim.entryDistanceMm)} mm`, PAD, y, FIGURE);
-  pen.lineTo(`${figure(aim.angleDeg)}°`, GUIDING_WIDTH - PAD, y, FIGURE);
+  pen.line(`${figure(aim.entryDistanceMm)} mm`, PAD, y, PAIR);
+  pen.lineTo(`${figure(aim.angleDeg)}°`, GUIDING_WIDTH - PAD, y, PAIR);
 }
 
 /** Write a number with one decimal, as the page's language does. */

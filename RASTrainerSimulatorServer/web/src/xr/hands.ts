@@ -75,6 +75,8 @@ export class Hands {
   yawDeg = 0;
   /** Whether sticks step, as through a menu. */
   isStepped = false;
+  /** Whether a guide is aligned: with its trigger held, the right stick turns and tilts it. */
+  isAligning = false;
 
   constructor(
     xr: WebXRManager,
@@ -145,14 +147,17 @@ export class Hands {
   private takeSticks(hand: Hand, pad: Gamepad): void {
     const x = alive(pad.axes[STICK_X] ?? 0);
     const y = -alive(pad.axes[STICK_Y] ?? 0);
+    const isTriggered = hand.pointed === "" && (pad.buttons[TRIGGER]?.value ?? 0) > PRESSED;
+    const { translation, rotation } = this.message;
     if (hand.source?.handedness === "left") {
-      this.message.translation[0] = x;
-      this.message.translation[1] = y;
+      translation[0] = x;
+      translation[1] = y;
     } else {
-      this.message.translation[2] = y;
-      this.message.rotation[0] = x;
+      rotation[0] = x;
+      if (this.isAligning && isTriggered) rotation[1] = y;
+      else translation[2] = y;
     }
-    if (hand.pointed === "" && (pad.buttons[TRIGGER]?.value ?? 0) > PRESSED) this.message.fine = true;
+    if (isTriggered) this.message.fine = true;
   }
 
   private takeButtons(hand: Hand, pad: Gamepad): void {

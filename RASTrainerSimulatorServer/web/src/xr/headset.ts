@@ -102,6 +102,7 @@ export class Headset {
 
   showGuiding(aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
     this.boards.showGuiding(aim, ruler, depth);
+    this.hands.isAligning = aim !== null;
   }
 
   setNotice(text: string): void {
