@@ -18,7 +18,14 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 from rastrainer_simulator.rendering.offscreen import OffscreenWindow, write_png
 from rastrainer_simulator.rendering.picture import lay_in_corner, node_actors
-from rastrainer_simulator.scene.nodes import SKIN, Material, Node
+from rastrainer_simulator.rendering.picture_legend import (
+    Legend,
+    paint_legend,
+    paint_scale,
+    write_legend,
+    write_scale,
+)
+from rastrainer_simulator.scene.nodes import NO_GO, SKIN, Material, Node
 from rastrainer_simulator.scene.procedure_nodes import plan_node
 from rastrainer_simulator.scene.surfaces import shaded, turned
 from rastrainer_simulator.vectors import any_perpendicular, vector
@@ -27,6 +34,12 @@ CLEAR_SKIN = replace(SKIN, name="clear_skin", opacity=0.25)
 PLANNED = Material("planned", (0.10, 0.75, 0.30), glowing=True)
 SHOWN = Material("shown", (1.0, 0.75, 0.05), glowing=True)
 PLACED = Material("placed", (0.15, 0.45, 1.0), glowing=True)
+LEGEND = (
+    (PLANNED, "planned"),
+    (SHOWN, "as the registration showed it"),
+    (PLACED, "placed"),
+    (NO_GO, "no-go structure"),
+)
 LINE_MM, BALL_MM = 0.45, 1.6
 SIZE = (1600, 1000)
 AWAY_MM, ANGLE_DEG = 420.0, 26.0
@@ -63,15 +76,16 @@ def draw_procedure(
 ) -> None:
     """Write a PNG of a head that is seen through, with its no-go structures and lines.
 
-    The plan is green, the registered line yellow, the placed instrument blue. The corner shows the
-    ends of the first three, magnified.
+    The plan is green, the registered line yellow, the placed instrument blue, as the legend says.
+    The corner shows the ends of the first three, magnified. Each picture has a bar of some mm: it
+    is true at the depth of what is looked at.
 
     Raises:
         InputError: the picture cannot be written, or a mesh cannot be used.
     """
     nodes = [Node("skin", (shaded(head.vertices / MM_PER_M, head.triangles, CLEAR_SKIN),))]
     nodes += [replace(node, is_hidden=False) for node in plan_node([procedure]).children]
-    pixels = _picture([*nodes, *_line_nodes(lines, 1.0)], _camera(lines), SIZE)
+    pixels = _picture([*nodes, *_line_nodes(lines, 1.0)], _camera(lines), SIZE, LEGEND)
     ends = [line[1] for line in lines[0]]
     error_mm = max(LEAST_ERROR_MM, *(float(np.linalg.norm(end - ends[0])) for end in ends))
     size = (round(INSET_SHARE * SIZE[0]), round(INSET_SHARE * SIZE[1]))
@@ -80,16 +94,23 @@ def draw_procedure(
     write_png(pixels, path)
 
 
-def _picture(nodes: Sequence[Node], camera: Camera, size: tuple[int, int]) -> np.ndarray:
-    """Return (height, width, 3) uint8."""
+def _picture(
+    nodes: Sequence[Node], camera: Camera, size: tuple[int, int], legend: Legend = ()
+) -> np.ndarray:
+    """Return (height, width, 3) uint8, with a scale and a legend."""
+    height_mm = 2.0 * AWAY_MM * float(np.tan(np.radians(camera.view_angle_deg) / 2.0))
     renderer = vtkRenderer()
     for actor in node_actors(nodes, {}, {}):
         renderer.AddActor(actor)
     light_room(renderer, Shadows.NONE)
     renderer.SetBackground(0.93, 0.94, 0.95)
+    write_legend(renderer, legend)
+    write_scale(renderer, height_mm, size[0])
     window = OffscreenWindow(renderer)
     pixels = window.frame(camera, size)
     window.close()
+    paint_legend(pixels, legend)
+    paint_scale(pixels, height_mm)
     return pixels
 
 
