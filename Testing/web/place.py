@@ -30,7 +30,7 @@ SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
 TRAINEE = "P7"
 PATIENCE_S = 60
-WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20}
+WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20, "gone_s": 300}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
 SETTLED_STATES = 20
 """In how many states in a row a focus stays that nobody moves any more: a third of a second."""
