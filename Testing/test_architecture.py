@@ -25,7 +25,8 @@ LAYERS = {
     "the domain": """
         rastrainer
         rastrainer.files, rastrainer.igtl, rastrainer.statistics
-        rastrainer.head, rastrainer.registration
+        rastrainer.head
+        rastrainer.registration
         rastrainer.procedure
         rastrainer.motion, rastrainer.scenario
         rastrainer.journal, rastrainer.trial

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.mesh import FLAT_MM, HeadMesh
 
 RADIUS_MM = 72.0
 """Around the tip of the nose: the eyes and the mouth are within, the ears and temples are not."""
@@ -30,7 +30,7 @@ def face_vertices(mesh: HeadMesh) -> np.ndarray:
 def is_on_base(mesh: HeadMesh) -> np.ndarray:
     """Return which vertices (n,) bool lie on the flat base."""
     heights = mesh.vertices[:, 2]
-    return heights < heights.min() + 1e-3
+    return heights < heights.min() + FLAT_MM
 
 
 def nose_tip(mesh: HeadMesh) -> np.ndarray:

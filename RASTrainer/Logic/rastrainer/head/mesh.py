@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.head.triangle_tree import TriangleTree
 
 MAX_BYTES = 64_000_000
 MAX_TRIANGLES = 1_000_000
@@ -28,6 +29,7 @@ property list uchar int vertex_indices
 end_header
 """
 BASE_THICKNESS_MM = 1.0
+FLAT_MM = 1e-3
 _FACE = np.dtype([("count", "u1"), ("corners", "<i4", (3,))])
 
 
@@ -74,12 +76,17 @@ class HeadMesh:
         base = self.vertices[heights <= heights.min() + BASE_THICKNESS_MM]
         return (base.min(axis=0) + base.max(axis=0)) / 2.0
 
+    @cached_property
+    def middle(self) -> np.ndarray:
+        """(3,) float: the center of the box around the head, RAS mm."""
+        return (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2.0
+
     @property
     def euler_characteristic(self) -> int:
         """Vertices − edges + triangles: 2 for one closed body without a tunnel."""
         return len(np.unique(self.triangles)) - len(self.edges) + len(self.triangles)
 
-    @property
+    @cached_property
     def is_closed(self) -> bool:
         """Whether every edge lies between exactly two triangles that run along it oppositely."""
         start, end = self.sides.T.astype(np.int64)
@@ -104,6 +111,19 @@ class HeadMesh:
         corners = self.vertices[self.triangles]
         centers = corners.mean(axis=1)
         return centers, np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1)
+
+    @cached_property
+    def skin(self) -> HeadMesh:
+        """The surface without the flat base, where the head is cut: nothing touches it there."""
+        heights = self.vertices[:, 2][self.triangles]
+        return HeadMesh(
+            self.vertices, self.triangles[(heights > heights.min() + FLAT_MM).any(axis=1)]
+        )
+
+    @cached_property
+    def tree(self) -> TriangleTree:
+        """The search for the nearest points of many points; takes about a tenth of a second."""
+        return TriangleTree(self.vertices[self.triangles])
 
     @property
     def centroid(self) -> np.ndarray:

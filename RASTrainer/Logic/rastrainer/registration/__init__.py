@@ -1,1 +1,1 @@
-"""Paired-point registration: fits, checks, faults, and expected and true target error."""
+"""Registration by points or by a trace: fits, checks, faults, expected and true target error."""

@@ -1,0 +1,280 @@
+"""What is unfit for a surface match, and what looks wrong with one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.files.point_list import COORDINATE_LIMIT_MM
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.registration.checks import extents
+from rastrainer.registration.warnings import RegistrationWarning
+
+LEAST_POINTS, MOST_USED, MOST_POINTS = 30, 500, 100_000
+LEAST_EXTENT_MM = 10.0
+"""RMS extent of a trace along its longest axis; a smaller one is a dab at one place."""
+FAR_OFF_MM = 50.0
+HEAD_EXTENT_MM = (80.0, 500.0)
+"""Of the longest side of the box around a head."""
+
+LEAST_NOISE_MM = 1.0
+"""Of a traced point, standard deviation; as skin is pressed and drawn along.
+Errors of neighboring points are alike, which residuals do not show."""
+SLIDE_LIMIT_MM = 3.0
+NORMAL_95 = 1.96
+LEAST_INLIER_SHARE = 0.8
+POOR_RMS_MM = 2.5
+LEAST_BEST_SHARE = 0.5
+FAR_POINT_MM = 3.0
+_LOOSEST_MM = 100.0
+_DIRECTIONS = ("left or right", "forward or back", "up or down")
+
+
+@dataclass(frozen=True)
+class SurfaceSlide:
+    """How far a match may slide along the skin.
+
+    Attributes:
+        distance_mm: With 95 % probability, the head is off by no more in this direction.
+        place: Where on the head it is largest: `front`, `back`, `left`, `right` or `top`.
+        direction: Unit vector, RAS.
+    """
+
+    distance_mm: float
+    place: str
+    direction: tuple[float, float, float]
+
+    @property
+    def way(self) -> str:
+        """The direction in words."""
+        return _DIRECTIONS[int(np.abs(self.direction).argmax())]
+
+
+@dataclass(frozen=True)
+class MatchMeasures:
+    """How good a match is; the attributes are those of `SurfaceMatch`, and one more.
+
+    Attributes:
+        rivals: Number of minima elsewhere whose cost is at most twice that of the best one.
+    """
+
+    rms_mm: float
+    inlier_share: float
+    converged: bool
+    starts: int
+    best_starts: int
+    spread_mm: float
+    rivals: int
+    slide: SurfaceSlide
+
+
+def check_trace(trace_mm: object) -> np.ndarray:
+    """Return a copy of a trace, (n, 3) float, that cannot be written to.
+
+    Raises:
+        InputError: it is no list of finite points, has too few or too many, or is in one place.
+    """
+    try:
+        trace = np.array(trace_mm, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError("A trace must be numbers, three for each point (x, y, z in mm).") from None
+    if trace.size == 0:
+        trace = trace.reshape(0, 3)
+    if trace.ndim != 2 or trace.shape[1] != 3:
+        raise InputError("Each point of a trace must have three coordinates (x, y, z in mm).")
+    if not LEAST_POINTS <= len(trace) <= MOST_POINTS:
+        raise InputError(
+            f"A surface match needs {LEAST_POINTS} to {MOST_POINTS} points, one for each "
+            f"millimeter drawn over the skin; the trace has {len(trace)}."
+        )
+    bad = np.flatnonzero(~(np.abs(trace) <= COORDINATE_LIMIT_MM).all(axis=1))
+    if len(bad):
+        raise InputError(
+            f"Point {bad[0] + 1} of the trace has a coordinate that is not a number within "
+            f"±{COORDINATE_LIMIT_MM:.0f} mm."
+        )
+    along = extents(trace)[0]
+    if along < LEAST_EXTENT_MM:
+        raise InputError(
+            f"The trace stays in one place (RMS extent {along:.1f} mm); draw it over forehead, "
+            "nose, cheeks and temples."
+        )
+    trace.flags.writeable = False
+    return trace
+
+
+def check_surface(mesh: HeadMesh) -> None:
+    """Check that a mesh is the closed surface of a head.
+
+    Raises:
+        InputError: it is open, or not as large as a head in mm.
+    """
+    extent = float(np.ptp(mesh.vertices, axis=0).max())
+    least, most = HEAD_EXTENT_MM
+    if not least <= extent <= most:
+        raise InputError(
+            f"The surface is {extent:.4g} mm long; that of a head, in millimeters, is {least:.0f} "
+            f"to {most:.0f} mm long."
+        )
+    if not mesh.is_closed:
+        raise InputError(
+            "The head's surface has holes or flipped triangles; a match needs a closed one: make "
+            "the scenario's head again from its images."
+        )
+
+
+def check_start(start: object, trace: np.ndarray, mesh: HeadMesh) -> np.ndarray:
+    """Return a copy of a start, (4, 4) float.
+
+    Raises:
+        InputError: it is not rigid, or it puts the trace far off the head.
+    """
+    try:
+        matrix = np.array(start, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        matrix = np.zeros(0)
+    if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not transforms.is_rigid(matrix):
+        raise InputError("The start of a surface match must be a rigid 4×4 transform in mm.")
+    away = mesh.tree.nearest(transforms.apply(matrix, thinned(trace, LEAST_POINTS))).distances
+    middle = float(np.median(away))
+    if middle > FAR_OFF_MM:
+        raise InputError(
+            f"The start puts the trace {middle:.0f} mm off the head; touch the three landmarks "
+            f"again, so that it lies within {FAR_OFF_MM:.0f} mm."
+        )
+    return matrix
+
+
+def thinned(trace: np.ndarray, most: int = MOST_USED) -> np.ndarray:
+    """Return at most so many points of a trace, evenly taken."""
+    if len(trace) <= most:
+        return trace
+    return trace[np.linspace(0, len(trace) - 1, most).round().astype(int)]
+
+
+def slide_of(
+    places: np.ndarray, normals: np.ndarray, rms_mm: float, mesh: HeadMesh
+) -> SurfaceSlide:
+    """Return how far a head may slide under points that its surface fits.
+
+    The curvature of the cost is H = Σ JᵢᵀJᵢ with J = (n, (p − c) × n); σ²H⁻¹ is the covariance of
+    the pose and is propagated to five places of the head. The largest eigenvalue among them, as a
+    95 % limit, is the answer; it ends at 100 mm.
+
+    Args:
+        places: (n, 3) float, RAS mm, the points where the match puts them.
+        normals: (n, 3) float, the directions in which their distances grow.
+        rms_mm: σ, of the residuals; at least 1 mm.
+        mesh: The head.
+    """
+    noise = max(rms_mm, LEAST_NOISE_MM)
+    center = places.mean(axis=0)
+    rows = np.concatenate([normals, np.cross(places - center, normals)], axis=1)
+    half = np.ptp(mesh.vertices, axis=0) / 2.0
+    prior = (noise / _LOOSEST_MM) ** 2 * np.diag([1.0] * 3 + [float(half.max()) ** 2] * 3)
+    covariance = noise**2 * np.linalg.inv(rows.T @ rows + prior)
+    found = []
+    for place, side in _SIDES.items():
+        arm = mesh.middle + half * side - center
+        moves = np.concatenate([np.eye(3), -_cross(arm)], axis=1)
+        values, vectors = np.linalg.eigh(moves @ covariance @ moves.T)
+        found.append((float(values[-1]), place, vectors[:, -1]))
+    variance, place, direction = max(found, key=lambda one: one[0])
+    x, y, z = (float(value) for value in direction)
+    return SurfaceSlide(NORMAL_95 * float(np.sqrt(variance)), place, (x, y, z))
+
+
+_SIDES = {
+    "front": (0.0, 1.0, 0.0),
+    "back": (0.0, -1.0, 0.0),
+    "left": (-1.0, 0.0, 0.0),
+    "right": (1.0, 0.0, 0.0),
+    "top": (0.0, 0.0, 1.0),
+}
+
+
+def find_match_warnings(
+    measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
+) -> tuple[RegistrationWarning, ...]:
+    """Return what looks wrong with a match.
+
+    The codes are `slides`, `several-minima`, `not-converged`, `few-inliers`, `far-points` and
+    `poor-fit`.
+
+    Args:
+        measures: Of the match.
+        residuals_mm: (n,) float, of all points.
+        is_inlier: (n,) bool, whether a point counts.
+    """
+    found = []
+    slide = measures.slide
+    if slide.distance_mm > SLIDE_LIMIT_MM:
+        found.append(
+            _warning(
+                "slides",
+                f"The match may slide: the {slide.place} of the head may be off by up to "
+                f"{slide.distance_mm:.1f} mm {slide.way}, however small the residual is; trace "
+                "places that face other ways, such as nose, brows, temples and cheeks.",
+            )
+        )
+    if measures.rivals or measures.best_starts < LEAST_BEST_SHARE * measures.starts:
+        found.append(
+            _warning(
+                "several-minima",
+                f"Only {measures.best_starts} of {measures.starts} starts ended in this match; "
+                f"others ended up to {measures.spread_mm:.1f} mm away at the head's center: "
+                "check the three landmarks, and trace more of the face.",
+            )
+        )
+    if not measures.converged:
+        found.append(_warning("not-converged", "The match had not settled when it was stopped."))
+    return (*found, *_misfits(measures, residuals_mm, is_inlier))
+
+
+def _misfits(
+    measures: MatchMeasures, residuals_mm: np.ndarray, is_inlier: np.ndarray
+) -> list[RegistrationWarning]:
+    found = []
+    off = np.flatnonzero(~is_inlier & (residuals_mm > FAR_POINT_MM))
+    names = tuple(str(row + 1) for row in off)
+    if measures.inlier_share < LEAST_INLIER_SHARE:
+        found.append(
+            _warning(
+                "few-inliers",
+                f"Only {measures.inlier_share:.0%} of the points lie on the surface; keep the tip "
+                "on the skin while you draw.",
+                names,
+            )
+        )
+    elif len(off):
+        those = f"{len(off)} points lie" if len(off) > 1 else f"Point {names[0]} lies"
+        found.append(
+            _warning(
+                "far-points",
+                f"{those} up to {residuals_mm[off].max():.1f} mm off the surface and "
+                f"{'do' if len(off) > 1 else 'does'} not count.",
+                names,
+            )
+        )
+    if measures.rms_mm > POOR_RMS_MM:
+        found.append(
+            _warning(
+                "poor-fit",
+                f"The trace does not fit this head (residual {measures.rms_mm:.1f} mm); check that "
+                "head and images are of the same person and that the landmarks were not exchanged.",
+            )
+        )
+    return found
+
+
+def _warning(code: str, message: str, points: tuple[str, ...] = ()) -> RegistrationWarning:
+    return RegistrationWarning(code, points, message)
+
+
+def _cross(vector: np.ndarray) -> np.ndarray:
+    """Return the matrix (3, 3) of the cross product with a vector."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -1,0 +1,275 @@
+"""Registration of a trace over the skin (`World`) to the head's surface (MRI RAS), in mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.random import default_rng
+
+from rastrainer import transforms
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.registration.surface_checks import (
+    MatchMeasures,
+    SurfaceSlide,
+    check_start,
+    check_surface,
+    check_trace,
+    find_match_warnings,
+    slide_of,
+    thinned,
+)
+from rastrainer.registration.surface_fit import (
+    SurfaceFit,
+    costs,
+    fit_to_surface,
+    gates,
+    plane_normals,
+    rotations,
+    transforms_of,
+)
+from rastrainer.registration.warnings import RegistrationWarning
+
+STARTS = 8
+START_SD_MM, START_SD_DEG = 5.0, 5.0
+"""Of the starts about the given one, on each axis: what three landmarks leave open."""
+COARSE_POINTS, COARSE_ITERATIONS = 60, 20
+COARSE_TOLERANCE_MM = 0.05
+TOLERANCE_MM = 2e-3
+HOPELESS = 4.0
+"""A minimum whose coarse cost is this many times the best one's is followed no further."""
+RIVAL_COST = 2.0
+OTHER_MINIMUM_MM = 2.0
+"""A minimum this far away at the head's center, and at most twice as costly, is a rival."""
+SAME_MINIMUM_MM = 0.5
+"""Fits that differ by less at the head's center and at the trace are one minimum."""
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceMatch:
+    """The fit of a trace to the surface of a head, and how far it can be trusted.
+
+    Attributes:
+        matrix: (4, 4) float, rigid, World→RAS.
+        trace_mm: (n, 3) float, World, all points that were given.
+        nearest_mm: (n, 3) float, RAS, the nearest points of the surface.
+        residual_vectors_mm: (n, 3) float, RAS, T(p) − nearest.
+        residuals_mm: (n,) float, their lengths.
+        normals: (n, 3) float, RAS, unit directions in which the residuals grow.
+        is_inlier: (n,) bool, whether a point counts; the others are too far off.
+        iterations: Steps to the best fit.
+        measures: How good the match is, as numbers; also as `rms_mm`, `inlier_share`, `converged`,
+            `starts`, `best_starts`, `spread_mm` and `slide` of the match itself.
+        warnings: What looks wrong, to be shown before the match is accepted.
+    """
+
+    matrix: np.ndarray
+    trace_mm: np.ndarray
+    nearest_mm: np.ndarray
+    residual_vectors_mm: np.ndarray
+    residuals_mm: np.ndarray
+    normals: np.ndarray
+    is_inlier: np.ndarray
+    iterations: int
+    measures: MatchMeasures
+    warnings: tuple[RegistrationWarning, ...]
+
+    @property
+    def rms_mm(self) -> float:
+        """Root mean square of the inliers' residuals. It does not predict the target error."""
+        return self.measures.rms_mm
+
+    @property
+    def inlier_share(self) -> float:
+        """Share of the points that count."""
+        return self.measures.inlier_share
+
+    @property
+    def converged(self) -> bool:
+        """Whether the best fit has stopped to move."""
+        return self.measures.converged
+
+    @property
+    def starts(self) -> int:
+        """Number of starts."""
+        return self.measures.starts
+
+    @property
+    def best_starts(self) -> int:
+        """How many of the starts ended in the best minimum."""
+        return self.measures.best_starts
+
+    @property
+    def spread_mm(self) -> float:
+        """Largest distance at the head's center between the best and where another start ended."""
+        return self.measures.spread_mm
+
+    @property
+    def slide(self) -> SurfaceSlide:
+        """The direction in which the trace determines the head least."""
+        return self.measures.slide
+
+
+def match_surface(
+    trace_mm: np.ndarray,
+    mesh: HeadMesh,
+    start: np.ndarray,
+    *,
+    seed: int = 0,
+    starts: int = STARTS,
+    trimmed: bool = True,
+) -> SurfaceMatch:
+    """Fit a trace over the skin to the surface of a head.
+
+    The first match with a mesh takes about half a second more, for its search tree.
+
+    Args:
+        trace_mm: (n, 3) float, World, 30 points or more, about one a millimeter of way; of more
+            than 500 points, every so many-th is used for the fit.
+        mesh: The head's closed surface, RAS.
+        start: (4, 4) float, rigid, World→RAS, as from three landmarks: within about 10 mm and 10°.
+        seed: Of the further starts about it.
+        starts: Number of starts, the given one included.
+        trimmed: Whether points far off are left out of the fit.
+
+    Raises:
+        InputError: the trace is too short, in one place, no set of finite points or far off the
+            head; the start is not rigid; the surface is open or no head in mm.
+    """
+    trace = check_trace(trace_mm)
+    check_surface(mesh)
+    skin = mesh.skin
+    start = check_start(start, trace, skin)
+    used = thinned(trace)
+    placed = _starts_about(start, used, starts, seed)
+    fit, hopeless, ended = _fit(used, skin, placed, trimmed)
+    return _match(trace, skin, fit, hopeless, ended, trimmed)
+
+
+def difference_mm(one: np.ndarray, other: np.ndarray, mesh: HeadMesh, points: np.ndarray) -> float:
+    """Return how far two matrices World→RAS lie apart at most, mm: at head's center and trace."""
+    places = np.vstack([points, transforms.apply(transforms.inverse(one), mesh.middle)])
+    apart = transforms.apply(one, places) - transforms.apply(other, places)
+    return float(np.linalg.norm(apart, axis=1).max())
+
+
+def _starts_about(start: np.ndarray, points: np.ndarray, count: int, seed: int) -> np.ndarray:
+    """Return the start and others about it, (count, 4, 4), turned about the trace's centroid."""
+    random = default_rng(seed)
+    shifts = random.normal(0.0, START_SD_MM, (count, 3))
+    turns = np.radians(random.normal(0.0, START_SD_DEG, (count, 3)))
+    shifts[0], turns[0] = 0.0, 0.0
+    center = transforms.apply(start, points.mean(axis=0))
+    turned = np.tile(np.eye(4), (count, 1, 1))
+    turned[:, :3, :3] = rotations(turns)
+    turned[:, :3, 3] = center + shifts - turned[:, :3, :3] @ center
+    return turned @ start
+
+
+def _fit(
+    points: np.ndarray, mesh: HeadMesh, starts: np.ndarray, trimmed: bool
+) -> tuple[SurfaceFit, np.ndarray, np.ndarray]:
+    """Return the fits, best first; the matrices of hopeless ones; how many starts ended in each.
+
+    All starts are first followed with some of the points; those that meet go on as one.
+    """
+    few = thinned(points, COARSE_POINTS)
+    coarse = fit_to_surface(
+        few, mesh, starts, COARSE_TOLERANCE_MM, trimmed=trimmed, max_iterations=COARSE_ITERATIONS
+    )
+    first, which = _minima(coarse, mesh, points, trimmed)
+    score = costs(coarse.distances_mm, _common_gate(coarse, trimmed))[first]
+    hopeful = first[score <= HOPELESS * score[0] + 1e-6]
+    fine = fit_to_surface(points, mesh, coarse.matrices[hopeful], TOLERANCE_MM, trimmed=trimmed)
+    fine = replace(fine, iterations=coarse.iterations[hopeful] + fine.iterations)
+    kept, again = _minima(fine, mesh, points, trimmed)
+    # The hopeless ones keep their places after the others.
+    number = np.concatenate([again, len(kept) + np.arange(len(first) - len(hopeful))])
+    others = coarse.matrices[first[len(hopeful) :]]
+    return fine.taken(kept), others, np.bincount(number[which], minlength=len(kept))
+
+
+def _minima(
+    fit: SurfaceFit, mesh: HeadMesh, points: np.ndarray, trimmed: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the best row of each minimum, and in which minimum each row is, (s,) int."""
+    order = costs(fit.distances_mm, _common_gate(fit, trimmed)).argsort(kind="stable")
+    first: list[int] = []
+    which = np.zeros(len(order), dtype=int)
+    for row in order:
+        apart = [
+            difference_mm(fit.matrices[other], fit.matrices[row], mesh, points) for other in first
+        ]
+        same = np.flatnonzero(np.array(apart) < SAME_MINIMUM_MM)
+        which[row] = same[0] if len(same) else len(first)
+        if not len(same):
+            first.append(int(row))
+    return np.array(first), which
+
+
+def _common_gate(fit: SurfaceFit, trimmed: bool) -> np.ndarray:
+    """Return one gate for all fits, (s,) float, so that their costs can be compared."""
+    return np.full(len(fit.matrices), gates(fit.distances_mm, trimmed).min())
+
+
+def _match(
+    trace: np.ndarray,
+    mesh: HeadMesh,
+    fit: SurfaceFit,
+    hopeless: np.ndarray,
+    ended: np.ndarray,
+    trimmed: bool,
+) -> SurfaceMatch:
+    matrix = fit.matrices[0]
+    gate = gates(fit.distances_mm[:1], trimmed)[0]
+    places = transforms.apply(matrix, trace)
+    nearest = mesh.tree.nearest(places)
+    of_all = SurfaceFit(
+        matrix[None],
+        nearest.distances[None],
+        nearest.positions[None],
+        nearest.triangles[None],
+        fit.converged[:1],
+        fit.iterations[:1],
+    )
+    normals = plane_normals(mesh, of_all, trace)[0]
+    is_inlier = nearest.distances <= gate
+    rms = float(np.sqrt(np.mean(nearest.distances[is_inlier] ** 2)))
+    measures = MatchMeasures(
+        rms_mm=rms,
+        inlier_share=float(is_inlier.mean()),
+        converged=bool(fit.converged[0]),
+        starts=int(ended.sum()),
+        best_starts=int(ended[0]),
+        spread_mm=float(_apart(matrix, np.vstack([fit.matrices, hopeless]), mesh).max()),
+        rivals=_rivals(fit, mesh, trimmed),
+        slide=slide_of(places[is_inlier], normals[is_inlier], rms, mesh),
+    )
+    for values in (matrix, nearest.positions, nearest.distances, normals, is_inlier):
+        values.flags.writeable = False
+    return SurfaceMatch(
+        matrix=matrix,
+        trace_mm=trace,
+        nearest_mm=nearest.positions,
+        residual_vectors_mm=places - nearest.positions,
+        residuals_mm=nearest.distances,
+        normals=normals,
+        is_inlier=is_inlier,
+        iterations=int(fit.iterations[0]),
+        measures=measures,
+        warnings=find_match_warnings(measures, nearest.distances, is_inlier),
+    )
+
+
+def _apart(matrix: np.ndarray, others: np.ndarray, mesh: HeadMesh) -> np.ndarray:
+    """Return how far other matrices (s, 4, 4) put the head's center from where one does, mm."""
+    center = transforms.apply(transforms.inverse(matrix), mesh.middle)
+    return np.linalg.norm(transforms_of(others, center[None])[:, 0] - mesh.middle, axis=1)
+
+
+def _rivals(fit: SurfaceFit, mesh: HeadMesh, trimmed: bool) -> int:
+    """Return how many minima lie elsewhere and fit hardly worse than the best one."""
+    score = costs(fit.distances_mm, _common_gate(fit, trimmed))
+    is_near = score <= RIVAL_COST * score[0] + 1e-9
+    elsewhere = _apart(fit.matrices[0], fit.matrices, mesh) > OTHER_MINIMUM_MM
+    return int(np.count_nonzero(is_near & elsewhere))

@@ -1,0 +1,52 @@
+"""The nearest points of many points on a mesh, against the search for a single point."""
+
+import numpy as np
+import pytest
+
+from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.head.triangle_tree import TriangleTree
+from Testing.domain.head.spheres import sphere_mesh
+from Testing.domain.registration.traces import colin27
+
+
+@pytest.fixture(scope="module")
+def head():
+    return colin27()
+
+
+@pytest.mark.parametrize("off_mm", [0.0, 0.5, 5.0, 60.0])
+def test_the_nearest_points_are_those_of_the_search_for_one(head, off_mm):
+    random = np.random.default_rng(1)
+    points = head.vertices[random.integers(0, len(head.vertices), 25)]
+    points = points + off_mm * random.normal(0.0, 1.0, points.shape)
+    found = head.tree.nearest(points)
+    singles = [nearest_on_mesh(head, point) for point in points]
+    assert np.allclose(found.distances, [one.distance for one in singles], atol=1e-9)
+    corners = head.vertices[head.triangles[found.triangles]]
+    assert (found.positions >= corners.min(axis=1) - 1e-9).all()
+    assert (found.positions <= corners.max(axis=1) + 1e-9).all()
+
+
+def test_a_wrong_guess_changes_nothing(head):
+    random = np.random.default_rng(2)
+    points = head.vertices[:40] + random.normal(0.0, 2.0, (40, 3))
+    guess = random.integers(0, len(head.triangles), 40)
+    found, guessed = head.tree.nearest(points), head.tree.nearest(points, guess)
+    assert np.array_equal(found.positions, guessed.positions)
+
+
+def test_one_triangle_and_triangles_without_area_have_nearest_points():
+    corners = np.array([[[0.0, 0, 0], [2, 0, 0], [0, 2, 0]], [[5.0, 0, 0], [6, 0, 0], [7, 0, 0]]])
+    one = TriangleTree(corners[:1]).nearest(np.array([[0.5, 0.5, 3.0], [-1.0, -1.0, 0.0]]))
+    assert np.allclose(one.positions, [[0.5, 0.5, 0.0], [0.0, 0.0, 0.0]])
+    line = TriangleTree(corners).nearest(np.array([[6.5, 0.0, 1.0]]))
+    assert np.allclose(line.positions, [[6.5, 0.0, 0.0]])
+    assert line.triangles[0] == 1
+
+
+def test_distances_to_a_sphere_are_known():
+    sphere = sphere_mesh(3)
+    directions = np.random.default_rng(3).normal(size=(50, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    found = sphere.tree.nearest(100.0 * directions)
+    assert np.allclose(found.distances, 10.0, atol=0.5)

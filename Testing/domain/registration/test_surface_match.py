@@ -1,0 +1,194 @@
+"""A trace over the skin is registered to the head's surface, and what it cannot tell is said."""
+
+import numpy as np
+import pytest
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.registration.surface_match import match_surface
+from Testing.domain.registration.traces import (
+    coarse_start,
+    colin27,
+    error_at_center,
+    head_pose,
+    places,
+    traced,
+)
+
+
+@pytest.fixture(scope="module")
+def head():
+    return colin27()
+
+
+@pytest.fixture
+def face(head):
+    """Make (trace, start, pose) of a face of 200 points."""
+
+    def make(seed, noise_mm=0.5, where="face"):
+        random = np.random.default_rng(seed)
+        pose = head_pose(random)
+        trace = traced(head, places(head, where), random, pose, noise_mm)
+        return trace, coarse_start(random, pose), pose
+
+    return make
+
+
+def codes(match):
+    return {warning.code for warning in match.warnings}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_without_noise_the_true_pose_is_found(head, face, seed):
+    trace, start, pose = face(seed, 0.0)
+    match = match_surface(trace, head, start, seed=seed)
+    assert error_at_center(match.matrix, pose, head) < 0.02
+    assert match.rms_mm < 0.01
+    assert match.inlier_share == 1.0
+    assert match.converged
+    assert match.best_starts >= match.starts // 2
+    assert transforms.is_rigid(match.matrix)
+    assert match.warnings == ()
+
+
+def test_with_noise_the_residual_is_the_noise_and_the_error_small(head, face):
+    trace, start, pose = face(4, 0.5)
+    match = match_surface(trace, head, start)
+    assert 0.4 < match.rms_mm < 0.6
+    assert error_at_center(match.matrix, pose, head) < 0.5
+    placed = transforms.apply(match.matrix, trace)
+    assert np.allclose(placed - match.nearest_mm, match.residual_vectors_mm)
+    assert np.allclose(np.linalg.norm(match.residual_vectors_mm, axis=1), match.residuals_mm)
+    assert np.allclose(np.linalg.norm(match.normals, axis=1), 1.0)
+
+
+def test_the_same_trace_gives_the_same_match(head, face):
+    trace, start, _ = face(5)
+    one, other = (match_surface(trace, head, start, seed=7) for _ in range(2))
+    assert np.array_equal(one.matrix, other.matrix)
+
+
+def test_points_far_off_do_not_count_and_are_named(head, face):
+    trace, start, pose = face(6)
+    center = transforms.apply(pose, head.middle)
+    trace[::10] += 0.15 * (trace[::10] - center)
+    match = match_surface(trace, head, start)
+    assert error_at_center(match.matrix, pose, head) < 0.5
+    assert not match.is_inlier[::10].any()
+    (warning,) = [one for one in match.warnings if one.code == "far-points"]
+    assert set(map(str, range(1, 201, 10))) == set(warning.points)
+
+
+def test_a_trace_half_in_the_air_is_named(head, face):
+    trace, start, _ = face(7)
+    trace[:70] += np.random.default_rng(7).uniform(8.0, 20.0, (70, 3))
+    assert "few-inliers" in codes(match_surface(trace, head, start))
+
+
+def test_a_trace_on_the_crown_alone_slides_however_small_its_residual(head, face):
+    trace, start, _ = face(8, 0.1, "crown")
+    match = match_surface(trace, head, start)
+    (warning,) = [one for one in match.warnings if one.code == "slides"]
+    assert match.rms_mm < 0.2
+    assert match.slide.distance_mm > 3.0
+    assert match.slide.way in warning.message
+    trace, start, _ = face(8, 0.1)
+    assert "slides" not in codes(match_surface(trace, head, start))
+
+
+def test_another_head_is_named(head, face):
+    trace, start, _ = face(9)
+    shape = (head.vertices - head.middle) * [0.85, 1.12, 0.95] + head.middle
+    assert "poor-fit" in codes(match_surface(trace, HeadMesh(shape, head.triangles), start))
+
+
+def test_of_a_long_trace_every_point_has_its_residual(head, face):
+    trace, start, _ = face(10)
+    match = match_surface(np.repeat(trace, 4, axis=0), head, start)
+    assert match.residuals_mm.shape == (800,)
+
+
+def test_the_flat_base_attracts_no_points(head, face):
+    trace, start, pose = face(11, 0.2)
+    below = (
+        head.middle - np.array([0.0, 0.0, 80.0]) + np.random.default_rng(1).normal(0, 3, (15, 3))
+    )
+    match = match_surface(np.vstack([trace, transforms.apply(pose, below)]), head, start)
+    assert not match.is_inlier[-15:].any()
+
+
+def head_corners(mesh):
+    return mesh.triangles.astype(np.int64).ravel()
+
+
+def vtk_match(trace, mesh, start):
+    """VTK's ICP: true nearest points of cells, all points count, point to point."""
+    surface, points, cells = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
+    points.SetData(numpy_to_vtk(mesh.vertices, deep=True))
+    offsets = np.arange(0, head_corners(mesh).size + 1, 3)
+    cells.SetData(
+        numpy_to_vtkIdTypeArray(offsets, deep=True),
+        numpy_to_vtkIdTypeArray(head_corners(mesh), deep=True),
+    )
+    surface.SetPoints(points)
+    surface.SetPolys(cells)
+    source, places_ = vtk.vtkPolyData(), vtk.vtkPoints()
+    places_.SetData(numpy_to_vtk(transforms.apply(start, trace), deep=True))
+    source.SetPoints(places_)
+    icp = vtk.vtkIterativeClosestPointTransform()
+    icp.SetSource(source)
+    icp.SetTarget(surface)
+    icp.GetLandmarkTransform().SetModeToRigidBody()
+    icp.SetMaximumNumberOfLandmarks(len(trace))
+    icp.SetMaximumNumberOfIterations(2000)
+    icp.SetCheckMeanDistance(True)
+    icp.SetMaximumMeanDistance(1e-9)
+    icp.Update()
+    matrix = np.array([[icp.GetMatrix().GetElement(i, j) for j in range(4)] for i in range(4)])
+    return matrix @ start
+
+
+def test_vtk_finds_the_same_minimum_and_none_better(head, face):
+    trace, start, _ = face(12, 0.5)
+    match = match_surface(trace, head, start, trimmed=False)
+    theirs = vtk_match(trace, head.skin, start)
+    cost = np.sum(head.skin.tree.nearest(transforms.apply(theirs, trace)).distances ** 2)
+    assert np.sum(match.residuals_mm**2) <= cost + 1e-3
+    apart = transforms.apply(theirs, trace) - transforms.apply(match.matrix, trace)
+    assert np.linalg.norm(apart, axis=1).max() < 0.05
+
+
+@pytest.mark.parametrize(
+    ("spoil", "sentence"),
+    [
+        (lambda t, _: t[:29], "needs 30 to"),
+        (lambda t, _: np.tile(t, (600, 1)), "needs 30 to"),
+        (lambda t, _: t[0] + np.random.default_rng(0).normal(0, 2, (60, 3)), "in one place"),
+        (lambda t, _: np.where(np.arange(600).reshape(200, 3) == 7, np.nan, t), "Point 3 of"),
+        (lambda t, _: t[:, :2], "three coordinates"),
+        (lambda _t, _: [["a"] * 3] * 40, "must be numbers"),
+        (lambda t, _: t + 400.0, "mm off the head"),
+    ],
+    ids=["few", "many", "one place", "not finite", "flat", "words", "far off"],
+)
+def test_an_unfit_trace_gets_a_sentence(head, face, spoil, sentence):
+    trace, start, pose = face(13)
+    with pytest.raises(InputError, match=sentence):
+        match_surface(spoil(trace, pose), head, start)
+
+
+def test_an_open_surface_and_one_in_meters_get_a_sentence(head, face):
+    trace, start, _ = face(14)
+    with pytest.raises(InputError, match="holes"):
+        match_surface(trace, HeadMesh(head.vertices, head.triangles[1:]), start)
+    with pytest.raises(InputError, match="in millimeters"):
+        match_surface(trace, HeadMesh(head.vertices / 1000.0, head.triangles), start)
+
+
+def test_a_start_that_is_not_rigid_gets_a_sentence(head, face):
+    trace, start, _ = face(15)
+    with pytest.raises(InputError, match="rigid 4×4"):
+        match_surface(trace, head, 2.0 * start)
