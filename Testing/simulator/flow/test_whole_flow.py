@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.trial.wording import say
@@ -80,6 +81,7 @@ def train_and_look_at_the_result(trainee, outside, monkeypatch):
     return training.trial_id
 
 
+@pytest.mark.soak
 def test_the_whole_flow_goes_by_keys_alone(trainee, outside, monkeypatch):
     go_to_the_experiment_menu(trainee)
     trainee.focus("trainee")
