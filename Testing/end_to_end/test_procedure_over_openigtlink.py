@@ -12,13 +12,14 @@ from rastrainer import transforms
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import load_scenario
+from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.touch_registration import register_touches, touches_of
+from rastrainer.trial.touch_registration import register_trial
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.end_to_end.onto_skin import lower_onto_skin
 from Testing.end_to_end.simulator_process import SimulatorProcess
-from Testing.end_to_end.test_trial_over_openigtlink import SPEED, TASK, Player, play
+from Testing.end_to_end.test_trial_over_openigtlink import SPEED, Player, play
 from Testing.simulator.planned_procedures import write_scenario
 
 STAND_OFF_MM = 25.0
@@ -109,7 +110,7 @@ def perform(surgeon: Surgeon) -> dict:
     trial_id = seen["StartTask"]["trialId"]
     surgeon.kill_and_resume()
     told = surgeon.player.do("GetTrial", trialId=trial_id)
-    registered = register_touches(touches_of(told), scenario, TASK)
+    registered = register_trial(GivenPoints.of_answer(told), scenario)
     seen["UseRegistration"] = surgeon.player.do("UseRegistration", **registered.arguments(trial_id))
     head_to_world = transforms.inverse(registered.rigid.matrix)
     check = transforms.apply(head_to_world, scenario.procedures[0].checkpoints[0].position)

@@ -13,8 +13,9 @@ from rastrainer.procedure.meshes import read_procedure_meshes
 from rastrainer.procedure.plan import ProcedureTrajectory
 from rastrainer.protocol import CommandName, DeviceName, Phase
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.touch_registration import register_touches, touches_of
+from rastrainer.trial.touch_registration import register_trial
 from rastrainer_simulator.virtual.scripted_trial import TrialStoppedError, send
 
 STAND_OFF_MM = 30.0
@@ -44,7 +45,7 @@ def play_procedure(
         LinkError: the connection was lost.
     """
     told = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
-    registered = register_touches(touches_of(told), scenario, told["task"])
+    registered = register_trial(GivenPoints.of_answer(told), scenario)
     send(client, CommandName.USE_REGISTRATION, registered.arguments(trial_id))
     send(client, CommandName.ACCEPT_REGISTRATION, {})
     state = _wait(client, lambda state: state["phase"] == Phase.ALIGNING.value)

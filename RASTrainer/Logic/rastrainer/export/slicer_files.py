@@ -21,7 +21,8 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     """Write a trial's files and return their paths.
 
     `touched-world.mrk.json` has the touches in the robot's frame, `touched-ras.mrk.json` the same
-    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals. Each
+    after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals;
+    `traced-world.mrk.json` and `traced-ras.mrk.json` have the points of a trace. Each
     trajectory of a procedure, counted from 1, has the line `trajectory-1-planned.mrk.json` and,
     where the truth is known, `trajectory-1-shown.mrk.json`, where the plan as it was shown truly
     lay in the head, and `trajectory-1-placed.mrk.json` from the guide's tip to the instrument's,
@@ -35,7 +36,7 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
     world = folder / "touched-world.mrk.json"
     write_markups(world, PointList(record.labels, record.positions_mm))
     if rigid is None:
-        return [world, *_write_lines(trial, folder)]
+        return [world, *_write_trace(trial, folder, None), *_write_lines(trial, folder)]
     matrix = np.reshape(rigid.matrix, (4, 4))
     ras, transform, table = (
         folder / name for name in ("touched-ras.mrk.json", "WorldToRas.tfm", "residuals.csv")
@@ -47,7 +48,24 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
         [label, repr(value)] for label, value in zip(rigid.labels, rigid.residuals_mm, strict=True)
     ]
     write_text(table, csv_text(["fiducial", "residual_mm"], rows))
-    return [world, ras, transform, table, *_write_lines(trial, folder)]
+    traced = _write_trace(trial, folder, matrix)
+    return [world, ras, transform, table, *traced, *_write_lines(trial, folder)]
+
+
+def _write_trace(trial: StoredTrial, folder: Path, matrix: np.ndarray | None) -> list[Path]:
+    """Write the points of the trial's trace, if it has one; World→RAS is (4, 4) float, or None."""
+    points = trial.record.trace_mm
+    if not len(points):
+        return []
+    frames = {"world": points}
+    if matrix is not None:
+        frames["ras"] = transforms.apply(matrix, points)
+    written = []
+    for frame, places in frames.items():
+        path = folder / f"traced-{frame}.mrk.json"
+        write_markups(path, PointList((), places))
+        written.append(path)
+    return written
 
 
 def _write_lines(trial: StoredTrial, folder: Path) -> list[Path]:

@@ -20,7 +20,7 @@ from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
 
 FIRST_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "started_utc"),
-    *("scenario", "score_version"),
+    *("scenario", "score_version", "method"),
 )
 TOUCH_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "label"),
@@ -93,6 +93,7 @@ def trials_csv(trials: Sequence[TrialRow]) -> str:
             trial.started_utc,
             plain_cell(trial.scenario),
             trial.score_version,
+            trial.method,
             *(_number(trial.values.get(name)) for name in names),
         ]
         for trial in trials

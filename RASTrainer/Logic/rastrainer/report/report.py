@@ -13,6 +13,7 @@ from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import counted
 from rastrainer.report.elements.comparisons import ModeComparison, compare_modes
 from rastrainer.report.elements.markup import bullets, page, paragraph, section
+from rastrainer.report.elements.registration_methods import methods_note, with_one_method
 from rastrainer.report.elements.scores import versions_note, with_ctps, with_one_score_version
 from rastrainer.report.sections.calibration import calibration
 from rastrainer.report.sections.learning import learning
@@ -67,7 +68,8 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     """
     # Before anything that catches `InputError`.
     scipy_module("stats")
-    data = with_one_score_version(with_ctps(data))
+    by_method = methods_note(data)
+    data = with_one_score_version(with_ctps(with_one_method(data)))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
     described = [compare_modes(data, MOTION_OUTCOMES, *pair) for pair in pairs]
@@ -80,7 +82,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         f"{modes} · made {made}"
     )
     sections = [
-        _summary(everything, data.gap, versions_note(data)),
+        _summary(everything, data.gap, by_method, versions_note(data)),
         started_trials(data),
         published_tables(data),
         mode_comparison(data),
@@ -105,7 +107,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     return page(data.title, subtitle, sections, footer)
 
 
-def _summary(comparisons: list[ModeComparison], gap: str, versions: str) -> str:
+def _summary(comparisons: list[ModeComparison], gap: str, *left_out: str) -> str:
     sentences = findings(comparisons)
     n = max((len(comparison.trainees) for comparison in comparisons), default=0)
     parts = [bullets(sentences)] if sentences else []
@@ -119,8 +121,7 @@ def _summary(comparisons: list[ModeComparison], gap: str, versions: str) -> str:
         parts.append(paragraph(caveat, "warning"))
     if not parts:
         parts = [paragraph("No trainee did two modes; the study is described, nothing is tested.")]
-    if versions:
-        parts.append(paragraph(versions, "warning"))
+    parts += [paragraph(note, "warning") for note in left_out if note]
     if gap:
         parts.insert(0, paragraph(f"{gap} What follows is about these trials alone.", "warning"))
     return section("In short", *parts)

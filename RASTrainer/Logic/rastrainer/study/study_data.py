@@ -10,6 +10,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration.fits import RIGID
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.study import Study
@@ -38,6 +39,7 @@ class TrialRow:
         acceptable: Whether it was within all limits of its score; False without a score.
         completed_utc: Time of the last kept touch, ISO 8601; "" if unknown.
         procedure: Outcome of its procedure; None of touches alone, or if it is not scored.
+        method: By which it was registered, a `RegistrationMethod`.
     """
 
     trainee: str
@@ -52,6 +54,7 @@ class TrialRow:
     acceptable: bool = False
     completed_utc: str = ""
     procedure: StoredProcedure | None = None
+    method: str = RegistrationMethod.FIDUCIALS.value
 
 
 @dataclass(frozen=True)
@@ -253,6 +256,7 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         acceptable=score is not None and score.acceptable,
         completed_utc=record.completed_utc,
         procedure=stored.procedure,
+        method=record.method.value,
     )
 
 

@@ -10,19 +10,26 @@ import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.registration.fits import RIGID
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial import ctps
 from rastrainer.trial.advice import advise
+from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import region_of, score_reference
-from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, TrialScore, score_trial
-from rastrainer.trial.touch_registration import normals_at, register_touches
+from rastrainer.trial.scoring import (
+    ScoreMeasures,
+    ScoreReference,
+    TrialScore,
+    score_trial,
+    score_version,
+)
+from rastrainer.trial.touch_registration import normals_at, register_trial
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
 from rastrainer.trial.trueness import CommonBias, common_bias, true_touch_errors
 
@@ -122,8 +129,8 @@ class TrialAnalysis:
     ) -> TrialAnalysis:
         """Return the analysis with the truth and its score.
 
-        The score uses the true error of the rigid registration of all touches, and their common
-        bias.
+        The score uses the true error of the rigid registration and, of a trial by fiducials, the
+        common bias of its touches. A landmark has no exact place, and a trace no bias.
 
         Args:
             scenario: of the trial.
@@ -140,10 +147,16 @@ class TrialAnalysis:
         tre_mm = region_of(scenario).tre_mm(self.rigid.matrix, truth.matrix)
         bias = self._common_bias(scenario, truth)
         score = score_trial(
-            ScoreMeasures.of(record.completion_time_s, tre_mm, bias.length_mm, record.motion),
-            score_reference(scenario, record.task, references),
+            ScoreMeasures.of(
+                record.completion_time_s,
+                tre_mm,
+                None if bias is None else bias.length_mm,
+                record.motion,
+            ),
+            score_reference(scenario, record.task, references, record.method),
+            score_version(record.method),
         )
-        normals = normals_at(scenario, record.task, self.rigid.labels)
+        normals = normals_at(scenario, record.task, self.rigid.labels, record.method)
         feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory, bias=bias)
         procedure = procedure_outcome(record, scenario, truth.matrix, references)
         return replace(self, truth=truth, score=score, feedback=feedback, procedure=procedure)
@@ -165,10 +178,14 @@ class TrialAnalysis:
             feedback=replace(self.feedback, score=score, advice=advice),
         )
 
-    def _common_bias(self, scenario: Scenario, truth: RevealedTruth) -> CommonBias:
-        rigid = self.rigid
+    def _common_bias(self, scenario: Scenario, truth: RevealedTruth) -> CommonBias | None:
+        """Return the common bias of touched fiducials; None of a trial by another method."""
+        rigid, record = self.rigid, self.record
         errors = true_touch_errors(rigid.moving_mm, truth.matrix, rigid.fixed_mm)
-        return common_bias(errors, normals_at(scenario, self.record.task, rigid.labels))
+        if record.method is not RegistrationMethod.FIDUCIALS:
+            return None
+        normals = normals_at(scenario, record.task, rigid.labels, record.method)
+        return common_bias(errors, normals)
 
 
 def analyze_trial(
@@ -180,7 +197,7 @@ def analyze_trial(
     truth: RevealedTruth | None = None,
     pause: Callable[[], None] = lambda: None,
 ) -> TrialAnalysis:
-    """Register a trial's touches to its task's fiducials, paired by label; score it by its truth.
+    """Register a trial by its method, its touches paired by label; score it by its truth.
 
     Args:
         record: the trial.
@@ -196,10 +213,9 @@ def analyze_trial(
         InputError: the scenario has no such task or labels, or the points cannot be registered, or
             the trial's contacts were not measured.
     """
-    touches = PointList(record.labels, record.positions_mm)
-    registered = register_touches(touches, scenario, record.task, pause)
+    registered = register_trial(GivenPoints.of_record(record), scenario, pause)
     rigid = registered.rigid
-    normals = normals_at(scenario, record.task, rigid.labels)
+    normals = normals_at(scenario, record.task, rigid.labels, record.method)
     analysis = TrialAnalysis(
         record=record,
         target_name=scenario.target_name,
@@ -207,7 +223,11 @@ def analyze_trial(
         target_errors=registered.target_errors,
         truth=None,
         score=None,
-        published_score=published_score(record, rigid.fre_mm, cohort),
+        published_score=(
+            published_score(record, rigid.fre_mm, cohort)
+            if record.method is RegistrationMethod.FIDUCIALS
+            else None
+        ),
         feedback=trial_feedback(None, rigid, normals, record.motion, trajectory),
     )
     return analysis if truth is None else analysis.scored(scenario, truth, references, trajectory)

@@ -85,7 +85,7 @@ def procedure_outcome(
             f"the scenario {scenario.name} here."
         )
     analysis = analyze_procedure(done, procedure, meshes, head_to_world)
-    touching = score_reference(scenario, record.task, references).time_s
+    touching = score_reference(scenario, record.task, references, record.method).time_s
     reference_s = reference_duration_s(touching, procedure)
     score = score_procedure(ProcedureMeasures.of(analysis), reference_s)
     return ProcedureOutcome(analysis, score)

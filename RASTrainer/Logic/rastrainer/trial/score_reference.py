@@ -28,8 +28,11 @@ from rastrainer.head.surface_queries import nearest_vertices, outward_normals
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import motions
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.target_error import true_errors
+from rastrainer.scenario.method_task import TRACED_METHODS, task_by_method
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.scenario.tasks import Task
 from rastrainer.trial.scoring import ScoreReference
 
 MAX_RESULTS = 64
@@ -43,8 +46,17 @@ def fiducial_normals(scenario: Scenario, task_name: str) -> np.ndarray:
     Raises:
         InputError: there is no such task, or the head's mesh is unusable.
     """
-    fiducials = np.asarray(scenario.task(task_name).fiducials, dtype=float)
-    return computed_once(scenario, _normals, tuple(map(tuple, fiducials.tolist())))
+    return point_normals(scenario, scenario.task(task_name))
+
+
+def point_normals(scenario: Scenario, task: Task) -> np.ndarray:
+    """Return the skin's outward unit normals at a task's points, (n, 3) float, RAS; read-only.
+
+    Raises:
+        InputError: the head's mesh is unusable.
+    """
+    points = np.asarray(task.fiducials, dtype=float)
+    return computed_once(scenario, _normals, tuple(map(tuple, points.tolist())))
 
 
 def computed_once(
@@ -180,25 +192,42 @@ REFERENCE_FLE_MM = PUBLISHED_RMSE_MM / np.sqrt(1 - 2 / FIDUCIAL_COUNT)
 """The FLE that explains it: E[FRE²] = (1 − 2/N) E[FLE²]."""
 
 
+REFERENCE_TRACE_MM, TRACE_SPEED_MM_S = 200.0, 15.0
+"""The way over the skin that a trace is expected to take, and how fast: our own convention."""
+
+
 def score_reference(
-    scenario: Scenario, task_name: str, of_protocol: Mapping[str, ScoreReference] | None = None
+    scenario: Scenario,
+    task_name: str,
+    of_protocol: Mapping[str, ScoreReference] | None = None,
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS,
 ) -> ScoreReference:
     """Return the reference of a task.
+
+    Whatever the method is, the error is measured against that of the task's fiducials: what an
+    operation needs does not depend on how its head was registered. The reference time is that of
+    the points which the method has touched, and of a trace of `REFERENCE_TRACE_MM`. References of a
+    protocol hold for fiducials.
 
     Args:
         scenario: with the task.
         task_name: of the task.
         of_protocol: references by task from a study's protocol, which take precedence.
+        method: by which the trial is registered.
 
     Raises:
         InputError: there is no such task, or the head's mesh is unusable.
     """
-    if of_protocol and task_name in of_protocol:
+    is_by_fiducials = method is RegistrationMethod.FIDUCIALS
+    if of_protocol and task_name in of_protocol and is_by_fiducials:
         return of_protocol[task_name]
     fiducials = np.asarray(scenario.task(task_name).fiducials, dtype=float)
     normals = fiducial_normals(scenario, task_name)
+    touched = task_by_method(scenario, task_name, method)
+    trace_mm = REFERENCE_TRACE_MM if method in TRACED_METHODS else 0.0
+    touching_s = _time_s(touched.fiducials, point_normals(scenario, touched))
     return ScoreReference(
-        time_s=_time_s(fiducials, normals),
+        time_s=touching_s + trace_mm / TRACE_SPEED_MM_S,
         tre_mm=float(REFERENCE_FLE_MM * region_of(scenario).tre_per_fle(fiducials, normals)),
     )
 

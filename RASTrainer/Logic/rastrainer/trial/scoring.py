@@ -24,6 +24,7 @@ from typing import Any, NamedTuple
 
 from rastrainer.desirability import TIME_FLOOR, falling, of_time
 from rastrainer.errors import InputError
+from rastrainer.registration.methods import RegistrationMethod
 
 SCORE_VERSION = "3"
 """Changes with any change of a formula or a reference, so that scores stay comparable."""
@@ -83,7 +84,8 @@ class ScoreMeasures:
         contact_time_s: of unintended contact; None in version 1, as the next two.
         contact_path_mm: of the tip during that.
         pressing_depth_mm: RMS over the fiducials of how deep the tool was pressed in.
-        common_bias_mm: length of the bias that all touches share; None in versions 1 and 2.
+        common_bias_mm: length of the bias that all touches share; None in versions 1 and 2, and of
+            a trial without fiducials.
     """
 
     completion_time_s: float
@@ -98,7 +100,7 @@ class ScoreMeasures:
         cls,
         completion_time_s: float,
         tre_mm: float,
-        common_bias_mm: float,
+        common_bias_mm: float | None,
         motion: Mapping[str, float],
     ) -> ScoreMeasures:
         """Return the measures of a trial with these motion metrics.
@@ -131,7 +133,7 @@ class ScoreMeasures:
             (self.contact_time_s, "time of unintended contact must be a number of seconds"),
             (self.contact_path_mm, "path of unintended contact must be a number of mm"),
             (self.pressing_depth_mm, "pressing depth must be a number of mm"),
-            (self.common_bias_mm, "common bias of the touches must be a number of mm"),
+            (self.common_bias_mm or 0.0, "common bias of the touches must be a number of mm"),
         ):
             if value is None or not 0 <= value <= MAX_MEASURE:
                 raise InputError(f"The {what}, 0 or above.")
@@ -154,7 +156,7 @@ class TrialScore:
         safety_desirability: from 0 to 1 (no unintended contact, nothing pressed in); None in
             version 1.
         is_accurate: whether the target error is within the limit.
-        is_unbiased: whether the common bias is; None in versions 1 and 2.
+        is_unbiased: whether the common bias is; None where it was not scored.
         is_safe: whether contact and pressing are; None in version 1.
         measures: what was scored.
         reference: what it was measured against.
@@ -222,36 +224,48 @@ class TrialScore:
         )
 
 
+def score_version(method: RegistrationMethod) -> str:
+    """Return the version of the score of a trial by a method.
+
+    Methods have references of their own and, but for fiducials, no common bias: their scores are
+    compared with those of the same method alone.
+    """
+    is_by_fiducials = method is RegistrationMethod.FIDUCIALS
+    return SCORE_VERSION if is_by_fiducials else f"{SCORE_VERSION}-{method.value}"
+
+
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
     """Return whether a trial reaches the mark and is within all limits."""
     return acceptable and score >= pass_mark
 
 
-def score_trial(measures: ScoreMeasures, reference: ScoreReference) -> TrialScore:
+def score_trial(
+    measures: ScoreMeasures, reference: ScoreReference, version: str = SCORE_VERSION
+) -> TrialScore:
     """Return the score of a trial.
 
     Args:
-        measures: what is scored of it.
+        measures: what is scored of it; without a common bias, the error alone is its accuracy.
         reference: of its task in its scenario.
+        version: by `score_version`.
 
     Raises:
         InputError: a measure is no such number.
     """
     safety_measures = measures.check()
     bias_mm = measures.common_bias_mm
-    assert bias_mm is not None
     time = of_time(measures.completion_time_s, reference.time_s)
     accuracy = _accuracy(measures.tre_mm, bias_mm, reference)
     safety = _safety(*safety_measures)
     is_accurate = measures.tre_mm <= reference.limit_mm
-    is_unbiased = bias_mm <= COMMON_BIAS_LIMIT_MM
+    is_unbiased = None if bias_mm is None else bias_mm <= COMMON_BIAS_LIMIT_MM
     is_safe = (
         safety_measures.contact_time_s <= CONTACT_LIMIT_S
         and safety_measures.contact_path_mm <= CONTACT_PATH_LIMIT_MM
         and safety_measures.pressing_depth_mm <= DEPTH_LIMIT_MM
     )
     product = time * accuracy * safety
-    if not (is_accurate and is_unbiased and is_safe):
+    if not (is_accurate and is_unbiased is not False and is_safe):
         product *= _worst_acceptable(reference)
     return TrialScore(
         score=100 * math.sqrt(product),
@@ -263,11 +277,12 @@ def score_trial(measures: ScoreMeasures, reference: ScoreReference) -> TrialScor
         is_safe=is_safe,
         measures=measures,
         reference=reference,
+        version=version,
     )
 
 
-def _accuracy(tre_mm: float, bias_mm: float, reference: ScoreReference) -> float:
-    trueness = falling(bias_mm, HALF_COMMON_BIAS_MM, COMMON_BIAS_POWER)
+def _accuracy(tre_mm: float, bias_mm: float | None, reference: ScoreReference) -> float:
+    trueness = falling(bias_mm or 0.0, HALF_COMMON_BIAS_MM, COMMON_BIAS_POWER)
     return falling(tre_mm, reference.tre_mm) * trueness
 
 

@@ -1,29 +1,45 @@
-"""The registration of a trial's touches, while the trial is open or finished: one computation."""
+"""The registration of a trial, while it is open or finished: one computation for all methods.
+
+A trace is matched to the surface of the scenario's head, from where the landmarks put it. What
+counts of such a registration is its matrix: its residuals are those of the landmarks, which it does
+not make least, and its FRE is the root mean square of the trace's inliers to the surface.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from rastrainer import json_checks
-from rastrainer.errors import InputError
+from rastrainer import transforms
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.json_checks import Argument, checked_keys
-from rastrainer.protocol import FIDUCIAL_COUNT, WORLD_LIMIT_MM
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.localization_error import error_along_surface
+from rastrainer.registration.localization_error import (
+    LocalizationError,
+    error_along_surface,
+    isotropic_error,
+)
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.registration import Registration, register_all_kinds
+from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error
+from rastrainer.scenario.method_task import TRACED_METHODS, task_by_method
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.score_reference import fiducial_normals
+from rastrainer.trial.given_points import GivenPoints
+from rastrainer.trial.score_reference import point_normals
+
+LEAST_ALONG_SURFACE = 6
+"""Touches; of fewer, the residuals do not tell the error along the skin from that across it."""
 
 
 @dataclass(frozen=True)
 class TouchRegistration:
-    """Possible registrations of touches, and their expected errors.
+    """Possible registrations of a trial, and their expected errors.
 
     Attributes:
         fits: by kind; rigid is always included.
@@ -48,64 +64,78 @@ class TouchRegistration:
         }
 
 
-def register_touches(
-    touches: PointList,
-    scenario: Scenario,
-    task_name: str,
-    pause: Callable[[], None] = lambda: None,
+def register_trial(
+    given: GivenPoints, scenario: Scenario, pause: Callable[[], None] = lambda: None
 ) -> TouchRegistration:
-    """Register touches (World, mm) to the fiducials of a task, paired by label.
+    """Register what was touched and traced in a trial, by the trial's method.
 
     Args:
-        touches: labeled.
-        scenario: has the task.
-        task_name: its name.
+        given: the touches are paired by label with the fiducials of the task, or the landmarks.
+        scenario: of the trial.
         pause: called between the steps, every 10 ms or so; a worker may wait in it.
 
     Raises:
         InputError: the scenario has no such task or labels, or the points cannot be registered.
     """
-    task = scenario.task(task_name)
-    labels, moving, fixed = pair(touches, PointList(task.labels, task.fiducials))
+    task = task_by_method(scenario, given.task, given.method)
+    labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
     fits = register_all_kinds(moving, fixed, labels)
-    normals = normals_at(scenario, task_name, labels)
+    normals = normals_at(scenario, given.task, labels, given.method)
+    if given.method in TRACED_METHODS:
+        # A scaled or sheared head would fit any trace.
+        fits = {RIGID: fits[RIGID]}
     errors = {}
     for kind, fit in fits.items():
         pause()
-        localization = error_along_surface(fit, normals)
+        localization = _localization_error(fit, normals)
         pause()
         errors[kind] = target_error(fit, scenario.target_position, localization)
     pause()
-    return TouchRegistration(fits, errors)
+    if given.method not in TRACED_METHODS:
+        return TouchRegistration(fits, errors)
+    match = match_surface(given.trace_mm, _head(scenario), fits[RIGID].matrix)
+    pause()
+    return TouchRegistration({RIGID: _matched(fits[RIGID], match)}, errors)
 
 
-def touches_of(answer: Mapping[str, Any]) -> PointList:
-    """Return the touches (World, mm) in an answer to GetTrial about an open trial.
+def _localization_error(fit: Registration, normals: np.ndarray) -> LocalizationError:
+    """Return how the points are localized: few do not tell along the skin from across it."""
+    if len(fit.labels) < LEAST_ALONG_SURFACE:
+        return isotropic_error(fit)
+    return error_along_surface(fit, normals)
 
-    Raises:
-        InputError: they are missing or invalid.
-    """
-    touches = answer.get("touches")
-    if not isinstance(touches, list) or len(touches) != FIDUCIAL_COUNT:
-        raise InputError(
-            f"The simulator's answer to GetTrial must hold touches, a list of {FIDUCIAL_COUNT}."
-        )
-    points = [checked_keys(touch, _TOUCH_KEYS, "Each touch of the trial") for touch in touches]
-    return PointList(
-        tuple(point["label"] for point in points), np.array([p["positionMm"] for p in points])
+
+def _matched(coarse: Registration, match: SurfaceMatch) -> Registration:
+    """Return the registration of landmarks with the matrix that fits the trace to the surface."""
+    vectors = transforms.apply(match.matrix, coarse.moving_mm) - coarse.fixed_mm
+    return replace(
+        coarse,
+        matrix=match.matrix,
+        fre_mm=match.rms_mm,
+        residual_vectors_mm=vectors,
+        residuals_mm=np.linalg.norm(vectors, axis=1),
+        warnings=(*coarse.warnings, *match.warnings),
     )
 
 
-def normals_at(scenario: Scenario, task_name: str, labels: Sequence[str]) -> np.ndarray:
-    """Return the outward normals of the skin at fiducials of a task, (n, 3) float, RAS.
+def _head(scenario: Scenario) -> HeadMesh:
+    """Return the scenario's head, which is read once while its file is unchanged."""
+    path = scenario.head_mesh
+    return _read_head(path, path.stat().st_mtime_ns if path.is_file() else 0)
 
-    `labels` are the n fiducials'.
+
+@lru_cache(maxsize=1)
+def _read_head(path: Path, _changed: int) -> HeadMesh:
+    return read_head_mesh(path)
+
+
+def normals_at(
+    scenario: Scenario, task_name: str, labels: Sequence[str], method: RegistrationMethod
+) -> np.ndarray:
+    """Return the outward normals of the skin at points of a task by a method, (n, 3) float, RAS.
+
+    `labels` are those of the n points.
     """
-    task = scenario.task(task_name)
-    return fiducial_normals(scenario, task_name)[[task.labels.index(label) for label in labels]]
-
-
-_TOUCH_KEYS = {
-    "label": Argument(json_checks.text()),
-    "positionMm": Argument(json_checks.numbers(3, WORLD_LIMIT_MM, "mm")),
-}
+    task = task_by_method(scenario, task_name, method)
+    rows = [task.labels.index(label) for label in labels]
+    return point_normals(scenario, task)[rows]

@@ -20,10 +20,11 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.trial_review import scored_with_journal, with_progress_among
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
+from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.submission import registration_arguments, score_arguments
-from rastrainer.trial.touch_registration import register_touches, touches_of
+from rastrainer.trial.touch_registration import register_trial
 from rastrainer.trial.trainee_progress import PastTrial
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.commands import Submit
@@ -147,7 +148,7 @@ def register_open_trial(ask: Ask, trial_id: str, scenario: Scenario) -> None:
         InputError: they cannot be registered, or another registration is in use.
     """
     told = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
-    registered = register_touches(touches_of(told), scenario, told["task"], pause=_rest)
+    registered = register_trial(GivenPoints.of_answer(told), scenario, pause=_rest)
     _asked(ask, CommandName.USE_REGISTRATION, registered.arguments(trial_id))
 
 

@@ -18,8 +18,9 @@ from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProced
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
+from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
-from rastrainer.trial.touch_registration import TouchRegistration, touches_of
+from rastrainer.trial.touch_registration import TouchRegistration
 
 FEED_MM, FEED_MM_S = 1.0, 2.0
 """How far one press of a button feeds drill or instrument, and how fast."""
@@ -220,8 +221,8 @@ class ProcedureLogic:
 
     def _registered(self, told: Mapping[str, Any], scenarioName: str) -> TouchRegistration:
         scenario = self._findScenario(scenarioName)
-        progress, task = self._work.checkWanted, str(told.get("task", ""))
-        return self._run(REGISTER_OPEN, progress, touches_of(told), scenario, task)
+        progress = self._work.checkWanted
+        return self._run(REGISTER_OPEN, progress, GivenPoints.of_answer(told), scenario)
 
     def _ask(self, name: str, arguments: Mapping[str, Any], take: Callable[[Reply], None]) -> None:
         def takeAnswer(reply: Reply) -> None:

@@ -227,7 +227,7 @@ class ReplayLogic:
         if isThere and not isReplayOf(self._scene, record.trial_id):
             raise InputError(_("The scene was changed before the trial could be shown."))
         showScenario(self._scene, scenario)
-        showTask(self._scene, scenario, record.task)
+        showTask(self._scene, scenario, record.task, record.method)
         showTouches(self._scene, record)
         self.shown.emit()
         self.procedureShown.emit(outcome)

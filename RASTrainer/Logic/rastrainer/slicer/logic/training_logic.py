@@ -11,6 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.json_checks import is_number
 from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, TRIAL_RUN, CommandName, Phase
+from rastrainer.scenario.method_task import method_of
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
@@ -223,11 +224,12 @@ class TrainingLogic:
         try:
             scenario = self._findScenario(str(reply.data.get("scenario", "")))
             showScenario(self._scene, scenario)
-            fixed = showTask(self._scene, scenario, str(self._state.get("task", "")))
+            method = method_of(self._state.get("method"))
+            fixed = showTask(self._scene, scenario, str(self._state.get("task", "")), method)
         except InputError as error:
             self.answered.emit(str(error))
             return
-        noteTouchedTask(self._scene, scenario.name, str(self._state.get("task", "")))
+        noteTouchedTask(self._scene, scenario.name, str(self._state.get("task", "")), method)
         showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
         self.sceneShown.emit(scenario)
         self.changed.emit()

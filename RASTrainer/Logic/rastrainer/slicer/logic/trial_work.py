@@ -11,17 +11,17 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList
 from rastrainer.journal.replay_track import ReplayTrack, find_track
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.trial_review import scored_with_journal, trajectory_of
 from rastrainer.trial import ctps
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
-from rastrainer.trial.touch_registration import TouchRegistration, register_touches
+from rastrainer.trial.touch_registration import TouchRegistration, register_trial
 
 REGISTER = f"{__name__}:register"
 REGISTER_OPEN = f"{__name__}:registerOpen"
@@ -44,12 +44,10 @@ def register(
     return analyze_trial(record, scenario, cohort)
 
 
-def registerOpen(
-    touches: PointList, scenario: Scenario, task: str, progress: Progress
-) -> TouchRegistration:
-    """Return the registration of an open trial's touches; errors of `register_touches`."""
+def registerOpen(given: GivenPoints, scenario: Scenario, progress: Progress) -> TouchRegistration:
+    """Return the registration of an open trial; errors of `register_trial`."""
     progress("Registering", 0.0)
-    return register_touches(touches, scenario, task)
+    return register_trial(given, scenario)
 
 
 def score(

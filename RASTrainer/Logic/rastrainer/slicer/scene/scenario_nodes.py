@@ -11,6 +11,8 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.scenario.method_task import task_by_method
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task
 from rastrainer.slicer.scene.control_points import setPoints
@@ -74,13 +76,20 @@ def showScenario(scene: Any, scenario: Scenario) -> None:
     requestVolume(scene, scenario)
 
 
-def showTask(scene: Any, scenario: Scenario, taskName: str) -> Any:
+def showTask(
+    scene: Any,
+    scenario: Scenario,
+    taskName: str,
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS,
+) -> Any:
     """Show the fiducials of a task, in RAS mm, and return their `vtkMRMLMarkupsFiducialNode`.
 
+    Of a trial by another method the landmarks that it has touched are shown instead.
+
     Raises:
-        InputError: the scenario has no task of that name.
+        InputError: the scenario has no task of that name, or too few landmarks.
     """
-    task = scenario.task(taskName)
+    task = task_by_method(scenario, taskName, method)
     node = findOrAddNode(
         scene, "vtkMRMLMarkupsFiducialNode", Role.FIXED_FIDUCIALS, f"{task.title} fiducials"
     )

@@ -5,7 +5,13 @@ from __future__ import annotations
 from hashlib import sha256
 from typing import Any
 
+import numpy as np
+
 from rastrainer.errors import InputError
+from rastrainer.registration.checks import MINIMUM_POINTS
+from rastrainer.registration.fits import RIGID
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.scenario.method_task import TRACED_METHODS
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.scene.control_points import labelsOf, localPoints, setPoints
 from rastrainer.slicer.scene.error_colors import showResidualArrows
@@ -17,6 +23,8 @@ from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.record import TrialRecord
 
+TRACED_ATTRIBUTE = "RASTrainer.tracedMethod"
+"""Method of the trial whose touches these are, where the skin is traced after them."""
 STORED_ATTRIBUTE = "RASTrainer.storedTouches"
 """Stamp of the touches that were put there from a stored trial, which no simulator will clear."""
 
@@ -26,14 +34,16 @@ def showTouches(scene: Any, record: TrialRecord) -> Any:
     node = capturedPointsNode(scene)
     setPoints(node, record.labels, record.positions_mm)
     node.SetAttribute(STORED_ATTRIBUTE, _stamp(node))
-    noteTouchedTask(scene, record.scenario, record.task)
+    noteTouchedTask(scene, record.scenario, record.task, record.method)
     setTouchesVisible(scene, True)
     return node
 
 
-def noteTouchedTask(scene: Any, scenario: str, task: str) -> None:
-    """Note which task the touches that are shown belong to."""
-    capturedPointsNode(scene).SetAttribute(TASK_ATTRIBUTE, taskKey(scenario, task))
+def noteTouchedTask(scene: Any, scenario: str, task: str, method: RegistrationMethod) -> None:
+    """Note which task the touches that are shown belong to, and by which method."""
+    node = capturedPointsNode(scene)
+    node.SetAttribute(TASK_ATTRIBUTE, taskKey(scenario, task))
+    node.SetAttribute(TRACED_ATTRIBUTE, method.value if method in TRACED_METHODS else None)
 
 
 def setTouchesVisible(scene: Any, visible: bool) -> None:
@@ -62,8 +72,15 @@ def checkSameTask(moving: Any | None, fixed: Any | None) -> None:
     """Check that two lists do not belong to different tasks; a user's list belongs to none.
 
     Raises:
-        InputError: they do.
+        InputError: they do, or the touches are landmarks that only begin a registration.
     """
+    if moving is not None and moving.GetAttribute(TRACED_ATTRIBUTE):
+        raise InputError(
+            _(
+                "The touched landmarks are where the trace over the skin starts from: the trial is "
+                "registered by its trace, and not by them alone."
+            )
+        )
     tasks = [node.GetAttribute(TASK_ATTRIBUTE) for node in (moving, fixed) if node is not None]
     if len(tasks) == 2 and None not in tasks and tasks[0] != tasks[1]:
         raise InputError(
@@ -86,10 +103,11 @@ def showTrial(scene: Any, scenario: Scenario, analysis: TrialAnalysis) -> None:
         InputError: the scenario's files cannot be used.
     """
     showScenario(scene, scenario)
-    fixed = showTask(scene, scenario, analysis.record.task)
-    moving = showTouches(scene, analysis.record)
+    record = analysis.record
+    fixed = showTask(scene, scenario, record.task, record.method)
+    moving = showTouches(scene, record)
     showRegistration(scene, analysis.rigid, moving, fixed)
-    showResiduals(scene, analysis.rigid, analysis.rigid.leave_one_out_mm())
+    showResiduals(scene, analysis.rigid, _leaveOneOut(analysis))
     kinds = list(analysis.fits)
     showFits(
         scene,
@@ -97,3 +115,10 @@ def showTrial(scene: Any, scenario: Scenario, analysis: TrialAnalysis) -> None:
         [analysis.target_errors[kind] for kind in kinds],
     )
     showResidualArrows(scene, analysis.rigid)
+
+
+def _leaveOneOut(analysis: TrialAnalysis) -> np.ndarray | None:
+    """Return how far each touch lies from where the others put it, mm, if these register alone."""
+    isByTouches = analysis.record.method not in TRACED_METHODS
+    isEnough = len(analysis.rigid.labels) > MINIMUM_POINTS[RIGID]
+    return analysis.rigid.leave_one_out_mm() if isByTouches and isEnough else None

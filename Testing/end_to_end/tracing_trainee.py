@@ -1,0 +1,90 @@
+"""A trainee who registers by surface over OpenIGTLink: landmarks first, then strokes."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.surface_queries import outward_normal
+from rastrainer.scenario.method_task import method_of, task_by_method
+from rastrainer.scenario.scenario import Scenario
+from Testing.end_to_end.test_trial_over_openigtlink import Player
+from Testing.simulator.landmarked import on_skin
+
+ABOVE_MM, LANDED_MM, PASSED_MM = 30.0, 0.6, 1.5
+SINK_MM, GLIDE_MM = 0.3, 0.15
+"""How far below the skin the tip is sent to land, and above it to glide: neither is pressing."""
+SPEED_MM_S = 60
+TIMEOUT_S = 60
+
+
+class TracingTrainee:
+    """Plays a trial of a seed, by which it knows where the head is, as a person sees it.
+
+    Attributes:
+        player: its connection.
+    """
+
+    def __init__(self, player: Player, scenario: Scenario, seed: int) -> None:
+        self.player = player
+        self._scenario, self._seed = scenario, seed
+        self._head = read_head_mesh(scenario.head_mesh)
+        self._to_world = scenario.perturbed_head_to_world(seed)
+
+    def start(self, method: str) -> str:
+        """Start a trial and touch its landmarks; return its ID."""
+        started = self.player.do(
+            "StartTask", task="task-1", trainee="anna", seed=self._seed, method=method
+        )
+        task = task_by_method(self._scenario, "task-1", method_of(method))
+        for landmark in task.fiducials:
+            self._land(landmark)
+            self.player.do("Capture")
+            self._lift(landmark)
+        return started["trialId"]
+
+    def trace(self, corners, ends: bool = True) -> None:
+        """Draw a stroke over the skin; without its end, the tip stays where it comes to."""
+        places = on_skin(self._head, corners)
+        self._land(places[0])
+        self.player.do("Trace", on=True)
+        for place in places[1:]:
+            self._go(place, GLIDE_MM, SPEED_MM_S)
+        if ends:
+            self.player.do("Trace", on=False)
+            self._lift(places[-1])
+
+    def state(self, is_wanted=bool) -> dict:
+        """Wait for a state of the simulator and return it."""
+        found = self.player.wait_for(
+            "SimState", lambda m: is_wanted(json.loads(m.content.text)), TIMEOUT_S
+        )
+        return json.loads(found.content.text)
+
+    def _land(self, place) -> None:
+        self._go(place, ABOVE_MM, 400)
+        self._go(place, -SINK_MM, 300, LANDED_MM)
+
+    def _lift(self, place) -> None:
+        self._go(place, ABOVE_MM, 400)
+
+    def _go(self, place, above_mm: float, speed_mm_s: float, near_mm: float = PASSED_MM) -> None:
+        """Move the tip above a place of the head, RAS, or so far below it that it touches."""
+        normal = outward_normal(self._head, place)
+        goal = transforms.apply(self._to_world, place + above_mm * normal)
+        inward = -(self._to_world[:3, :3] @ normal)
+        direction = inward + np.array([0.0, 0.0, -0.4])
+        self.player.do(
+            "MoveTipTo",
+            positionMm=goal.tolist(),
+            direction=(direction / np.linalg.norm(direction)).tolist(),
+            speedMmS=speed_mm_s,
+        )
+        self.player.wait_for(
+            "ToolTipToWorld",
+            lambda tip: np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - goal) < near_mm,
+            TIMEOUT_S,
+        )
