@@ -54,6 +54,7 @@ def seen(tmp_path_factory) -> dict:
             trainee = TracingTrainee(player, scenario, SEED)
             seen["traced"], seen["paused"] = traced, trainee.state()
             player.do("Resume")
+            trainee.lift_after(OVER_THE_FACE[1])
             for corners in OVER_THE_FACE[2:]:
                 trainee.trace(corners)
             player.do("Register")
@@ -107,7 +108,8 @@ def test_the_record_has_the_landmarks_the_trace_and_no_contact_that_was_not_mean
     steps = np.linalg.norm(np.diff(record.trace_mm, axis=0), axis=1)
     assert steps.min() >= 1.0 - 1e-9
     assert np.median(steps) < 1.5
-    assert record.motion["unintended_contact_time_s"] < 0.5
+    unintended_s = record.motion["unintended_contact_time_s"]
+    assert unintended_s < 0.2 * record.motion["contact_time_s"]
     assert record.completion_time_s > record.trace[-1][3] - record.trace[0][3]
 
 
@@ -126,7 +128,7 @@ def test_the_simulator_and_slicer_register_and_score_it_alike_to_the_last_digit(
     assert own["registration"]["freMm"] == analysis.rigid.fre_mm < 0.5
     assert own["scored"]["score"] == analysis.score.score
     assert analysis.score.version == own["scored"]["details"]["scoreVersion"] == "3-surface"
-    assert analysis.score.acceptable
+    assert analysis.score.is_accurate
     assert analysis.truth.true_tre_mm < 1.0
     assert analysis.score.measures.common_bias_mm is None
 

@@ -55,7 +55,11 @@ class TracingTrainee:
             self._go(place, GLIDE_MM, SPEED_MM_S)
         if ends:
             self.player.do("Trace", on=False)
-            self._lift(places[-1])
+            self.lift_after(corners)
+
+    def lift_after(self, corners) -> None:
+        """Lift the tip where a stroke ends."""
+        self._lift(on_skin(self._head, corners[-1:])[0])
 
     def state(self, is_wanted=bool) -> dict:
         """Wait for a state of the simulator and return it."""

@@ -92,11 +92,12 @@ def test_better_in_all_measures_is_better_for_any_reference(one, other):
 
 
 def test_the_score_depends_on_one_trial_and_not_on_the_mode():
-    assert list(inspect.signature(score_trial).parameters) == ["measures", "reference"]
+    assert list(inspect.signature(score_trial).parameters) == ["measures", "reference", "version"]
     assert list(inspect.signature(score_reference).parameters) == [
         "scenario",
         "task_name",
         "of_protocol",
+        "method",
     ]
 
 

@@ -124,8 +124,12 @@ class ScoreMeasures:
         measured = [value for value in values if value is not None]
         return SafetyMeasures(*measured) if len(measured) == len(values) else None
 
-    def check(self) -> SafetyMeasures:
-        """Return the safety measures; raise `InputError` unless all are numbers of a trial."""
+    def check(self, has_bias: bool = True) -> SafetyMeasures:
+        """Return the safety measures; raise `InputError` unless all are numbers of a trial.
+
+        Where `has_bias` is false, a common bias is none of them.
+        """
+        bias_mm = self.common_bias_mm if has_bias else 0.0
         if not 0 < self.completion_time_s <= MAX_MEASURE:
             raise InputError("The completion time must be a number of seconds above 0.")
         for value, what in (
@@ -133,7 +137,7 @@ class ScoreMeasures:
             (self.contact_time_s, "time of unintended contact must be a number of seconds"),
             (self.contact_path_mm, "path of unintended contact must be a number of mm"),
             (self.pressing_depth_mm, "pressing depth must be a number of mm"),
-            (self.common_bias_mm or 0.0, "common bias of the touches must be a number of mm"),
+            (bias_mm, "common bias of the touches must be a number of mm"),
         ):
             if value is None or not 0 <= value <= MAX_MEASURE:
                 raise InputError(f"The {what}, 0 or above.")
@@ -245,14 +249,14 @@ def score_trial(
     """Return the score of a trial.
 
     Args:
-        measures: what is scored of it; without a common bias, the error alone is its accuracy.
+        measures: what is scored of it; those of a trial without fiducials have no common bias.
         reference: of its task in its scenario.
         version: by `score_version`.
 
     Raises:
         InputError: a measure is no such number.
     """
-    safety_measures = measures.check()
+    safety_measures = measures.check(has_bias=version == SCORE_VERSION)
     bias_mm = measures.common_bias_mm
     time = of_time(measures.completion_time_s, reference.time_s)
     accuracy = _accuracy(measures.tre_mm, bias_mm, reference)
