@@ -24,6 +24,8 @@ from Testing.end_to_end.tracing_trainee import TracingTrainee
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, write_landmarked
 
+pytestmark = pytest.mark.soak
+
 SEED = 5
 KEY = "5" * 64
 TIMEOUT_S = 120.0
