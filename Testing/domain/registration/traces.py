@@ -61,3 +61,24 @@ def error_at_center(matrix: np.ndarray, head_to_world: np.ndarray, mesh: HeadMes
     return float(
         np.linalg.norm(transforms.apply(matrix @ head_to_world, mesh.middle) - mesh.middle)
     )
+
+
+def random_walk(
+    mesh: HeadMesh, allowed: np.ndarray, random: np.random.Generator, count: int
+) -> np.ndarray:
+    """Vertices along a way over the skin that turns at will, like somebody who draws at random."""
+    neighbors: dict[int, list[int]] = {}
+    for a, b in mesh.edges[allowed[mesh.edges].all(axis=1)].tolist():
+        neighbors.setdefault(a, []).append(b)
+        neighbors.setdefault(b, []).append(a)
+    rows = [int(random.choice(list(neighbors)))]
+    heading = random.normal(size=3)
+    while len(rows) < count:
+        heading = heading + 0.5 * random.normal(size=3)
+        heading /= np.linalg.norm(heading)
+        ways = mesh.vertices[neighbors[rows[-1]]] - mesh.vertices[rows[-1]]
+        along = ways @ heading
+        if along.max() <= 0.0:
+            heading = -heading
+        rows.append(neighbors[rows[-1]][int(along.argmax())])
+    return np.array(rows)

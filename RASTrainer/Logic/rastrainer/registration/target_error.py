@@ -121,14 +121,43 @@ def target_error(
     localization = localization or isotropic_error(registration)
     targets = np.reshape(target, (1, -1))
     covariance = _propagated(registration, targets, localization.covariances)[0]
+    return error_of_covariance(
+        targets[0],
+        covariance,
+        fle_mm=localization.fle_mm,
+        degrees_of_freedom=localization.degrees_of_freedom,
+        confidence=confidence,
+        common_bias_sd_mm=common_bias_sd_mm,
+    )
+
+
+def error_of_covariance(
+    target: np.ndarray,
+    covariance: np.ndarray,
+    *,
+    fle_mm: float,
+    degrees_of_freedom: float,
+    confidence: float = CONFIDENCE,
+    common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
+) -> TargetError:
+    """Return the error at a target whose independent part has a covariance, as `target_error`.
+
+    Args:
+        target: (3,) float, in the fixed space, in mm.
+        covariance: (3, 3) float, mm², without the common offset.
+        fle_mm: The error of a point that it was computed from.
+        degrees_of_freedom: How well its size is known.
+        confidence: As of `target_error`.
+        common_bias_sd_mm: As of `target_error`.
+    """
     variances = np.linalg.eigvalsh(covariance).clip(min=0.0)
     independent = float(variances.sum())
-    added, dof = common_bias_sd_mm**2, localization.degrees_of_freedom
+    added, dof = common_bias_sd_mm**2, degrees_of_freedom
     tail = (1 - confidence) / 2
     x, y, z = (float(value) for value in target)
     return TargetError(
         target_mm=(x, y, z),
-        fle_mm=localization.fle_mm,
+        fle_mm=fle_mm,
         expected_mm=math.sqrt(independent + 3.0 * added),
         independent_mm=math.sqrt(independent),
         interval_mm=(

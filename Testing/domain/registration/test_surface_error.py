@@ -1,0 +1,155 @@
+"""The expected error of a surface match against the true one, and guidance to the next place."""
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.registration.surface_error import (
+    covered,
+    expected_surface_tre,
+    knowledge_of,
+    knowledge_so_far,
+    next_best_place,
+    surface_target_error,
+)
+from rastrainer.registration.surface_match import match_surface
+from Testing.domain.registration.traces import (
+    coarse_start,
+    colin27,
+    head_pose,
+    places,
+    random_walk,
+    traced,
+)
+
+NOISE_MM = 0.5
+ASIDE = np.array([[10.0, -20.0, 5.0], [-25.0, 10.0, 20.0], [25.0, -30.0, -10.0]])
+"""Of targets, from the middle of the head, mm."""
+
+
+@pytest.fixture(scope="module")
+def head():
+    return colin27()
+
+
+def trial(head, seed):
+    """The match of a trace of 150 points on the face, and the true error at the first target."""
+    random = np.random.default_rng(seed)
+    pose = head_pose(random)
+    trace = traced(head, places(head, "face"), random, pose, NOISE_MM, 150)
+    match = match_surface(trace, head, coarse_start(random, pose, 1.0, 1.0), starts=1)
+    target = head.middle + ASIDE[0]
+    return match, float(np.linalg.norm(transforms.apply(match.matrix @ pose, target) - target))
+
+
+def coverage(head, trials, common_bias_sd_mm):
+    """The share of trials whose error is in its interval; true and expected RMS error."""
+    target, inside, errors, expected = head.middle + ASIDE[0], 0, [], []
+    for seed in range(trials):
+        match, error = trial(head, seed)
+        knowledge = knowledge_of(match)
+        found = surface_target_error(knowledge, target, common_bias_sd_mm=common_bias_sd_mm)
+        inside += found.interval_mm[0] <= error <= found.interval_mm[1]
+        errors.append(error)
+        expected.append(expected_surface_tre(knowledge, target[None], 0.0)[0])
+    rms = [float(np.sqrt(np.mean(np.square(each)))) for each in (errors, expected)]
+    return inside / trials, *rms
+
+
+def test_intervals_contain_the_true_error_and_its_size_is_foretold(head):
+    share, true, expected = coverage(head, 20, 0.0)
+    assert share >= 0.8
+    assert expected == pytest.approx(true, rel=0.35)
+
+
+@pytest.mark.soak
+def test_of_2000_matches_93_to_97_percent_of_the_intervals_contain_the_error(head):
+    share, true, expected = coverage(head, 2000, 0.0)
+    assert 0.93 <= share <= 0.97
+    assert expected == pytest.approx(true, rel=0.03)
+
+
+def test_the_bootstrap_of_the_residuals_gives_the_same_error(head):
+    match, _ = trial(head, 3)
+    knowledge = knowledge_of(match)
+    random, targets = np.random.default_rng(0), head.middle + ASIDE
+    world = transforms.inverse(match.matrix)
+    moved = []
+    for _ in range(30):
+        off = random.normal(0.0, knowledge.noise_mm, (150, 1)) * match.normals
+        trace = transforms.apply(world, match.nearest_mm + off)
+        again = match_surface(trace, head, match.matrix, starts=1)
+        moved.append(transforms.apply(again.matrix @ world, targets) - targets)
+    spread = np.sqrt(np.mean(np.sum(np.square(moved), axis=2), axis=0))
+    assert np.allclose(expected_surface_tre(knowledge, targets, 0.0), spread, rtol=0.35)
+
+
+def test_an_offset_that_all_points_share_adds_to_the_error(head):
+    match, _ = trial(head, 4)
+    knowledge, target = knowledge_of(match), head.middle[None]
+    alone = expected_surface_tre(knowledge, target, 0.0)
+    assert np.allclose(expected_surface_tre(knowledge, target, 2.0) ** 2, alone**2 + 12.0)
+
+
+def test_the_expected_error_grows_away_from_the_trace(head):
+    match, _ = trial(head, 5)
+    over_head = expected_surface_tre(knowledge_of(match), head.vertices, 0.0)
+    back = head.vertices[:, 1] < head.vertices[:, 1].min() + 20.0
+    face = places(head, "face")
+    assert over_head.shape == (len(head.vertices),)
+    assert over_head[back].mean() > 1.2 * over_head[face].mean()
+
+
+def expected_at_targets(head, rows):
+    knowledge = knowledge_so_far(head.vertices[rows], head.vertex_normals[rows], head, NOISE_MM)
+    tre = expected_surface_tre(knowledge, head.middle + ASIDE, 0.0)
+    return float(np.sqrt(np.mean(tre**2)))
+
+
+def guided(head, allowed, count):
+    rows = []
+    while len(rows) < count:
+        knowledge = knowledge_so_far(head.vertices[rows], head.vertex_normals[rows], head)
+        best = next_best_place(knowledge, head, head.middle + ASIDE, allowed)
+        away = np.linalg.norm(head.vertices - best.position, axis=1)
+        rows += away.argsort()[:10].tolist()
+    return np.array(rows)
+
+
+def test_guidance_halves_the_expected_error_of_drawing_at_random(head):
+    allowed = (head.vertices[:, 1] > 0.0) & (head.vertices[:, 2] > -60.0)
+    count = 100
+    drawn = [
+        expected_at_targets(head, random_walk(head, allowed, np.random.default_rng(seed), count))
+        for seed in range(10)
+    ]
+    by_guidance = expected_at_targets(head, guided(head, allowed, count))
+    assert by_guidance < 0.5 * min(drawn)
+
+
+def test_the_next_place_gains_what_it_says(head):
+    allowed = np.zeros(len(head.vertices), dtype=bool)
+    allowed[places(head, "face")] = True
+    rows = np.flatnonzero(allowed)[::200]
+    knowledge = knowledge_so_far(head.vertices[rows], head.vertex_normals[rows], head, NOISE_MM)
+    best = next_best_place(knowledge, head, head.middle + ASIDE, allowed)
+    assert allowed[best.vertex]
+    assert best.expected_now_mm == pytest.approx(expected_at_targets(head, rows))
+    assert best.expected_then_mm < best.expected_now_mm
+    with pytest.raises(InputError, match="No place"):
+        next_best_place(knowledge, head, head.middle + ASIDE, np.zeros_like(allowed))
+
+
+def test_before_the_first_point_the_pose_is_as_open_as_landmarks_leave_it(head):
+    knowledge = knowledge_so_far(np.zeros((0, 3)), np.zeros((0, 3)), head)
+    (tre,) = expected_surface_tre(knowledge, head.middle[None], 0.0)
+    assert tre == pytest.approx(10.0 * np.sqrt(3.0))
+
+
+def test_the_skin_near_the_trace_is_covered(head):
+    trace = head.vertices[[100, 5000]]
+    near = covered(trace, head, 8.0)
+    away = np.linalg.norm(head.vertices[:, None] - trace, axis=2).min(axis=1)
+    assert np.array_equal(near, away <= 8.0)
+    assert not covered(np.zeros((0, 3)), head, 8.0).any()
