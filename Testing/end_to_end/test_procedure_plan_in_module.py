@@ -94,3 +94,27 @@ def test_lines_are_placed_by_two_clicks_and_models_kept_away_from(host):
     host.press("removeLineButton")
     assert planLines(host.scene) == []
     assert not host.find("saveProcedureButton").enabled
+
+
+def test_lines_change_their_order_and_a_checkpoint_is_placed_by_buttons(host):
+    host.open()
+    for name in ("First", "Second"):
+        host.press("placeLineButton")
+        host.place(0.0, -20.0, 100.0)
+        host.place(2.0, -15.0, 5.0)
+        host.wait_until(lambda: cells(host) and cells(host)[-1][1] == "95.2", "its length")
+        host.choose("linesTable", len(cells(host)) - 1)
+        host.type("lineNameLineEdit", name)
+    assert [row[0] for row in cells(host)] == ["First", "Second"]
+    host.press("raiseLineButton")
+    assert [row[0] for row in cells(host)] == ["Second", "First"]
+    assert [line.GetName() for line in planLines(host.scene)] == ["Second", "First"]
+    assert host.text("lineNameLineEdit") == "Second"
+    assert not host.find("raiseLineButton").enabled
+    host.choose("linesTable", 1)
+    host.press("raiseLineButton")
+    assert [row[0] for row in cells(host)] == ["First", "Second"]
+    host.press("placeCheckpointButton")
+    host.place(0.0, 80.0, 40.0)
+    checkpoints = host.find("checkpointsComboBox").currentNode()
+    assert worldPoints(checkpoints).round(6).tolist() == [[0.0, 80.0, 40.0]]

@@ -58,11 +58,6 @@ def with_line(folder, entry, target):
     return write(folder, values)
 
 
-def planned(folder):
-    scenario = load_scenario(folder)
-    return PlanningSetup(scenario, read_head_mesh(scenario.head_mesh))
-
-
 def test_the_default_head_has_one_procedure_of_each_kind_that_can_be_carried_out(planning):
     assert [procedure.kind for procedure in SCENARIO.procedures] == list(ProcedureKind)
     assert [len(procedure.trajectories) for procedure in SCENARIO.procedures] == [1, 2, 5]
@@ -88,17 +83,18 @@ def test_every_structure_of_the_default_head_is_called_schematic_and_kept_away_f
             assert min(distances.values()) >= trajectory.safety_mm
 
 
-def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy):
+def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy, capsys):
     """From the right, between the robot's base and the head, there is no room for the arm."""
     head = read_head_mesh(SCENARIO.head_mesh)
     near = np.abs(head.vertices[:, 1:] - STN[1:]).max(axis=1) < 3.0
     entry = head.vertices[near][head.vertices[near][:, 0].argmax()].round(2)
     with_line(copy, entry.tolist(), STN.tolist())
-    assert check_procedures(planned(copy)) == [
+    assert main(["scenario", "check", str(copy)]) == 1
+    assert (
         "Deep brain stimulation of both subthalamic nuclei: the robot cannot hold the guide on the "
         "line of Right subthalamic nucleus where the head is; choose another entry, or move the "
         "head."
-    ]
+    ) in capsys.readouterr().out
     with pytest.raises(InputError, match="cannot hold the guide on the line of Right subthalamic"):
         require_usable_procedures(load_setup(copy))
 

@@ -25,12 +25,14 @@ from rastrainer.slicer.scene.control_points import worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing
 from rastrainer.slicer.scene.procedure_plan_nodes import (
     FIDUCIALS,
+    checkpointList,
     instrumentOf,
     isNoGo,
     lengthMm,
     newPlanLine,
     noGoNodes,
     planLines,
+    raiseLine,
     setInstrument,
     setNoGo,
 )
@@ -61,6 +63,8 @@ class ProcedurePlanPanel:
         ui.editProcedureButton.connect("clicked()", self.edit)
         ui.placeLineButton.connect("clicked()", self.placeLine)
         ui.removeLineButton.connect("clicked()", self.removeLine)
+        ui.raiseLineButton.connect("clicked()", self.raiseLine)
+        ui.placeCheckpointButton.connect("clicked()", self.placeCheckpoint)
         ui.linesTable.connect("itemSelectionChanged()", self._showLine)
         ui.lineNameLineEdit.connect("editingFinished()", self._renameLine)
         for box in (ui.lineDiameterSpinBox, ui.lineSafetySpinBox):
@@ -110,6 +114,22 @@ class ProcedurePlanPanel:
             slicer.mrmlScene.RemoveNode(line)
             self.showState()
 
+    def raiseLine(self) -> None:
+        """Have the chosen line carried out before the one above it; it stays chosen."""
+        line, table = self._line(), self._ui.linesTable
+        if line is not None:
+            raiseLine(slicer.mrmlScene, line)
+            table.selectRow(max(table.currentRow() - 1, 0))
+            self.showState()
+
+    def placeCheckpoint(self) -> None:
+        """Let the next click place a checkpoint, in the chosen list or in the plan's own."""
+        with slicer.util.tryWithErrorDisplay(_("No checkpoint can be placed.")):
+            chosen = self._ui.checkpointsComboBox
+            node = chosen.currentNode() or checkpointList(slicer.mrmlScene)
+            chosen.setCurrentNode(node)
+            startPlacing(slicer.mrmlScene, node)
+
     def toggleNoGo(self) -> None:
         """Let instruments keep away from the chosen model or segmentation, or no longer."""
         node = self._ui.noGoComboBox.currentNode()
@@ -156,6 +176,12 @@ class ProcedurePlanPanel:
             line is not None,
             _("Remove the chosen line."),
             _("Choose a line in the table first."),
+        )
+        setUsable(
+            ui.raiseLineButton,
+            line is not None and ui.linesTable.currentRow() > 0,
+            _("Carry the chosen line out before the one above it."),
+            _("Choose a line below the first one in the table."),
         )
         node = ui.noGoComboBox.currentNode()
         ui.noGoButton.text = _("Ignore") if node is not None and isNoGo(node) else _("Keep away")

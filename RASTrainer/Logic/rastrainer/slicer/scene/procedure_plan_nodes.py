@@ -22,13 +22,26 @@ LINE, FIDUCIALS = "vtkMRMLMarkupsLineNode", "vtkMRMLMarkupsFiducialNode"
 MODEL, SEGMENTATION = "vtkMRMLModelNode", "vtkMRMLSegmentationNode"
 DIAMETER_ATTRIBUTE, SAFETY_ATTRIBUTE = "RASTrainer.diameterMm", "RASTrainer.safetyMm"
 NO_GO_ATTRIBUTE = "RASTrainer.noGo"
+ORDER_ATTRIBUTE, LAST = "RASTrainer.order", 1e6
+"""A line that was never moved comes after those that were, in the order of the scene."""
 USUAL_DIAMETER_MM, USUAL_SAFETY_MM = 1.3, 2.0
 NO_GO_COLOR = (0.8, 0.2, 0.2)
 
 
 def planLines(scene: Any) -> list[Any]:
     """Return the lines of the plan, in the order in which they are carried out."""
-    return nodesOf(scene, LINE, Role.PLAN_LINE)
+    lines = nodesOf(scene, LINE, Role.PLAN_LINE)
+    return sorted(lines, key=lambda line: _number(line.GetAttribute(ORDER_ATTRIBUTE), LAST))
+
+
+def raiseLine(scene: Any, line: Any) -> None:
+    """Have a line of the plan carried out before the one above it; the first one stays."""
+    lines = planLines(scene)
+    place = lines.index(line)
+    if place > 0:
+        lines[place - 1 : place + 1] = [line, lines[place - 1]]
+    for number, each in enumerate(lines):
+        each.SetAttribute(ORDER_ATTRIBUTE, str(number))
 
 
 def newPlanLine(scene: Any) -> Any:
@@ -87,10 +100,15 @@ def showPlan(
         model.GetDisplayNode().SetColor(NO_GO_COLOR)
         model.GetDisplayNode().SetVisibility2D(True)
         setNoGo(model, True)
-    node = findOrAddNode(scene, FIDUCIALS, Role.CHECKPOINTS, _("Checkpoints"))
+    node = checkpointList(scene)
     names = [checkpoint.name for checkpoint in checkpoints]
     places = [checkpoint.position for checkpoint in checkpoints]
     setPoints(node, names, np.array(places, dtype=float).reshape(-1, 3))
+
+
+def checkpointList(scene: Any) -> Any:
+    """Return the list of the plan's checkpoints, an empty one where there is none yet."""
+    return findOrAddNode(scene, FIDUCIALS, Role.CHECKPOINTS, _("Checkpoints"))
 
 
 def noGoNodes(scene: Any) -> list[Any]:
