@@ -44,7 +44,9 @@ def operated(tmp_path_factory, browser) -> dict:
     """Carry the biopsy out; return what came of it."""
     folder = tmp_path_factory.mktemp("operated")
     with Place(folder, "--speed", SLOW, limits=WITHOUT_GRAPHICS) as place:
-        page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest2")
+        url, code = place.simulator.url, place.simulator.code
+        # No picture is looked at: the boards are drawn, and an empty scene.
+        page = open_page(browser, url, code, "metaQuest2", draws=False)
         enter_headset(page)
         surgeon = HeadsetSurgeon(place.view, TurningControllers(page))
         slicer = place.start_slicer()
