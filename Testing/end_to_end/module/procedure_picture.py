@@ -8,7 +8,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from PySide6 import QtGui
 
 from rastrainer import transforms
 from rastrainer.procedure.errors import analyze_procedure
@@ -25,11 +24,11 @@ from rastrainer_simulator.virtual.virtual_procedure import (
     ProcedureSetting,
     carry_out,
 )
+from Testing.end_to_end.module.few_colors import reduce_colors
 from Testing.slicer.host.host import Host
 
 PROCEDURE, TASK, TOUCHING_S, FLE_MM = "seeg", "task-3", 90.0, 2.0
 SECTION = "procedureCollapsibleButton"
-COLORS = QtGui.QImage.Format.Format_Indexed8
 
 
 def carried_out() -> ProcedureOutcome:
@@ -71,8 +70,7 @@ def save(picture: Path) -> None:
         host.let_pass(1.0)
         host.window_screenshot(picture)
         host.close()
-    # Few colors: the repository is to stay small.
-    QtGui.QImage(str(picture)).convertToFormat(COLORS).save(str(picture))
+    reduce_colors(picture)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 from rastrainer.slicer.scene.views import jumpTo
+from Testing.end_to_end.module.few_colors import reduce_colors
 from Testing.end_to_end.module.story import PLAN_MM, Story
 from Testing.slicer.host.host import Host
 
@@ -22,6 +23,8 @@ SHOWN_AFTER = {
 }
 FOLDED = ("advancedGroupBox", "pointListsGroupBox")
 """Groups that a user opens now and then."""
+OPTIONS = ("--speed", "4", "--no-views", "--no-gamepad")
+"""Not too fast: the trainee would seem to pause for long."""
 AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
 NEAR = ("registration", "plan")
 HEAD, DISTANCE_MM = (0.0, -10.0, 30.0), 620.0
@@ -33,9 +36,10 @@ def save_all(folder: Path) -> None:
     with tempfile.TemporaryDirectory() as temporary:
         host = Host(Path(temporary, "computer of the instructor"))
         try:
-            story = Story(host, Path(temporary))
+            story = Story(host, Path(temporary), OPTIONS)
             for step in Story.STEPS:
                 step(story)
+                host.wait_until(lambda: host.text("nextStepButton") != "Scoring…", "it is scored")
                 for section in SHOWN_AFTER.get(step.__name__, ()):
                     show_only(host, section)
                     if section == "plan":
@@ -44,7 +48,9 @@ def save_all(folder: Path) -> None:
                         host.look_at(HEAD, AZIMUTH, ELEVATION, DISTANCE_MM)
                     else:
                         host.look_from(AZIMUTH, ELEVATION, ZOOM)
-                    host.window_screenshot(folder / f"module-{section}.png", WIDTH)
+                    picture = folder / f"module-{section}.png"
+                    host.window_screenshot(picture, WIDTH)
+                    reduce_colors(picture)
                     show_all(host)
         finally:
             host.close()

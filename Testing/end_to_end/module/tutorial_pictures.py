@@ -5,28 +5,36 @@ from __future__ import annotations
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import slicer
-from PySide6 import QtGui
 
 import rastrainer
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.views import jumpTo
 from rastrainer.slicer.settings import PROGRAM
 from rastrainer_simulator.assets import asset_path
+from Testing.end_to_end.module.few_colors import reduce_colors
 from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.end_to_end.module.screenshots import DISTANCE_MM, HEAD
 from Testing.end_to_end.module.story import PLAN_MM
 from Testing.slicer.host.host import Host
 
-OPTIONS = ("--speed", "3", "--no-views", "--no-gamepad")
-"""So fast that it does not take long, so slow that the trainee pauses no longer than people do."""
+OPTIONS = ("--no-views", "--no-gamepad")
+"""As fast as it is with people: otherwise the trainee would seem to pause for long."""
 SLIP_AT = 9
+PATIENCE_S = 1200.0
+PROCEDURE = "Biopsy of a frontal lesion"
 AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
+FROM_THE_RIGHT = -60.0
+SECTIONS = ("scenario", "trainees", "training", "registration", "plan", "score")
+SECTIONS += ("procedurePlan", "procedure")
 
 
 class Tutorial:
-    """Plays the ten steps, as `docs/tutorial.md` describes them, and takes a picture of each."""
+    """Plays the twelve steps, as `docs/tutorial.md` describes them, and takes a picture of each."""
 
     def __init__(self, host: Host, folder: Path, pictures: Path) -> None:
         self._host = host
@@ -58,43 +66,104 @@ class Tutorial:
         self._touch(1, 8)
         self._take("05-touching")
         self._touch(9, 15)
-        host.look_at(HEAD, AZIMUTH, ELEVATION, DISTANCE_MM)
+        self._show_slip()
         self._take("06-registration")
         self._trainee("--register")
         self._wait_for("Show result")
         self._next("Start Task 1")
-        host.wait_until(lambda: "Score" in host.text("feedbackText"), "the feedback is there")
+        self._wait_until(lambda: "Score" in host.text("feedbackText"), "the feedback is there")
         self._take("07-score")
         self._plan()
         self._take("08-plan")
         self._only("score")
-        host.wait_until(lambda: host.find("worstTouchButton").enabled, "the trial is judged")
+        self._wait_until(lambda: host.find("worstTouchButton").enabled, "the trial is judged")
         host.press("worstTouchButton")
-        host.wait_until(lambda: "clearance" in host.text("replayText"), "the replay is shown")
+        self._wait_until(lambda: "clearance" in host.text("replayText"), "the replay is shown")
         self._take("09-worst-touch")
+        self._plan_procedure()
+        self._take("10-procedure-plan")
+        self._carry_out_procedure()
+        self._take("11-procedure")
+        host.press("releaseButton")
+        self._wait_for("Show result")
+        self._next("Start Task 1")
         self._only("trainees")
         host.unfold("historyTable")
-        self._take("10-history")
+        jumpTo(host.scene, PLAN_MM)
+        self._take("12-history")
 
     def _play_trial_run(self) -> None:
         self._next("Pause")
         self._trainee("--points", "1", "15", "--register")
         self._wait_for("Show result")
 
+    def _show_slip(self) -> None:
+        """Show the touch that is off in all views."""
+        host = self._host
+        host.choose("residualsTable", SLIP_AT - 1)
+        host.find("residualsGroupBox").collapsed = True
+        host.look_at(HEAD, FROM_THE_RIGHT, ELEVATION, DISTANCE_MM)
+
     def _plan(self) -> None:
         host = self._host
         self._only("plan")
         host.press("placeTargetButton")
         host.place(*PLAN_MM)
-        host.wait_until(lambda: host.find("sendPlanButton").enabled, "the plan can be sent")
+        self._wait_until(lambda: host.find("sendPlanButton").enabled, "the plan can be sent")
         host.press("sendPlanButton")
-        host.wait_until(lambda: "shows the plan" in host.text("reachableText"), "it is shown")
+        self._wait_until(lambda: "shows the plan" in host.text("reachableText"), "it is shown")
         jumpTo(host.scene, PLAN_MM)
+
+    def _plan_procedure(self) -> None:
+        host = self._host
+        self._begin_anew()
+        self._only("procedurePlan")
+        host.choose("procedurePlanComboBox", PROCEDURE)
+        host.press("editProcedureButton")
+        host.press("checkLinesButton")
+        said = "procedurePlanText"
+        self._wait_until(lambda: "can be carried out" in host.text(said), "it is measured")
+        line = load_scenario(asset_path("scenarios", "colin27")).procedure("biopsy").trajectories[0]
+        jumpTo(host.scene, line.target)
+        host.look_at(HEAD, FROM_THE_RIGHT, ELEVATION, DISTANCE_MM)
+
+    def _begin_anew(self) -> None:
+        """Close the scene, which is full, and show the head again."""
+        self._host.clear_scene()
+        self._host.press("showScenarioButton")
+        self._host.let_pass(2.0)
+
+    def _carry_out_procedure(self) -> None:
+        """Start the task with the procedure, and lead it until the instrument is at its target."""
+        host = self._host
+        self._begin_anew()
+        host.check("robotCheckBox")
+        self._only("training")
+        host.choose("procedureComboBox", PROCEDURE)
+        self._next("Pause")
+        self._only("procedure")
+        self._trainee("--points", "1", "15", "--register")
+        self._press_when_usable("acceptButton", "alignButton")
+        host.press("alignButton")
+        state = "procedureStateText"
+        self._wait_until(lambda: "0.00 mm and 0.00°" in host.text(state), "it is aligned")
+        host.press("lockButton")
+        self._trainee("--drill")
+        self._press_when_usable("startInsertionButton", "releaseButton")
+        self._trainee("--insert")
+        host.look_at(HEAD, FROM_THE_RIGHT, ELEVATION, DISTANCE_MM)
+
+    def _press_when_usable(self, name: str, following: str) -> None:
+        host = self._host
+        for button, press in ((name, True), (following, False)):
+            self._wait_until(lambda button=button: host.find(button).enabled, f"{button} is usable")
+            if press:
+                host.press(button)
 
     def _touch(self, first: int, last: int) -> None:
         self._trainee("--points", str(first), str(last), "--slip-at", str(SLIP_AT))
         bar = self._host.find("pointsProgressBar")
-        self._host.wait_until(lambda: bar.value == last, "the touches are shown")
+        self._wait_until(lambda: bar.value == last, "the touches are shown")
 
     def _trainee(self, *words: str) -> None:
         logic = Path(rastrainer.__file__).parents[1]
@@ -103,7 +172,7 @@ class Tutorial:
         command += ["--records", str(self._records)]
         command += ["--port", str(self._host.find("portSpinBox").value), *words]
         process = subprocess.Popen(command)
-        self._host.wait_until(lambda: process.poll() is not None, "the trainee is done")
+        self._wait_until(lambda: process.poll() is not None, "the trainee is done")
         assert process.returncode == 0
 
     def _next(self, until: str) -> None:
@@ -112,21 +181,23 @@ class Tutorial:
 
     def _wait_for(self, title: str) -> None:
         host = self._host
-        host.wait_until(lambda: host.text("nextStepButton") == title, f"it says {title}")
+        self._wait_until(lambda: host.text("nextStepButton") == title, f"it says {title}")
+
+    def _wait_until(self, condition: Callable[[], Any], what: str) -> None:
+        self._host.wait_until(condition, what, PATIENCE_S)
 
     def _only(self, shown: str) -> None:
         """Fold every section but one, as the steps do; this one may be no step."""
-        for name in ("scenario", "trainees", "training", "registration", "plan", "score"):
+        for name in SECTIONS:
             self._host.find(f"{name}CollapsibleButton").collapsed = name != shown
         self._host.process_events()
 
     def _take(self, name: str) -> None:
-        """Save a picture in few colors: the repository is to stay small."""
+        """Save a picture."""
         self._host.let_pass(0.5)
         path = self._pictures / f"tutorial-{name}.png"
         self._host.window_screenshot(path)
-        few = QtGui.QImage.Format.Format_Indexed8
-        QtGui.QImage(str(path)).convertToFormat(few).save(str(path))
+        reduce_colors(path)
 
 
 def save_all(pictures: Path) -> None:

@@ -3,9 +3,10 @@
     Slicer --python-script Testing/slicer/real/tour.py -- --output DIR
 
 Every section is worked by its real widgets: simulator, trainee, a trial that a scripted trainee
-plays, registration, plan, score, replay, report, scenes, a scenario from a volume, a study. DIR
-gets a picture of each step, and a table of them as `tour.json` and `tour.md`, with what Slicer has
-logged as an error meanwhile. The exit status is 0 where all is well. It takes some minutes.
+plays, registration, plan, score, replay, report, a procedure and its plan, scenes, a scenario from
+a volume, a study. DIR gets a picture of each step, and a table of them as `tour.json` and
+`tour.md`, with the buttons that no step has clicked, and what Slicer has logged as an error
+meanwhile. The exit status is 0 where all is well. It takes some minutes.
 
 The module must be installed with SlicerOpenIGTLink. The simulator is set up first where it is not
 yet. Without a main window (`--no-main-window`) the pictures show the panel alone; with `--testing`
@@ -27,6 +28,7 @@ def main(words: list[str]) -> int:
     parser.add_argument("--output", type=Path, required=True, help="folder of the pictures")
     parser.add_argument("--program", default="", help="a rastrainer that is installed elsewhere")
     parser.add_argument("--only", nargs="+", default=(), help="names of steps; all if left out")
+    parser.add_argument("--patience", type=float, default=120.0, help="seconds for each wait")
     parser.add_argument("--window", action="store_true", help="open the trainee's window, too")
     # Slicer hands on the dashes that separate its own arguments from those of the script.
     arguments = parser.parse_args([word for word in words if word != "--"])
@@ -38,7 +40,7 @@ def main(words: list[str]) -> int:
     from tour_stage import Tour
     from tour_steps import NEEDED, STEPS
 
-    tour = Tour(arguments.output, arguments.program, arguments.window)
+    tour = Tour(arguments.output, arguments.program, arguments.window, arguments.patience)
     record = Record(arguments.output, tour.panel)
     try:
         for name, step in STEPS:
@@ -48,7 +50,7 @@ def main(words: list[str]) -> int:
                 break
     finally:
         tour.close()
-    return 0 if record.write() else 1
+    return 0 if record.write(tour.hands.unused_buttons()) else 1
 
 
 if __name__ == "__main__":

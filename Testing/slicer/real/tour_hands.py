@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import slicer
-
-TIMEOUT_S = 120.0
 
 
 class TourError(Exception):
@@ -20,11 +20,15 @@ class Hands:
 
     Attributes:
         module: the module's widget, as its Python class.
+        patience_s: how long one thing may take, unless it is known to take longer.
+        clicked: names of the buttons and boxes that were clicked.
     """
 
-    def __init__(self, module: Any, unexpected: list[str]) -> None:
+    def __init__(self, module: Any, unexpected: list[str], patience_s: float) -> None:
         """`unexpected` grows by what each dialog says that nobody has expected."""
         self.module = module
+        self.patience_s = patience_s
+        self.clicked: set[str] = set()
         self._unexpected = unexpected
         self._known = 0
 
@@ -47,9 +51,21 @@ class Hands:
         widget = self.find(name)
         if not widget.enabled:
             raise TourError(f"{name} is disabled: {widget.toolTip}")
+        self.clicked.add(name)
         widget.click()
         self.let_pass(0.1)
         self._heed_dialogs()
+
+    def unused_buttons(self) -> list[str]:
+        """Return the names of the buttons of the module's forms that were not clicked."""
+        forms = Path(self.module.resourcePath("UI")).glob("*.ui")
+        buttons = {
+            widget.get("name")
+            for form in forms
+            for widget in ElementTree.parse(form).iter("widget")
+            if widget.get("class") == "QPushButton"
+        }
+        return sorted(buttons - self.clicked)
 
     def check(self, name: str, wanted: bool = True) -> None:
         """Check a box, or uncheck it."""
@@ -75,15 +91,18 @@ class Hands:
             # Threads of Python run only while the main thread waits in Python.
             time.sleep(0.005)
 
-    def wait_until(
-        self, condition: Callable[[], Any], what: str, timeout_s: float = TIMEOUT_S
-    ) -> None:
+    def wait_until(self, condition: Callable[[], Any], what: str, at_least_s: float = 0.0) -> None:
         """Let Slicer do what is due until something is so.
 
+        Args:
+            condition: what is waited for.
+            what: the same in words.
+            at_least_s: patience for what may take longer than other things.
+
         Raises:
-            TourError: it is not so in time, or a dialog has opened that nobody has expected; `what`
-                says what was awaited.
+            TourError: it is not so in time, or a dialog has opened that nobody has expected.
         """
+        timeout_s = max(at_least_s, self.patience_s)
         end = time.monotonic() + timeout_s
         while not condition():
             self._heed_dialogs()

@@ -79,19 +79,22 @@ class Record:
                 entries[-1] += f"\n{line}"
         return entries
 
-    def write(self) -> bool:
-        """Write `tour.json` and `tour.md`, print the table, and return whether all is well."""
+    def write(self, unused: list[str]) -> bool:
+        """Write `tour.json` and `tour.md`, print the table, and return whether all is well.
+
+        `unused` are the names of the buttons that no step has clicked.
+        """
         errors = self.errors()
         about = {"slicer": slicer.app.applicationVersion, "system": slicer.app.os}
         steps = [asdict(step) for step in self.steps]
-        whole = {**about, "steps": steps, "errors": errors}
+        whole = {**about, "steps": steps, "errors": errors, "unused": unused}
         (self._folder / "tour.json").write_text(json.dumps(whole, indent=1), encoding="utf-8")
-        table = self._table(errors, about)
+        table = self._table(errors, unused, about)
         (self._folder / "tour.md").write_text(table, encoding="utf-8")
         print(table, flush=True)
         return all(step.ok for step in self.steps) and not errors
 
-    def _table(self, errors: list[str], about: dict[str, str]) -> str:
+    def _table(self, errors: list[str], unused: list[str], about: dict[str, str]) -> str:
         lines = [f"# Tour in Slicer {about['slicer']}, {about['system']}", ""]
         lines += ["| step | ok | seconds | note |", "|---|---|---|---|"]
         for step in self.steps:
@@ -99,6 +102,7 @@ class Record:
             lines.append(
                 f"| {step.name} | {'yes' if step.ok else 'NO'} | {step.seconds} | {note} |"
             )
+        lines += ["", f"Buttons that no step has clicked: {', '.join(unused) or 'none'}."]
         lines += ["", f"## Errors in Slicer's log: {len(errors)}", ""]
         return "\n".join([*lines, *(f"```\n{error}\n```" for error in errors)]) + "\n"
 

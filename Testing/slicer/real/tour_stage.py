@@ -26,13 +26,13 @@ class Tour:
         has_window: whether the trainee's window is opened.
     """
 
-    def __init__(self, folder: Path, program: str, has_window: bool) -> None:
+    def __init__(self, folder: Path, program: str, has_window: bool, patience_s: float) -> None:
         """Open the module."""
         if slicer.util.mainWindow() is not None:
             slicer.util.selectModule("RASTrainer")
         module = slicer.util.getModuleWidget("RASTrainer")
         self.dialogs = Dialogs()
-        self.hands = Hands(module, self.dialogs.unexpected)
+        self.hands = Hands(module, self.dialogs.unexpected, patience_s)
         self.panel = module.parent
         if slicer.util.mainWindow() is None:
             self.panel.show()
@@ -75,14 +75,16 @@ class Tour:
         return path
 
     def remove_chosen_scenario(self) -> None:
-        """Remove the scenario of one's own that is chosen, and go back to the built-in one."""
+        """Remove the scenario that is chosen and loaded, and go back to the built-in one."""
         combo = self.hands.find("scenarioComboBox")
-        folder = self.session.places.library / combo.itemData(combo.currentIndex)
+        name = combo.itemData(combo.currentIndex)
+        folder = self.session.places.library / name
         self.hands.must(folder.is_dir(), f"There is no scenario {folder}.")
+        # The simulator, which is about to use it, loads one scenario at a time.
+        self.play("--await", name)
         self.hands.choose("scenarioComboBox", "Colin27")
-        # The simulator may have loaded the other one.
         self.hands.click("loadScenarioButton")
-        self.hands.let_pass(2.0)
+        self.play("--await", "colin27")
         shutil.rmtree(folder)
 
     def touch(self, first: int, last: int) -> str:
@@ -99,7 +101,8 @@ class Tour:
         command += ["--logic", str(Path(self.hands.module.resourcePath("..")) / "Logic")]
         command += ["--scenario", str(places.assets / "scenarios" / "colin27")]
         command += ["--records", str(places.records)]
-        command += ["--port", str(self.hands.find("portSpinBox").value), *words]
+        command += ["--port", str(self.hands.find("portSpinBox").value)]
+        command += ["--patience", str(self.hands.patience_s), *words]
         self._trainee = subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import tour_afterward
+import tour_end
+import tour_procedure
+import tour_scenarios
 import tour_trial
 from tour_stage import Tour
 
@@ -28,13 +31,20 @@ STEPS: tuple[tuple[str, Callable[[Tour], str | None]], ...] = (
     ("Show tables and plots", tour_afterward.tables_and_plots),
     ("Export", tour_afterward.export),
     ("Write the report", tour_afterward.report),
+    ("Plan a procedure", tour_procedure.plan),
+    ("Start task 1 with a procedure", tour_procedure.start),
+    ("Register again, and verify", tour_procedure.verify),
+    ("Align the guide by the robot", tour_procedure.align),
+    ("Drill", tour_procedure.drill),
+    ("Insert the instrument", tour_procedure.insert),
     ("Save and load the scene", tour_afterward.save_and_load_scene),
-    ("Save a scenario and add it", tour_afterward.zip_file),
-    ("Preview and check a head", tour_afterward.preview_and_check),
-    ("Make a scenario from a volume", tour_afterward.scenario_from_volume),
-    ("Lead through a study", tour_afterward.study),
-    ("Delete every node", tour_afterward.delete_every_node),
-    ("Delete the trainee and stop", tour_afterward.delete_trainee_and_stop),
+    ("Save a scenario and add it", tour_scenarios.zip_file),
+    ("Preview and check a head", tour_scenarios.preview_and_check),
+    ("Make a scenario from a volume", tour_scenarios.scenario_from_volume),
+    ("Lead through a study", tour_end.study),
+    ("Delete every node", tour_end.delete_every_node),
+    ("Delete the trainee and stop", tour_end.delete_trainee_and_stop),
+    ("Start and stop by the section", tour_end.start_and_stop),
 )
 
 NEEDED = (tour_trial.open_module, tour_trial.start_and_connect)

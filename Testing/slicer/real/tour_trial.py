@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 
 import slicer
-from tour_hands import TIMEOUT_S
 from tour_stage import SLIP_AT, Tour
 
 TRAINEE = "TOUR-1"
@@ -66,7 +65,7 @@ def start_and_connect(tour: Tour) -> str:
     hands = tour.hands
     tour.dialogs.answer("not set up on this computer yet", "Ok")
     hands.click("nextStepButton")
-    patience = SETUP_TIMEOUT_S if tour.session.simulator.setup.isRunning else TIMEOUT_S
+    patience = SETUP_TIMEOUT_S if tour.session.simulator.setup.isRunning else 0.0
     hands.wait_until(lambda: hands.text("linkText") == "Connected", "it connects", patience)
     tour.dialogs.forget()
     return hands.text("stateText")

@@ -1,0 +1,69 @@
+"""Other scenarios in the tour: one is passed on as a file, one is made from a volume."""
+
+from __future__ import annotations
+
+import slicer
+from tour_stage import Tour
+
+SCENARIO_TIMEOUT_S = 600.0
+
+
+def zip_file(tour: Tour) -> str:
+    """Save the scenario without its names, and add it again under what it is called then."""
+    hands, path = tour.hands, tour.fresh("scenario.zip")
+    hands.open("scenarioCollapsibleButton", "shareGroupBox")
+    # Its tasks have fiducials on the face, which could not go without them.
+    hands.check("removeFaceCheckBox", wanted=False)
+    tour.dialogs.answer("Save the scenario", path)
+    hands.click("exportScenarioButton")
+    hands.wait_until(path.is_file, "the file is written", SCENARIO_TIMEOUT_S)
+    hands.wait_until(lambda: "is written" in hands.text("scenarioText"), "it is told")
+    told = hands.text("scenarioText")
+    tour.dialogs.answer("Add a scenario", path)
+    hands.click("importScenarioButton")
+    hands.wait_until(lambda: "is added" in hands.text("scenarioText"), "it is added")
+    hands.click("loadScenarioButton")
+    tour.remove_chosen_scenario()
+    return told
+
+
+def preview_and_check(tour: Tour) -> str:
+    """Look for the head of a volume, and have the choices checked before anything is made."""
+    hands = tour.hands
+    hands.open("newScenarioCollapsibleButton", "adjustHeadGroupBox", "planForScenarioGroupBox")
+    _choose_volume(tour)
+    hands.click("previewHeadButton")
+    text = "newScenarioText"
+    hands.wait_until(
+        lambda: "the head that was found" in hands.text(text), "it is found", SCENARIO_TIMEOUT_S
+    )
+    hands.open("scenarioCollapsibleButton", "otherHeadGroupBox")
+    hands.find("headModelComboBox").setCurrentNode(slicer.util.getNode("Head as found"))
+    hands.click("useHeadButton")
+    hands.wait_until(lambda: "is the head now" in hands.text("otherHeadText"), "it is used")
+    hands.click("checkScenarioButton")
+    hands.wait_until(lambda: "can be used" in hands.text(text), "it is checked", SCENARIO_TIMEOUT_S)
+    return hands.text(text)
+
+
+def scenario_from_volume(tour: Tour) -> str:
+    hands = tour.hands
+    hands.open("newScenarioCollapsibleButton")
+    _choose_volume(tour)
+    hands.click("makeScenarioButton")
+    combo = hands.find("scenarioComboBox")
+    hands.wait_until(
+        lambda: "Head of the tour" in combo.currentText, "it is made", SCENARIO_TIMEOUT_S
+    )
+    told = hands.text("newScenarioText")
+    tour.remove_chosen_scenario()
+    return told
+
+
+def _choose_volume(tour: Tour) -> None:
+    """Choose the images of the scenario, as if they were a patient's."""
+    hands = tour.hands
+    (volume,) = slicer.util.getNodesByClass("vtkMRMLScalarVolumeNode")
+    hands.find("scanComboBox").setCurrentNode(volume)
+    hands.find("titleLineEdit").text = "Head of the tour"
+    hands.let_pass(0.1)
