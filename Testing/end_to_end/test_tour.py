@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 import slicer
@@ -11,19 +10,9 @@ from rastrainer.slicer.settings import PORT, PROGRAM
 from Testing.end_to_end.module.installed_simulator import write_program
 from Testing.end_to_end.module.story import FAST, free_port
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
+from Testing.slicer.test_module_widget import NOT_IN_THE_TOUR
 
-ROOT = Path(__file__).parents[2]
-TOUR = ROOT / "Testing" / "slicer" / "real" / "tour.py"
-FORMS = ROOT / "RASTrainer" / "Resources" / "UI"
-PRESSED_ELSEWHERE = {
-    "connectToRunningButton": "Testing/end_to_end/test_left_simulator.py",
-    "endRunningButton": "Testing/end_to_end/test_left_simulator.py",
-    "removeSetupButton": "Testing/slicer/test_setup_panel.py",
-    "sampleDataButton": "Testing/end_to_end/test_new_scenario_in_module.py",
-    "setupButton": "Testing/slicer/test_setup_panel.py",
-}
-"""Buttons that the tour cannot press, with a test that does: they need a simulator left by a crash,
-would remove what the user has set up, or download images."""
+TOUR = Path(__file__).parents[1] / "slicer" / "real" / "tour.py"
 
 
 @pytest.fixture
@@ -56,18 +45,7 @@ def test_the_tour_of_a_release_goes_well_in_the_host(host, program, tmp_path):
     steps = tour(host, program, tmp_path, "--patience", "1200")
     assert len(steps) > 32
     told = json.loads((tmp_path / "tour" / "tour.json").read_text())
-    assert told["unused"] == sorted(PRESSED_ELSEWHERE)
-
-
-def test_each_button_of_the_module_is_pressed_by_the_tour_or_by_a_test_that_is_named():
-    forms = [ElementTree.parse(path) for path in sorted(FORMS.glob("*.ui"))]
-    widgets = [widget for form in forms for widget in form.iter("widget")]
-    buttons = {each.get("name") for each in widgets if each.get("class") == "QPushButton"}
-    steps = "".join(path.read_text(encoding="utf-8") for path in TOUR.parent.glob("*.py"))
-    unused = {name for name in buttons if f'"{name}"' not in steps}
-    assert unused == set(PRESSED_ELSEWHERE)
-    for name, path in PRESSED_ELSEWHERE.items():
-        assert f'press("{name}")' in (ROOT / path).read_text(encoding="utf-8")
+    assert told["unused"] == sorted(NOT_IN_THE_TOUR)
 
 
 def tour(host, program, tmp_path, *words):

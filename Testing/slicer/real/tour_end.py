@@ -39,7 +39,8 @@ def _abort_and_repeat_step(tour: Tour) -> None:
     hands = tour.hands
     hands.open("trainingCollapsibleButton")
     hands.wait_until(lambda: hands.find("startStepButton").enabled, "a trial can be started")
-    _abort_step(tour)
+    # An aborted trial counts, at once, if it has a touch.
+    _abort_step(tour, "--points", "1", "1")
     hands.wait_until(lambda: hands.find("repeatStepButton").visible, "a reason is asked for")
     tour.dialogs.answer("Repeat the step", "The tour has aborted it.")
     hands.click("repeatStepButton")
@@ -47,10 +48,12 @@ def _abort_and_repeat_step(tour: Tour) -> None:
     _abort_step(tour)
 
 
-def _abort_step(tour: Tour) -> None:
+def _abort_step(tour: Tour, *played: str) -> None:
     hands = tour.hands
     hands.click("startStepButton")
     hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial runs")
+    if played:
+        tour.play(*played)
     tour.dialogs.answer("Abort the trial", "Yes")
     hands.click("abortButton")
     hands.wait_until(lambda: hands.text("nextStepButton") != "Pause", "no trial is open")
