@@ -1,4 +1,4 @@
-"""A display in memory (Xvfb), and a keyboard on it (XTEST)."""
+"""A display in memory (Xvfb), and a keyboard and a mouse on it (XTEST)."""
 
 from __future__ import annotations
 
@@ -58,16 +58,56 @@ class VirtualDisplay:
         self._process.wait()
 
 
-class VirtualKeyboard:
-    """Presses keys on a display, for whichever window has the focus."""
+class _Device:
+    """What works a display by XTEST."""
 
     def __init__(self, display: VirtualDisplay):
         self._x = ctypes.CDLL("libX11.so.6")
         self._test = ctypes.CDLL("libXtst.so.6")
         self._x.XOpenDisplay.restype = ctypes.c_void_p
         self._x.XStringToKeysym.restype = ctypes.c_ulong
+        self._x.XDefaultRootWindow.restype = ctypes.c_ulong
         self._display = ctypes.c_void_p(self._x.XOpenDisplay(display.name.encode()))
         assert self._display, f"{display.name} cannot be opened"
+
+    def close(self) -> None:
+        """Leave the display."""
+        self._x.XCloseDisplay(self._display)
+
+
+class VirtualMouse(_Device):
+    """Moves the pointer, and presses its left button."""
+
+    def move(self, x: int, y: int) -> None:
+        """Put the pointer at a pixel of the display."""
+        self._test.XTestFakeMotionEvent(self._display, -1, x, y, 0)
+        self._x.XFlush(self._display)
+
+    def hold(self, is_down: bool) -> None:
+        """Press the left button, or let it go."""
+        self._test.XTestFakeButtonEvent(self._display, 1, int(is_down), 0)
+        self._x.XFlush(self._display)
+
+    def window_corner(self, width: int) -> tuple[int, int]:
+        """Return where the window that is so many pixels wide begins."""
+        root = ctypes.c_ulong(self._x.XDefaultRootWindow(self._display))
+        parent, count = ctypes.c_ulong(), ctypes.c_uint()
+        others, children = ctypes.c_ulong(), ctypes.POINTER(ctypes.c_ulong)()
+        refs = (others, parent, children, count)
+        self._x.XQueryTree(self._display, root, *map(ctypes.byref, refs))
+        for index in range(count.value):
+            x, y = ctypes.c_int(), ctypes.c_int()
+            size = [ctypes.c_uint() for _ in range(4)]
+            child = ctypes.c_ulong(children[index])
+            into = map(ctypes.byref, (others, x, y, *size))
+            self._x.XGetGeometry(self._display, child, *into)
+            if size[0].value == width:
+                return x.value, y.value
+        raise AssertionError(f"no window is {width} pixels wide")
+
+
+class VirtualKeyboard(_Device):
+    """Presses keys on a display, for whichever window has the focus."""
 
     def hold(self, code: str, is_down: bool) -> None:
         """Press a key by its W3C code, or let it go."""
@@ -83,7 +123,3 @@ class VirtualKeyboard:
         time.sleep(HELD_S)
         self.hold(code, False)
         time.sleep(HELD_S)
-
-    def close(self) -> None:
-        """Leave the display."""
-        self._x.XCloseDisplay(self._display)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from playwright.sync_api import Page
 
 from Testing.end_to_end.hands import KeyHands
@@ -54,6 +56,10 @@ _MOVE = """async (by) => {
   const moved = ray.getWorldPosition(ray.position.clone()).sub(before);
   return [moved.x, -moved.z, moved.y];
 }"""
+
+
+_SLOW_IS = """(word) =>
+  document.querySelector("#hints [data-item='press fine']")?.textContent.endsWith(word)"""
 
 
 class PageKeys(KeyHands):
@@ -134,6 +140,56 @@ class Thumbs:
     def _send(self, kind: str) -> None:
         points = [{"id": thumb, "x": x, "y": y} for thumb, (x, y) in self._thumbs.items()]
         self._screen.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+
+class PageMouse:
+    """The mouse alone: it clicks on menus and hints, and drags one of the sticks at a time."""
+
+    def __init__(self, page: Page):
+        self._page = page
+        self._dragged: str | None = None
+
+    def click(self, item: str) -> None:
+        """Click on an item of the menu or on a hint, once it is there."""
+        target = f"#menu li[data-name='{item}'] button, #hints [data-item='{item}']"
+        self._page.wait_for_selector(target)
+        box = self._page.query_selector(target).bounding_box()
+        assert min(box["width"], box["height"]) >= 24
+        assert self._page.eval_on_selector(target, "e => getComputedStyle(e).cursor") == "pointer"
+        self._page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+
+    def tap(self, control: str) -> None:
+        self.push(0.0, 0.0, 0.0)
+        self.click(f"press {control}")
+
+    def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
+        """Drag the stick of the larger part; slow motion is clicked on and off."""
+        is_level = math.hypot(right, forward) >= abs(up)
+        across, along = (right, forward) if is_level else (0.0, up)
+        wanted = ("first", "last")[not is_level] if across or along else None
+        if wanted != self._dragged and self._dragged is not None:
+            self._page.mouse.up()
+            self._dragged = None
+        if wanted is None:
+            return
+        if fine != self._is_slow:
+            self._page.mouse.up()
+            self._dragged = None
+            self.click("press fine")
+            self._page.wait_for_function(_SLOW_IS, arg="on" if fine else "off")
+        sticks = self._page.query_selector_all("#touch-controls .stick")
+        box = sticks[0 if wanted == "first" else 1].bounding_box()
+        radius = box["width"] / 2
+        middle = box["x"] + radius, box["y"] + radius
+        if self._dragged is None:
+            self._page.mouse.move(*middle)
+            self._page.mouse.down()
+            self._dragged = wanted
+        self._page.mouse.move(middle[0] + across * radius, middle[1] - along * radius)
+
+    @property
+    def _is_slow(self) -> bool:
+        return self._page.inner_text("#hints [data-item='press fine']").endswith("on")
 
 
 class Controllers:

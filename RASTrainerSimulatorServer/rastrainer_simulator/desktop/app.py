@@ -20,6 +20,7 @@ from rastrainer_simulator.desktop.connection import ServerConnection
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox
 from rastrainer_simulator.desktop.keyboard import OperatorKeys, without_late_repeats
+from rastrainer_simulator.desktop.mouse_sticks import LEFT_BUTTON, MouseSticks
 from rastrainer_simulator.desktop.performance import (
     SLOWEST_FRAME_S,
     SOFTWARE_SIZE,
@@ -45,7 +46,6 @@ MIN_PAUSE_S = 0.002
 """Between two pictures, however slowly they are drawn: what has arrived is taken in by then."""
 TRIED_FRAMES = 12
 NICENESS = 10
-LEFT_BUTTON = 1
 OWN_KEYS = (pygame.K_F11, pygame.K_F12)
 """Full screen, and screenshot: these are not sent to the simulator."""
 
@@ -103,6 +103,7 @@ class DesktopWindow:
         )
         self._keys = OperatorKeys(self._connection)
         self._view_mouse = ViewMouse(self._connection)
+        self._mouse_sticks = MouseSticks(self._connection)
         self._frames = FrameCount(self._report_frames, time.monotonic())
         self._own_held: set[int] = set()
         self._screenshots: set[asyncio.Task[None]] = set()
@@ -130,6 +131,8 @@ class DesktopWindow:
         for event in without_late_repeats(pygame.event.get(), self._keys.is_held):
             self._take(event)
         self._keys.keep_alive()
+        self._mouse_sticks.keep_alive()
+        self._show_sticks()
         self._view_mouse.tell(not self._has_menu)
         while self._inbox.sounds:
             sound = self._inbox.sounds.popleft()
@@ -157,6 +160,9 @@ class DesktopWindow:
             self._is_open = False
         elif event.type == pygame.MOUSEMOTION and event.rel != (0, 0):
             self._picture.pointer.move(event.pos, time.monotonic())
+            self._mouse_sticks.take(event, self._window.size)
+        elif self._picture.has_sticks and self._mouse_sticks.take(event, self._window.size):
+            self._picture.pointer.move(event.pos, time.monotonic())
         elif event.type == pygame.MOUSEBUTTONDOWN and event.button == LEFT_BUTTON:
             self._click(event.pos)
         elif event.type == pygame.MOUSEWHEEL and event.y and self._has_menu:
@@ -165,6 +171,12 @@ class DesktopWindow:
             self._picture.redraw()
         self._view_mouse.take(event, self._window.size[1])
         self._keys.take(event)
+
+    def _show_sticks(self) -> None:
+        """Have the sticks drawn as they stand; those that are not shown are let go."""
+        if not self._picture.has_sticks:
+            self._mouse_sticks.release()
+        self._picture.pushes = self._mouse_sticks.pushes
 
     @property
     def _has_menu(self) -> bool:

@@ -118,6 +118,7 @@ class ServerConnection:
 
     def _take_control(self, message: Mapping[str, Any]) -> None:
         self._inbox.holder = str(message["holder"])
+        self._inbox.has_control = bool(message["isYou"])
 
     def _take_pairing(self, message: Mapping[str, Any]) -> None:
         addresses = ", ".join(str(address) for address in message["addresses"])

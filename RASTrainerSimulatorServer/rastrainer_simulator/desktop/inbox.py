@@ -60,6 +60,7 @@ class Inbox:
     Attributes:
         state: members of the latest `state` message, as of the last `read_state`; None before.
         holder: what drives the arm; "" while nobody does.
+        has_control: whether it is this window's keys or mouse.
         pairing: code and addresses by which other views are paired; None while unknown.
         bodies: names in the order of a state's poses.
         thumbnails: pictures of the menus' items by where they come from.
@@ -77,6 +78,7 @@ class Inbox:
         self.sounds: deque[SoundEvent] = deque(maxlen=16)
         self.problem = "window.connecting"
         self.holder = ""
+        self.has_control = False
         self.pairing: tuple[str, str] | None = None
         self.bodies: tuple[str, ...] = ()
         self.thumbnails: dict[str, Thumbnail] = {}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,13 @@ from rastrainer_simulator.desktop.panels.depth_gauge import DepthGauge, paint_ga
 from rastrainer_simulator.desktop.panels.edges import Side
 from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
 from rastrainer_simulator.desktop.panels.sprite import Sprite
+from rastrainer_simulator.desktop.panels.stick import (
+    StickLook,
+    knob_box,
+    paint_knob,
+    paint_stick,
+    stick_boxes,
+)
 from rastrainer_simulator.desktop.panels.target_arrow import (
     REACH,
     STEP_DEG,
@@ -30,6 +38,7 @@ from rastrainer_simulator.net.views.screen import Screen
 MAX_WARNINGS = 3
 GLOW = 44
 INSET_FRAME = 4
+STICKS = ("left", "right")
 
 
 @dataclass(frozen=True)
@@ -46,6 +55,7 @@ class Content:
         thumbnail: picture of the menu's item that has the focus; None without one.
         aim: how the planned line lies to the guide; None while none is aligned.
         gauge: how deep drill or instrument is; None while none is fed.
+        sticks: the left and the right one that the mouse drags; none where they are not shown.
     """
 
     screen: Screen
@@ -57,6 +67,7 @@ class Content:
     thumbnail: Thumbnail | None = None
     aim: BullsEye | None = None
     gauge: DepthGauge | None = None
+    sticks: tuple[StickLook, ...] = ()
 
 
 class Overlay:
@@ -71,13 +82,11 @@ class Overlay:
         self._shown: Content | None = None
 
     def item_at(self, x: float, y: float) -> str:
-        """Return the name of the item at a pixel, counted from the upper left corner.
-
-        Without a menu, it is that of a hint that can be clicked.
-        """
-        if self._menu is None or self._menu_box is None:
-            return self._hint_at(x, y)
-        return self._menu.item_at(x - self._menu_box.left, y - self._menu_box.top)
+        """Return the name of the menu's item or of the hint at a pixel, from the upper left."""
+        item = ""
+        if self._menu is not None and self._menu_box is not None:
+            item = self._menu.item_at(x - self._menu_box.left, y - self._menu_box.top)
+        return item or self._hint_at(x, y)
 
     def _hint_at(self, x: float, y: float) -> str:
         shown = () if self._shown is None else self._shown.screen.hints
@@ -87,11 +96,9 @@ class Overlay:
         width, height = self._slots["hints"].sprite.size
         left = (self._size[0] - width) // 2
         top = self._size[1] - self._brush.px(theme.MARGIN) - height
-        for hint, box in strips.hint_boxes(shown, self._brush, room):
-            is_across = 0 <= x - left - box.left < box.width
-            if is_across and 0 <= y - top - box.top < box.height:
-                return hint.item
-        return ""
+        boxes = strips.hint_boxes(shown, self._brush, room)
+        hit = (hint.item for hint, box in boxes if box.contains(x - left, y - top))
+        return next(hit, "")
 
     def show(self, content: Content, size: tuple[int, int]) -> bool:
         """Lay something over a window of so many pixels; return whether anything has changed."""
@@ -105,8 +112,9 @@ class Overlay:
         self._show_target(content.target)
         self._show_aside("aim", content.aim, paint_bulls_eye, content.inset)
         self._show_aside("gauge", content.gauge, paint_gauge, content.inset)
+        self._show_sticks(content.sticks)
         top = self._show_top(content.screen)
-        bottom = self._show_bottom(content.screen)
+        bottom = self._show_bottom(content)
         self._show_menu(content, top, bottom)
         return True
 
@@ -147,16 +155,21 @@ class Overlay:
         self._place(name, (self._size[0] - width) // 2, top)
         return top + height + self._brush.px(1.5 * theme.STEP)
 
-    def _show_bottom(self, screen: Screen) -> int:
+    def _show_bottom(self, content: Content) -> int:
         """Show the hints; return how far up they reach."""
+        screen = content.screen
         brush, margin = self._brush, self._brush.px(theme.MARGIN)
         room = self._size[0] - 2 * margin
         bottom = self._size[1] - margin
-        if self._paint("hints", screen.hints, strips.hints, brush, room):
+        shown = (screen.hints, content.hovered if self._is_hint(content.hovered) else "")
+        if self._paint("hints", screen.hints and shown, strips.hints, brush, room):
             height = self._slots["hints"].sprite.size[1]
             self._center("hints", bottom - height)
             bottom -= height + self._brush.px(1.5 * theme.STEP)
         return bottom
+
+    def _is_hint(self, item: str) -> bool:
+        return self._shown is not None and any(h.item == item for h in self._shown.screen.hints)
 
     def _show_menu(self, content: Content, top: int, bottom: int) -> None:
         menu = content.screen.menu
@@ -217,6 +230,17 @@ class Overlay:
         top = margin if inset is None else inset.top + inset.height + margin
         self._place(name, self._size[0] - margin - self._slots[name].sprite.size[0], top)
 
+    def _show_sticks(self, sticks: tuple[StickLook, ...]) -> None:
+        boxes = stick_boxes(self._size)
+        for name, box, look in zip_longest(STICKS, boxes, sticks):
+            if self._paint(f"{name} stick", look and look.label, paint_stick, self._brush):
+                self._place(f"{name} stick", box.left, box.top)
+            is_pushed = look and (look.x, look.y) != (0.0, 0.0)
+            shown = None if look is None else (is_pushed,)
+            if self._paint(f"{name} knob", shown, paint_knob, self._brush):
+                knob = knob_box(box, look, self._brush)
+                self._place(f"{name} knob", knob.left, knob.top)
+
     def _show_target(self, target: tuple[Direction, int] | None) -> None:
         if target is None:
             self._slots["target"].hide()
@@ -255,6 +279,7 @@ _SLOTS = (
     "target",
     "aim",
     "gauge",
+    *(f"{name} {part}" for name in STICKS for part in ("stick", "knob")),
     "status",
     "hints",
     *(f"warning{index}" for index in range(MAX_WARNINGS)),

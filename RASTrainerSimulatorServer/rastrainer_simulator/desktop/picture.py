@@ -17,9 +17,11 @@ from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.error_arrows import ErrorArrows
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.mouse_sticks import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.bulls_eye import bulls_eye
 from rastrainer_simulator.desktop.panels.depth_gauge import depth_gauge
+from rastrainer_simulator.desktop.panels.stick import StickLook
 from rastrainer_simulator.desktop.panels.target_arrow import Direction, direction_out_of_sight
 from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, touch_ring
 from rastrainer_simulator.desktop.performance import Quality
@@ -40,6 +42,7 @@ class Pointer:
         self._place = NOWHERE
         self._moved = -REST_S
         self._is_visible = True
+        self._is_hand = False
 
     def move(self, place: tuple[int, int], now: float) -> None:
         """The mouse was moved or clicked at `now` (s)."""
@@ -52,6 +55,13 @@ class Pointer:
             self._is_visible = is_visible
             pygame.mouse.set_visible(is_visible)
         return self._place if is_visible else NOWHERE
+
+    def point(self, can_click: bool) -> None:
+        """Be a hand over what can be clicked."""
+        if can_click != self._is_hand:
+            self._is_hand = can_click
+            shape = pygame.SYSTEM_CURSOR_HAND if can_click else pygame.SYSTEM_CURSOR_ARROW
+            pygame.mouse.set_cursor(shape)
 
 
 def notice(key: str, language: str) -> Screen:
@@ -80,7 +90,12 @@ PULSE_HZ: Mapping[Quality, float] = {Quality.HIGH: 30.0, Quality.MEDIUM: 30.0, Q
 
 
 class Picture:
-    """Draws the inbox into the window, and only when something in it has changed."""
+    """Draws the inbox into the window, and only when something in it has changed.
+
+    Attributes:
+        pointer: the mouse's.
+        pushes: how the sticks that the mouse drags stand.
+    """
 
     def __init__(self, window: GlWindow, inbox: Inbox, quality: Quality):
         self._window = window
@@ -95,6 +110,14 @@ class Picture:
         self._pulse_step = 0
         self._must_draw = True
         self.pointer = Pointer()
+        self.pushes: tuple[Push, Push] = ((0.0, 0.0), (0.0, 0.0))
+
+    @property
+    def has_sticks(self) -> bool:
+        """Whether there are sticks to be dragged."""
+        screen = self._inbox.screen
+        is_free = screen is not None and screen.menu is None and screen.has_sticks
+        return is_free and self._inbox.has_control and not self._inbox.problem
 
     def item_at_pointer(self, now: float) -> str:
         """Return the name of the menu's item under the mouse."""
@@ -206,16 +229,28 @@ class Picture:
         procedure = state.get("procedure") if is_free else None
         texts = Texts(LANGUAGES.get(screen.language, {}))
         facts = own_facts(screen.language, self._inbox.holder, pairing)
+        hovered = self.item_at_pointer(now)
+        self.pointer.point(bool(hovered))
         return Content(
             screen=replace(screen, status=(*screen.status, *facts)),
             is_error=is_free and state.get("touch") in TOUCH_ERRORS,
             ring=self._ring() if is_free else None,
             inset=self.viewports.inset_box if self.viewports.has_inset else None,
             target=self._target() if is_free and screen.has_arrow else None,
-            hovered=self.item_at_pointer(now),
+            hovered=hovered,
             thumbnail=self._inbox.thumbnails.get(focused_picture(screen.menu)),
             aim=bulls_eye(procedure, texts),
             gauge=depth_gauge(screen.ruler, procedure, texts),
+            sticks=self._sticks(texts),
+        )
+
+    def _sticks(self, texts: Texts) -> tuple[StickLook, ...]:
+        """Return the sticks that the mouse drags; none where they are not shown."""
+        if not self.has_sticks:
+            return ()
+        labels = texts.say("window.left stick"), texts.say("window.right stick")
+        return tuple(
+            StickLook(label, *push) for label, push in zip(labels, self.pushes, strict=True)
         )
 
     def _ring(self) -> TouchRing | None:

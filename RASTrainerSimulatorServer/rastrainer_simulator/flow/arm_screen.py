@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from rastrainer.protocol import CommandName
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.flow.clickable_hints import clickable_hint, slow_hint
 from rastrainer_simulator.flow.path_arc import direction_words
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
@@ -104,6 +106,16 @@ class ArmScreen:
         return (
             Hint(session.stick_label(_LEVEL), session.texts.say("hint.move")),
             Hint(up_and_down, session.texts.say("hint.up_and_down")),
+        )
+
+    def _control_hints(self, names: Mapping[ControlName, str]) -> tuple[Hint, ...]:
+        """Return a hint for each control with the key of what it does."""
+        session = self._session
+        return tuple(
+            slow_hint(session)
+            if control is ControlName.FINE
+            else clickable_hint(session, control, key)
+            for control, key in names.items()
         )
 
     def _toward(self, label: str, target: Vector) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Phase
+from rastrainer_simulator.flow.clickable_hints import clickable_hint
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.procedure_result import (
@@ -159,6 +160,7 @@ class Flow:
             warnings=(*work.warnings(), *warnings),
             status=work.status(),
             hints=work.hints(),
+            has_sticks=session.screen_sticks.is_shown,
             has_arrow=work.has_arrow,
             language=session.preferences.language,
             errors=work.errors(),
@@ -301,6 +303,6 @@ class Flow:
         say = session.texts.say
         return (
             Hint(session.pair_label(ControlName.UP, ControlName.DOWN), say("hint.choose")),
-            Hint(session.label(ControlName.ACCEPT), say("hint.accept")),
-            Hint(session.label(ControlName.BACK), say("hint.back")),
+            clickable_hint(session, ControlName.ACCEPT, "hint.accept"),
+            clickable_hint(session, ControlName.BACK, "hint.back"),
         )

@@ -26,7 +26,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.subscribers import Subscribers
 from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, FeedbackEvent
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Frames, Hello, ViewUpdate
-from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
+from rastrainer_simulator.net.views.screen import PRESS, Screen, ScreenMessage, Tone
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
@@ -162,11 +162,14 @@ class FlowPresenter:
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Take XR controllers' sticks and where the eyes above them look, or a touch screen's."""
+        """Take XR controllers' sticks and where the eyes above them look, or those on a screen."""
         source = self._sticks_source(view)
         if source.kind is SourceKind.XR:
             self._view.look(view, yaw_deg)
-        self.controls.set_sticks(source, OperatorInput(translation, rotation, is_fine))
+        sticks = OperatorInput(translation, rotation, is_fine)
+        if source.kind is SourceKind.MOUSE:
+            sticks = self._session.screen_sticks.moved(translation, rotation)
+        self.controls.set_sticks(source, sticks)
         self._settle()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
@@ -185,11 +188,18 @@ class FlowPresenter:
         self._settle()
 
     def on_item(self, view: int, name: str) -> None:
-        """Take a click on an item of the menu."""
-        if self.controls.allows(self._hand_source(SourceKind.MOUSE, view)):
+        """Take a click on an item of the menu, or on a hint that presses a control."""
+        pressed = name.removeprefix(PRESS) if name.startswith(PRESS) else ""
+        control = ControlName._value2member_map_.get(pressed)
+        source = self._hand_source(SourceKind.MOUSE, view)
+        if not self.controls.allows(source, None if control is None else ControlName(pressed)):
+            return
+        if not pressed:
             self._session.pages.choose(name)
-            self._is_changed = True
-            self._settle()
+        elif not self._session.screen_sticks.pressed(pressed) and control is not None:
+            self._flow.pressed(ControlName(pressed))
+        self._is_changed = True
+        self._settle()
 
     def on_text(self, view: int, name: str, value: str) -> None:
         """Take what now stands in a text item."""
@@ -315,10 +325,16 @@ class FlowPresenter:
         return Source(kind, SIMULATOR_SEAT if is_own else f"view {view}", view)
 
     def _sticks_source(self, view: int) -> Source:
-        """Return whose sticks a view sends: a page has those on its touch screen."""
+        """Return whose sticks a view sends: a headset's, a touch screen's, or a mouse's.
+
+        A page has sticks of its own on a touch screen; for a mouse they have been asked for.
+        """
         hello = self._views.get(view)
-        if hello is None or hello.kind != "page":
+        if hello is None or hello.kind == "headset":
             return self._source(SourceKind.XR, view)
+        is_for_mouse = self._session.screen_sticks.is_shown and view not in self._touched
+        if hello.kind == "desktop" or is_for_mouse:
+            return self._source(SourceKind.MOUSE, view)
         self._touched.add(view)
         return self._source(SourceKind.TOUCH_SCREEN, view)
 

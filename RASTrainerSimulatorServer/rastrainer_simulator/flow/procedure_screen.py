@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
+from rastrainer_simulator.flow.clickable_hints import stick_hints
 from rastrainer_simulator.flow.pages.procedure import ProcedurePage
 from rastrainer_simulator.flow.session.plan_marks import checkpoint_marks, depth_ruler, plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
@@ -109,7 +110,7 @@ class ProcedureScreen(ArmScreen):
 
     def hints(self) -> tuple[Hint, ...]:
         """Return the controls that matter."""
-        session, say = self._session, self._session.texts.say
+        session = self._session
         phase = session.training.phase
         names = {
             ControlName.TOUCH: "hint.checkpoint" if phase is Phase.VERIFYING else "hint.next step",
@@ -120,10 +121,8 @@ class ProcedureScreen(ArmScreen):
         }
         if phase is not Phase.VERIFYING:
             del names[ControlName.UNDO]
-        return (
-            *self._stick_hints(phase),
-            *(Hint(session.label(control), say(key)) for control, key in names.items()),
-        )
+        on_screen = stick_hints(session, can_tilt=phase is Phase.ALIGNING)
+        return (*self._stick_hints(phase), *self._control_hints(names), *on_screen)
 
     def errors(self) -> tuple[ErrorArrow, ...]:
         """Return the plan by the registration, and checkpoints as marks on the skin."""

@@ -15,6 +15,7 @@ from rastrainer.protocol import (
 )
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.arm_screen import ArmScreen
+from rastrainer_simulator.flow.clickable_hints import stick_hints
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
 from rastrainer_simulator.flow.path_arc import BACK_WITHIN, FARTHEST, PathArc, in_m
@@ -186,17 +187,13 @@ class TrialScreen(ArmScreen):
             ControlName.CAMERA: "hint.front",
             ControlName.MENU: "hint.menu",
         }
-        say = session.texts.say
         movement: tuple[Hint, ...] = ()
         if session.is_typing_possible((SourceKind.XR,)):
             # In a headset one looks around with the head, and its sticks are drawn in its hands.
             del names[ControlName.BEST_VIEW]
         elif not is_complete:
             movement = self._movement_hints()
-        return (
-            *movement,
-            *(Hint(session.label(control), say(key)) for control, key in names.items()),
-        )
+        return (*movement, *self._control_hints(names), *stick_hints(session))
 
     def _clock(self) -> str:
         session = self._session

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rastrainer_simulator.flow.arm_screen import ArmScreen
+from rastrainer_simulator.flow.clickable_hints import clickable_hint, stick_hints
 from rastrainer_simulator.flow.homing import Homing
 from rastrainer_simulator.flow.pages.errors import error_arrow, error_tone
 from rastrainer_simulator.flow.pages.tutorial import TutorialPage
@@ -47,9 +48,11 @@ _CONTROLS: Mapping[TutorialStep, tuple[ControlName, ...]] = {
 """The controls of each step; its sentence names the first, or the first two as a pair."""
 _FREE = (TutorialStep.SLOW, TutorialStep.LOWER, TutorialStep.GUIDED)
 """Steps in which the tip may go anywhere: all that moves it is among the hints."""
+MOVES = tuple(TutorialStep)[:6]
+"""Steps that move the tip one way."""
 _MM, _DEG = "tutorial.done mm", "tutorial.done degrees"
 _AMOUNTS: Mapping[TutorialStep, str] = {
-    **dict.fromkeys(list(TutorialStep)[:7], _MM),
+    **dict.fromkeys((*MOVES, TutorialStep.SLOW), _MM),
     TutorialStep.TURN_VIEW: _DEG,
     TutorialStep.LOOK_AROUND: _DEG,
     TutorialStep.GUIDED: "tutorial.done points",
@@ -167,13 +170,15 @@ class TutorialScreen(ArmScreen):
         controls = _CONTROLS[step]
         if step is TutorialStep.TURN_VIEW:
             hints = [Hint(session.pair_label(*controls), say("hint.turn_view"))]
+        elif step in (*MOVES, TutorialStep.LOOK_AROUND):
+            hints = [Hint(session.label(name), say(f"control.{name.value}")) for name in controls]
         else:
-            named = [name for name in controls if self._is_there(name)]
-            hints = [Hint(session.label(name), say(f"control.{name.value}")) for name in named]
+            named = {name: f"control.{name.value}" for name in controls if self._is_there(name)}
+            hints = list(self._control_hints(named))
         moving = self._movement_hints() if step in _FREE else ()
         if step is not TutorialStep.PAUSE:
-            hints.append(Hint(session.label(ControlName.MENU), say("hint.menu")))
-        return (*moving, *hints)
+            hints.append(clickable_hint(session, ControlName.MENU, "hint.menu"))
+        return (*moving, *hints, *stick_hints(session))
 
     def errors(self) -> tuple[ErrorArrow, ...]:
         """Return the errors of the guided touches, as a result shows them."""

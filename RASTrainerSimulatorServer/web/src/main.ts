@@ -114,6 +114,7 @@ export class Page {
       case "control":
         this.control = news;
         this.pads.takeControl(news);
+        this.touch.takeControl(news);
         this.overlay.showControl(news);
         this.headset?.showControl(news);
         break;

@@ -73,6 +73,8 @@ export interface Screen {
   readonly status: readonly string[];
   readonly hints: readonly Hint[];
   readonly language: string;
+  /** Whether two sticks are drawn for a mouse, in the view that has control. */
+  readonly has_sticks: boolean;
   readonly is_stepped: boolean;
   readonly has_arrow: boolean;
   readonly errors: readonly ErrorArrow[];

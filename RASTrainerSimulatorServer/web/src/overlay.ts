@@ -41,8 +41,21 @@ export class Overlay {
       for (const hint of screen.hints) {
         const line = element("li", "");
         const place = hint.item === "" ? line : line.appendChild(element("button", ""));
-        place.append(element("kbd", hint.control), hint.action);
-        if (hint.item !== "") place.onclick = () => connection.send("item", { name: hint.item });
+        place.append(element("kbd", hint.control));
+        // What is written on it already is not said twice.
+        if (hint.action !== hint.control) place.append(hint.action);
+        if (hint.item !== "") {
+          place.dataset.item = hint.item;
+          const choose = () => connection.send("item", { name: hint.item });
+          // At once, not when the button is let go: the tip is where it is now.
+          place.onpointerdown = (event) => {
+            if (event.button === 0) choose();
+          };
+          place.onclick = (event) => {
+            const isByKey = event.detail === 0;
+            if (isByKey) choose();
+          };
+        }
         parent.append(line);
       }
     });

@@ -1,8 +1,8 @@
-/** Two sticks and the buttons of a trial, for devices that have no keys: shown from the first touch on. */
+/** Two sticks, and the buttons of a trial: on a touch screen from the first touch on, by mouse on request. */
 
 import type { Connection } from "./connection";
 import { byId, element } from "./elements";
-import type { Screen } from "./messages";
+import type { ControlNews, Screen } from "./messages";
 import { say } from "./texts";
 import { TouchStick } from "./touch_stick";
 
@@ -18,6 +18,9 @@ export class TouchControls {
   private readonly buttons = new Map<TouchControl, HTMLButtonElement>();
   private isUsed = matchMedia("(pointer: coarse)").matches;
   private isWorking = false;
+  /** Whether the sticks alone are wanted: what a mouse clicks is among the hints. */
+  private isForMouse = false;
+  private hasControl = false;
 
   constructor(private readonly connection: Connection) {
     const row = element("div", "");
@@ -44,11 +47,17 @@ export class TouchControls {
 
   show(screen: Screen): void {
     this.isWorking = screen.menu === null;
+    this.isForMouse = screen.has_sticks;
     if (!this.isWorking) this.release();
     for (const [control, button] of this.buttons) button.textContent = say(`touch.${control}`);
     this.fine.textContent = say("touch.fine");
     this.left.label(say("touch.left"));
     this.right.label(say("touch.right"));
+    this.place();
+  }
+
+  takeControl(control: ControlNews): void {
+    this.hasControl = control.isYou;
     this.place();
   }
 
@@ -71,7 +80,9 @@ export class TouchControls {
   }
 
   private place(): void {
-    this.parent.hidden = !this.isUsed || !this.isWorking;
+    const isAsked = this.isUsed || (this.isForMouse && this.hasControl);
+    if (!isAsked) this.release();
+    this.parent.hidden = !isAsked || !this.isWorking;
   }
 
   private button(control: TouchControl): HTMLButtonElement {

@@ -142,7 +142,7 @@ def test_long_sentences_and_many_hints_stay_in_their_room(size):
         strips.instruction(message, brush, room),
         strips.warning(message, brush, room),
         strips.status([f"Fact number {n}" for n in range(9)], brush, room),
-        strips.hints(hints, brush, room),
+        strips.hints((hints, ""), brush, room),
     )
     assert max(pixels.shape[1] for pixels in painted) <= room
 

@@ -10,6 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.desktop.camera import TRANSITION_S, Viewpoint
 from rastrainer_simulator.desktop.glb_parts import read_parts
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.panels.stick import stick_boxes
 from rastrainer_simulator.desktop.performance import Quality, first_quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
@@ -190,6 +191,31 @@ def test_a_hint_that_can_be_clicked_is_found_under_the_mouse(show, picture):
     assert overlay.item_at((left + right) / 2, height) == "back"
     show()
     assert overlay.item_at((left + right) / 2, height) == ""
+
+
+def test_the_sticks_that_a_mouse_drags_are_drawn_as_they_stand_in_the_window_that_has_control(
+    show, picture
+):
+    inbox = picture._inbox
+    inbox.has_control = True
+    blue = ((15, 95, 220), (60, 130, 245))
+    drawn = show(replace(SCREEN, has_sticks=True))
+    assert picture.has_sticks
+    boxes = stick_boxes(SIZE)
+    left, right = (
+        found(drawn[box.top : box.top + box.height, box.left : box.left + box.width], blue)
+        for box in boxes
+    )
+    assert min(len(left), len(right)) > 500
+    picture.pushes = ((1.0, 0.0), (0.0, 0.0))
+    box = boxes[0]
+    pushed = show(replace(SCREEN, has_sticks=True))
+    pushed = pushed[box.top : box.top + box.height, box.left : box.left + box.width]
+    assert found(pushed, blue)[:, 1].mean() > left[:, 1].mean() + 0.2 * box.width
+    inbox.has_control = False
+    without = show(replace(SCREEN, has_sticks=True))
+    without = without[box.top : box.top + box.height, box.left : box.left + box.width]
+    assert len(found(without, blue)) < 50
 
 
 def test_a_menu_that_is_opened_again_is_shown_again(show):

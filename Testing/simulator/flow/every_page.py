@@ -18,6 +18,7 @@ from rastrainer_simulator.flow.pages import (
     procedure_result,
     result,
     start,
+    trainee_id,
     trial,
     tutorial,
 )
@@ -127,7 +128,9 @@ def _pages(session) -> Iterator[SessionPage]:
     yield bindings.ListenPage(session, keys, touch)
     yield bindings.ConflictPage(session, keys, touch, "KeyC")
     yield experiment.ExperimentPage(session)
-    yield experiment.KeyboardPage(session, lambda *_: None)
+    yield trainee_id.KeyboardPage(session, lambda *_: None)
+    yield trainee_id.ClickedIdPage(session, lambda *_: None)
+    yield trainee_id.CharacterPage(session, lambda *_: None, trainee_id.ROWS[0])
     yield experiment.ScenarioPage(session)
     yield QuestionnairePage(session, QUESTIONNAIRE)
     for over_a_trial in (trial.TrialPage, trial.AbortPage, trial.PracticePage, trial.CompletePage):

@@ -146,7 +146,8 @@ def test_the_errors_on_the_head_are_turned_by_keys_and_pad_and_left_by_a_click(r
 
 def test_a_replay_is_left_by_a_click(result):
     result.show_again()
-    assert [hint.item for hint in result.presenter.screen.hints] == ["", "", "", "", "back"]
+    items = [hint.item for hint in result.presenter.screen.hints]
+    assert items == ["press accept", "", "press up", "press camera", "back"]
     result.presenter.on_item(1, "back")
     result.until_menu("result")
 

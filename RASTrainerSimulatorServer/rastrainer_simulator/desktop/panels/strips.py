@@ -12,6 +12,9 @@ from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
 from rastrainer_simulator.net.views.screen import Hint, ScreenMessage
 
+LEAST_TARGET_PX = 24
+"""Height of what can be clicked: WCAG 2.2, 2.5.8."""
+
 
 def instruction(message: ScreenMessage, brush: Brush, room: int) -> np.ndarray:
     """Return what to do now, at most `room` pixels wide; a bar in the tone's color leads it."""
@@ -43,8 +46,12 @@ def status(facts: Sequence[str], brush: Brush, room: int) -> np.ndarray:
     return canvas.pixels()
 
 
-def hints(shown: Sequence[Hint], brush: Brush, room: int) -> np.ndarray:
-    """Return controls as key caps with what they do, in as many rows as they need."""
+def hints(content: tuple[Sequence[Hint], str], brush: Brush, room: int) -> np.ndarray:
+    """Return controls as key caps with what they do, in as many rows as they need.
+
+    `content` has the hints, and the item of the one under the mouse.
+    """
+    shown, hovered = content
     rows = _rows(shown, brush, room)
     pad, cap = brush.px(theme.STEP), _cap_height(brush)
     width = max(_hints_width(row, brush) for row in rows)
@@ -52,7 +59,7 @@ def hints(shown: Sequence[Hint], brush: Brush, room: int) -> np.ndarray:
     ground = Box(0, 0, canvas.width, canvas.height)
     canvas.box(ground, theme.GLASS, min(canvas.height / 2, brush.px(theme.PANEL_RADIUS)))
     for hint, box in hint_boxes(shown, brush, room):
-        _write_hint(canvas, hint, brush, box)
+        _write_hint(canvas, hint, brush, box, bool(hovered) and hint.item == hovered)
     return canvas.pixels()
 
 
@@ -100,7 +107,7 @@ def _sentence(
 
 
 def _cap_height(brush: Brush) -> int:
-    return brush.line_height(theme.SMALL) + brush.px(theme.STEP)
+    return max(LEAST_TARGET_PX, brush.line_height(theme.SMALL) + brush.px(theme.STEP))
 
 
 def _cap_width(control: str, brush: Brush) -> int:
@@ -109,6 +116,8 @@ def _cap_width(control: str, brush: Brush) -> int:
 
 
 def _hint_width(hint: Hint, brush: Brush) -> int:
+    if hint.action == hint.control:
+        return _cap_width(hint.control, brush)
     action = brush.width(hint.action, theme.SMALL)
     return _cap_width(hint.control, brush) + brush.px(1.5 * theme.STEP) + action
 
@@ -118,17 +127,25 @@ def _hints_width(row: Sequence[Hint], brush: Brush) -> int:
     return sum(_hint_width(hint, brush) for hint in row) + between + 2 * brush.px(theme.PAD)
 
 
-def _write_hint(canvas: Canvas, hint: Hint, brush: Brush, box: Box) -> None:
-    """Draw a key cap and its action; what can be clicked is colored as buttons are."""
+def _write_hint(
+    canvas: Canvas, hint: Hint, brush: Brush, box: Box, is_hovered: bool = False
+) -> None:
+    """Draw a key cap and its action; what can be clicked is colored as buttons are.
+
+    What is written on the cap already is not said twice.
+    """
     left, top, height = box.left, box.top, box.height
     width = _cap_width(hint.control, brush)
     cap = Box(left, top, width, height)
     canvas.box(cap, theme.ACCENT if hint.item else theme.CAP, height / 4)
-    canvas.frame(cap, theme.CAP_EDGE, height / 4, brush.px(1.5))
+    edge = theme.ACCENT_EDGE if is_hovered else theme.CAP_EDGE
+    canvas.frame(cap, edge, height / 4, brush.px(3 if is_hovered else 1.5))
     text = brush.width(hint.control, theme.SMALL_STRONG)
     row = top + (height - brush.line_height(theme.SMALL)) // 2
     brush.write(
         canvas, hint.control, theme.SMALL_STRONG, theme.TEXT, left + (width - text) // 2, row
     )
+    if hint.action == hint.control:
+        return
     beside = left + width + brush.px(1.5 * theme.STEP)
     brush.write(canvas, hint.action, theme.SMALL, theme.TEXT_SOFT, beside, row)

@@ -1,11 +1,9 @@
 """The experiment menu: who trains, in which mode, on which head, and which task.
 
-With it the pages that it opens: an on-screen keyboard for the ID, and the list of heads.
+With it the list of heads, which it opens.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import Mode, StepKind, TutorialRule
@@ -14,6 +12,7 @@ from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.trainee_id import ClickedIdPage, KeyboardPage
 from rastrainer_simulator.flow.session.obstacles import (
     needs_tutorial,
     obstacle,
@@ -22,12 +21,12 @@ from rastrainer_simulator.flow.session.obstacles import (
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem, ScoreTrend
+from rastrainer_simulator.net.views.screen import ItemKind, Menu, MenuItem, ScoreTrend
 
 LONGEST_ID = 32
 
 _TYPES = (SourceKind.KEYBOARD, SourceKind.MOUSE)
-ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
+_CLICKS = (SourceKind.MOUSE,)
 _PREFIX = "head "
 """No scenario's name has a space: no head is taken for the way back."""
 
@@ -53,7 +52,8 @@ class ExperimentPage(SessionPage):
         )
         mode = self.choice("mode", self.say(f"mode.{session.mode}"))
         scenario = self.button("scenario", value=session.scenario.title)
-        choices = (trainee, mode, scenario, *self._procedure())
+        by_mouse = (self.button("clicked"),) if session.is_typing_possible(_CLICKS) else ()
+        choices = (trainee, *by_mouse, mode, scenario, *self._procedure())
         tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
         step = self._step()
         is_asked = step is not None and step.kind == StepKind.QUESTIONNAIRE
@@ -77,6 +77,8 @@ class ExperimentPage(SessionPage):
             self.back()
         elif item == "scenario":
             self.session.pages.open(ScenarioPage(self.session))
+        elif item == "clicked":
+            self.session.pages.open(ClickedIdPage(self.session, self.write))
         elif item == "answer":
             self._answer()
         elif item == "tutorial":
@@ -177,54 +179,6 @@ class ExperimentPage(SessionPage):
             self.session.pages.open(QuestionnairePage(self.session, step))
         except InputError as error:
             self.session.complain(str(error))
-
-
-class KeyboardPage(SessionPage):
-    """Rows of characters: left and right choose one, accepting types it."""
-
-    name = "keyboard"
-    steps_when_accepted = False
-
-    def __init__(self, session: TrainingSession, write: Callable[[str, str], None]) -> None:
-        super().__init__(session)
-        self._write = write
-        self._places = [0] * len(ROWS)
-
-    def menu(self) -> Menu:
-        """Return the rows, the chosen character of each in brackets."""
-        rows = tuple(
-            self.choice(f"row{number}", self._row(number), label=self.say("keyboard.row"))
-            for number in range(len(ROWS))
-        )
-        return Menu(
-            self.name,
-            self.say("keyboard.title"),
-            facts=(Fact(self.say("experiment.trainee"), self.session.trainee + "_"),),
-            items=(*rows, self.button("delete"), self.button("done")),
-        )
-
-    def accept(self, item: str) -> None:
-        """Type a character, take one back, or finish."""
-        trainee = self.session.trainee
-        if item == "done":
-            self.back()
-        elif item == "delete":
-            self._write("trainee", trainee[:-1])
-        else:
-            number = int(item.removeprefix("row"))
-            self._write("trainee", trainee + ROWS[number][self._places[number]])
-
-    def step(self, item: str, direction: int) -> None:
-        """Choose the next character of a row."""
-        number = int(item.removeprefix("row"))
-        self._places[number] = (self._places[number] + direction) % len(ROWS[number])
-
-    def _row(self, number: int) -> str:
-        place = self._places[number]
-        return " ".join(
-            f"[{character}]" if index == place else character
-            for index, character in enumerate(ROWS[number])
-        )
 
 
 class ScenarioPage(SessionPage):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.flow.clickable_hints import clickable_hint
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
@@ -118,9 +119,9 @@ class ReplayPage(SessionPage):
         label, say = self.session.label, self.session.texts.say
         seek = self.session.pair_label(ControlName.LEFT, ControlName.RIGHT)
         return (
-            Hint(label(ControlName.ACCEPT), say("hint.play")),
+            clickable_hint(self.session, ControlName.ACCEPT, "hint.play"),
             Hint(seek, say("hint.seek")),
-            Hint(label(ControlName.UP), say("hint.worst")),
-            Hint(label(ControlName.CAMERA), say("hint.camera")),
+            clickable_hint(self.session, ControlName.UP, "hint.worst"),
+            clickable_hint(self.session, ControlName.CAMERA, "hint.camera"),
             Hint(label(ControlName.BACK), say("hint.result"), "back"),
         )

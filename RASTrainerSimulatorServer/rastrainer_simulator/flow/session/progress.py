@@ -47,6 +47,12 @@ class DoneTasks:
         """Return whether a trainee has done a scenario's task."""
         return task in self._done.get((trainee, scenario), ())
 
+    def latest_trainees(self, count: int) -> tuple[str, ...]:
+        """Return so many trainees at most, who trained last first."""
+        known = (trainee for trainee, journals in self.journals.items() if journals)
+        latest = sorted(known, key=lambda trainee: self.journals[trainee][-1].name, reverse=True)
+        return tuple(latest[:count])
+
     def missing_before(
         self, trainee: str, scenario: str, task: str, order: Sequence[str]
     ) -> str | None:

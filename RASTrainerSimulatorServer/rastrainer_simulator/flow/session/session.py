@@ -39,12 +39,18 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.progress import DoneTasks
 from rastrainer_simulator.flow.session.score_history import ScoreHistory
+from rastrainer_simulator.flow.session.screen_sticks import ScreenSticks
 from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
 from rastrainer_simulator.flow.session.trial_ghost import TrialGhost
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
-from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
+from rastrainer_simulator.input.bindings import (
+    BINDINGS_FILE,
+    DEFAULT_BINDINGS,
+    Bindings,
+    write_bindings,
+)
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.input.inputs import InputDevice, SourceKind
@@ -65,6 +71,7 @@ SET_UP_AFTER_S = 1.0
 TUTORIAL_VIEW = Orbit(zoom=1.7)
 """From farther away than a trial: the tip is seen where it starts, above the head."""
 _OWN_LABELS = {SourceKind.XR: "headset", SourceKind.TOUCH_SCREEN: "touch screen"}
+_BY_MOUSE = "mouse"
 """Whose inputs have other names than those of a gamepad, and how the keys of their texts begin."""
 
 
@@ -119,6 +126,7 @@ class TrainingSession:
         ghost: an earlier trial that moves beside the arm.
         tutorial: the one that is open; else None.
         tutorials: who has finished one, and with which device.
+        screen_sticks: those that views draw for a mouse.
     """
 
     def __init__(
@@ -153,6 +161,7 @@ class TrainingSession:
         self.ghost = TrialGhost()
         self.tutorial: Tutorial | None = None
         self.tutorials = FinishedTutorials(services.records)
+        self.screen_sticks = ScreenSticks()
         self.list_scenarios = services.list_scenarios
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
@@ -219,10 +228,17 @@ class TrainingSession:
         holder = self._controls.holder
         if holder is not None and holder.kind in (SourceKind.XR, SourceKind.TOUCH_SCREEN):
             return holder.kind
+        if self.steers_by_mouse:
+            return SourceKind.MOUSE
         has_pad = self.device is InputDevice.GAMEPAD
         # In a headset one holds its controllers, unless a gamepad is in use.
         other = SourceKind.XR if self.mode == Mode.HMD.value else SourceKind.KEYBOARD
         return SourceKind.GAMEPAD if has_pad else other
+
+    @property
+    def steers_by_mouse(self) -> bool:
+        """Whether the operator drags the sticks on the screen, and clicks the rest."""
+        return self.screen_sticks.is_shown and self.is_typing_possible((SourceKind.MOUSE,))
 
     @property
     def device_picture(self) -> str:
@@ -433,9 +449,14 @@ class TrainingSession:
     def label(self, control: ControlName) -> str:
         """Return the first input of a control on what the operator has in their hands."""
         holder = self._controls.holder
-        own = "" if holder is None else f"{_OWN_LABELS.get(holder.kind, '')}.{control.value}"
+        kind = "" if holder is None else _OWN_LABELS.get(holder.kind, "")
+        own = f"{_BY_MOUSE if self.steers_by_mouse else kind}.{control.value}"
         if own in self.texts:
             return self.texts.say(own)
+        if self.steers_by_mouse:
+            # They are where a gamepad has them, whatever its bindings are now.
+            name = DEFAULT_BINDINGS.gamepad[control][0]
+            return self.input_label(InputDevice.GAMEPAD, name)
         return self.input_label(self.device, self.bindings.table(self.device)[control][0])
 
     def pair_label(self, first: ControlName, second: ControlName) -> str:

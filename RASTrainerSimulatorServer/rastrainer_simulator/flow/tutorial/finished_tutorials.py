@@ -18,8 +18,11 @@ from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.ops.stamps import file_stamp, iso
 from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 
-_COUNTS_FOR = {SourceKind.GAMEPAD.value: (SourceKind.GAMEPAD.value, SourceKind.KEYBOARD.value)}
-"""Keys also type an ID and go through menus: who has learned the gamepad may come with them."""
+_COUNTS_FOR = {
+    kind.value: (kind.value, SourceKind.KEYBOARD.value)
+    for kind in (SourceKind.GAMEPAD, SourceKind.MOUSE)
+}
+"""Keys also type an ID and go through menus: who has learned another device may come with them."""
 
 
 class FinishedTutorials:

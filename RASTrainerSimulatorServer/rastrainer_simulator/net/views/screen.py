@@ -6,6 +6,9 @@ import dataclasses
 from enum import Enum
 from typing import Any
 
+PRESS = "press "
+"""Before the name of a control: the item of a hint whose click presses that control."""
+
 
 class Tone(str, Enum):
     """How a sentence or a figure is meant; a view gives each its color."""
@@ -169,6 +172,7 @@ class Screen:
         status: short facts for the edge of the picture, such as "Task 2", "7 of 15", "03:21".
         hints: the controls that matter just now, for the lower edge.
         language: BCP 47 tag of all texts.
+        has_sticks: whether the view that has control draws two sticks, to be dragged by a mouse.
         is_stepped: whether a headset's sticks step as in a menu, though none is open: while a trial
             is shown again.
         has_arrow: whether a view shows an arrow toward a next point that is out of sight.
@@ -183,6 +187,7 @@ class Screen:
     status: tuple[str, ...] = ()
     hints: tuple[Hint, ...] = ()
     language: str = "en"
+    has_sticks: bool = False
     is_stepped: bool = False
     has_arrow: bool = False
     errors: tuple[ErrorArrow, ...] = ()

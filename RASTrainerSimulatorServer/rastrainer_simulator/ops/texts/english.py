@@ -211,6 +211,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "experiment.trainee": "Your ID",
         "experiment.trainee help": "Your instructor gives you this ID; it is stored with your "
         "trials.",
+        "experiment.clicked": "Enter the ID by mouse",
         "experiment.mode": "Mode",
         "mode.desktop": "Desktop",
         "mode.hmd": "Headset",
@@ -276,6 +277,10 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "task.task-3": "Task 3",
         "task.task-4": "Task 4",
         "task.task-5": "Task 5",
+        "clicked-id.title": "Your ID",
+        "clicked-id.delete": "Delete",
+        "clicked-id.done": "Done",
+        "character.back": "Back",
         "keyboard.title": "Your ID",
         "keyboard.row": "Type",
         "keyboard.delete": "Delete",
@@ -408,9 +413,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "tutorial.slow": "Hold {control} and move the tool 10 mm: near the skin it should be slow.",
         "tutorial.slow.touch screen": "Press {control} and move the tool 10 mm: near the skin it "
         "should be slow. Press again to be fast.",
+        "tutorial.slow.mouse": "Click on {control} and move the tool 10 mm: near the skin it "
+        "should be slow. Click again to be fast.",
         "tutorial.turn view": "Turn the view by 20°: {control}.",
         "tutorial.turn view.keyboard": "Turn the view by 20°: {control}, or drag with the right "
         "mouse button.",
+        "tutorial.turn view.mouse": "Turn the view by 20°: drag with the right mouse button.",
         "tutorial.turn view.touch screen": "Turn the view by 20°: drag a finger over the picture.",
         "tutorial.look around": "Turn your head to the side, and push the left stick: its "
         "directions turn with you.",
@@ -623,6 +631,16 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "headset.left": "Stick left",
         "headset.right": "Stick right",
         "headset.tilt": "Right trigger + stick",
+        # What is clicked among the hints while the sticks on the screen are dragged.
+        "mouse.touch": "Touch",
+        "mouse.undo": "Undo",
+        "mouse.camera": "Front view",
+        "mouse.best_view": "Best view",
+        "mouse.fine": "Slow",
+        "mouse.menu": "Menu",
+        "mouse.pause": "Menu",
+        "mouse.view_left": "Right drag left",
+        "mouse.view_right": "Right drag right",
         # What is written on the buttons that the page has on a touch screen.
         "touch screen.touch": "Touch",
         "touch screen.undo": "Undo",
@@ -676,6 +694,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "warning.no SDL": "Gamepads cannot be read on this computer ({reason}): use the keyboard.",
         "warning.settings": "{reason} The defaults are used.",
         # What the window says itself, because the simulator cannot.
+        "window.left stick": "Left, right, forward, back",
+        "window.right stick": "Up, down, turn",
         "window.title": "RASTrainer",
         "window.connecting": "The window is connecting to the simulator.",
         "window.lost": "The connection to the simulator was lost. It will be restored as soon as "
@@ -712,6 +732,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "hint.undo": "Undo",
         "hint.fine": "Slow",
         "hint.best_view": "Best view",
+        "hint.on": "on",
+        "hint.off": "off",
+        "hint.mouse": "Mouse",
+        "hint.sticks": "Show sticks",
+        "hint.hide sticks": "Hide sticks",
+        "hint.right stick": "Right stick",
         "hint.turn_view": "Turn the view",
         "hint.camera": "Camera",
         "hint.front": "Front view",

@@ -320,6 +320,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "experiment.trainee": "Deine ID",
         "experiment.trainee help": "Diese ID gibt dir die Kursleitung; sie steht auf deinen "
         "Versuchen.",
+        "experiment.clicked": "ID mit der Maus eingeben",
         "experiment.mode": "Modus",
         "mode.desktop": "Bildschirm",
         "mode.hmd": "Headset",
@@ -386,6 +387,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "task.task-3": "Aufgabe 3",
         "task.task-4": "Aufgabe 4",
         "task.task-5": "Aufgabe 5",
+        "clicked-id.title": "Deine ID",
+        "clicked-id.delete": "Löschen",
+        "clicked-id.done": "Fertig",
+        "character.back": "Zurück",
         "keyboard.title": "Deine ID",
         "keyboard.row": "Schreiben",
         "keyboard.delete": "Löschen",
@@ -524,9 +529,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "langsam sein.",
         "tutorial.slow.touch screen": "Drücke {control} und bewege das Werkzeug 10 mm: Nah an der "
         "Haut soll es langsam sein. Noch einmal gedrückt ist es wieder schnell.",
+        "tutorial.slow.mouse": "Klicke auf {control} und bewege das Werkzeug 10 mm: Nah an der "
+        "Haut soll es langsam sein. Klicke noch einmal, um schnell zu sein.",
         "tutorial.turn view": "Dreh die Ansicht um 20°: {control}.",
         "tutorial.turn view.keyboard": "Dreh die Ansicht um 20°: {control}, oder zieh mit der "
         "rechten Maustaste.",
+        "tutorial.turn view.mouse": "Dreh die Ansicht um 20°: Zieh mit der rechten Maustaste.",
         "tutorial.turn view.touch screen": "Dreh die Ansicht um 20°: Zieh mit einem Finger über "
         "das Bild.",
         "tutorial.look around": "Dreh den Kopf zur Seite und drück den linken Stick: Seine "
@@ -744,6 +752,16 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "headset.left": "Stick links",
         "headset.right": "Stick rechts",
         "headset.tilt": "Rechter Trigger + Stick",
+        # What is clicked among the hints while the sticks on the screen are dragged.
+        "mouse.touch": "Berühren",
+        "mouse.undo": "Zurücknehmen",
+        "mouse.camera": "Von vorn",
+        "mouse.best_view": "Beste Ansicht",
+        "mouse.fine": "Langsam",
+        "mouse.menu": "Menü",
+        "mouse.pause": "Menü",
+        "mouse.view_left": "Rechts ziehen nach links",
+        "mouse.view_right": "Rechts ziehen nach rechts",
         # What is written on the buttons that the page has on a touch screen.
         "touch screen.touch": "Berühren",
         "touch screen.undo": "Zurücknehmen",
@@ -797,6 +815,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "warning.no SDL": "Auf diesem Rechner lassen sich keine Gamepads lesen ({reason}): Nimm "
         "die Tastatur.",
         "warning.settings": "{reason} Es gelten die Voreinstellungen.",
+        "window.left stick": "Links, rechts, vor, zurück",
+        "window.right stick": "Auf, ab, drehen",
         "window.title": "RASTrainer",
         "window.connecting": "Das Fenster verbindet sich mit dem Simulator.",
         "window.lost": "Die Verbindung zum Simulator ist verloren. Sie wird wiederhergestellt, "
@@ -833,6 +853,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "hint.undo": "Zurücknehmen",
         "hint.fine": "Langsam",
         "hint.best_view": "Beste Ansicht",
+        "hint.on": "an",
+        "hint.off": "aus",
+        "hint.mouse": "Maus",
+        "hint.sticks": "Sticks zeigen",
+        "hint.hide sticks": "Sticks verbergen",
+        "hint.right stick": "Rechter Stick",
         "hint.turn_view": "Ansicht drehen",
         "hint.camera": "Kamera",
         "hint.front": "Von vorn",

@@ -1,0 +1,130 @@
+"""How an ID is entered without a keyboard: by a gamepad's buttons, or by clicks alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.net.views.screen import Fact, Menu
+
+ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
+MAX_KNOWN = 5
+_KNOWN, _ROW = "known ", "row "
+"""Before an ID or a row's number in the name of an item."""
+
+
+class KeyboardPage(SessionPage):
+    """Rows of characters: left and right choose one, accepting types it."""
+
+    name = "keyboard"
+    steps_when_accepted = False
+
+    def __init__(self, session: TrainingSession, write: Callable[[str, str], None]) -> None:
+        super().__init__(session)
+        self._write = write
+        self._places = [0] * len(ROWS)
+
+    def menu(self) -> Menu:
+        """Return the rows, the chosen character of each in brackets."""
+        rows = tuple(
+            self.choice(f"row{number}", self._row(number), label=self.say("keyboard.row"))
+            for number in range(len(ROWS))
+        )
+        return Menu(
+            self.name,
+            self.say("keyboard.title"),
+            facts=(Fact(self.say("experiment.trainee"), self.session.trainee + "_"),),
+            items=(*rows, self.button("delete"), self.button("done")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Type a character, take one back, or finish."""
+        trainee = self.session.trainee
+        if item == "done":
+            self.back()
+        elif item == "delete":
+            self._write("trainee", trainee[:-1])
+        else:
+            number = int(item.removeprefix("row"))
+            self._write("trainee", trainee + ROWS[number][self._places[number]])
+
+    def step(self, item: str, direction: int) -> None:
+        """Choose the next character of a row."""
+        number = int(item.removeprefix("row"))
+        self._places[number] = (self._places[number] + direction) % len(ROWS[number])
+
+    def _row(self, number: int) -> str:
+        place = self._places[number]
+        return " ".join(
+            f"[{character}]" if index == place else character
+            for index, character in enumerate(ROWS[number])
+        )
+
+
+class ClickedIdPage(SessionPage):
+    """Offers the IDs that have trained here last, and rows of characters to make another of."""
+
+    name = "clicked-id"
+
+    def __init__(self, session: TrainingSession, write: Callable[[str, str], None]) -> None:
+        super().__init__(session)
+        self._write = write
+
+    def menu(self) -> Menu:
+        """Return the ID so far, the known ones and the rows."""
+        known = (
+            self.button(_KNOWN + trainee, label=trainee)
+            for trainee in self.session.progress.latest_trainees(MAX_KNOWN)
+        )
+        rows = (
+            self.button(f"{_ROW}{number}", label=" ".join(ROWS[number]))
+            for number in range(len(ROWS))
+        )
+        return Menu(
+            self.name,
+            self.say("clicked-id.title"),
+            facts=(Fact(self.say("experiment.trainee"), self.session.trainee + "_"),),
+            items=(*known, *rows, self.button("delete"), self.button("done")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Take an ID, open a row, take a character back, or finish."""
+        if item.startswith(_ROW):
+            row = ROWS[int(item.removeprefix(_ROW))]
+            self.session.pages.open(CharacterPage(self.session, self._write, row))
+        elif item == "delete":
+            self._write("trainee", self.session.trainee[:-1])
+        else:
+            if item.startswith(_KNOWN):
+                self._write("trainee", item.removeprefix(_KNOWN))
+            self.back()
+
+
+class CharacterPage(SessionPage):
+    """The characters of one row: a click adds one to the ID."""
+
+    name = "character"
+
+    def __init__(
+        self, session: TrainingSession, write: Callable[[str, str], None], row: str
+    ) -> None:
+        super().__init__(session)
+        self._write = write
+        self._row = row
+
+    def menu(self) -> Menu:
+        """Return the characters."""
+        characters = (self.button(character, label=character) for character in self._row)
+        return Menu(
+            self.name,
+            self.say("clicked-id.title"),
+            facts=(Fact(self.say("experiment.trainee"), self.session.trainee + "_"),),
+            items=(*characters, self.button("back")),
+        )
+
+    def accept(self, item: str) -> None:
+        """Add a character, and go back."""
+        if item != "back":
+            self._write("trainee", self.session.trainee + item)
+        self.back()

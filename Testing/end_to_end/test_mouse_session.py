@@ -1,0 +1,125 @@
+"""The window by the mouse alone: from the ID to the first touch of the trial run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from vtkmodules.vtkRenderingCore import vtkRenderer
+
+from rastrainer_simulator.desktop.overlay import Content, Overlay
+from rastrainer_simulator.desktop.panels.stick import stick_boxes
+from rastrainer_simulator.desktop.picture import own_facts
+from Testing.end_to_end.lab import Lab
+from Testing.end_to_end.stream_trainee import StreamTrainee
+from Testing.end_to_end.virtual_display import VirtualMouse
+from Testing.end_to_end.window_process import wait_until
+
+# A window that the processor draws wants the machine for itself.
+pytestmark = pytest.mark.soak
+
+SIZE = (960, 540)
+SPEED = "0.4"
+"""Simulated seconds in a second: a stick is let go of in time, however late a picture is."""
+GRID_PX = 6
+
+
+class WindowMouse:
+    """Clicks on what the window shows, and drags one of its sticks at a time."""
+
+    def __init__(self, lab: Lab):
+        self._lab = lab
+        self._mouse = VirtualMouse(lab.display)
+        self._corner = self._mouse.window_corner(SIZE[0])
+        self._dragged: int | None = None
+
+    def click(self, item: str) -> None:
+        """Click on an item of the menu or on a hint, once it is shown."""
+        found: list[tuple[int, int]] = []
+        wait_until(lambda: found.extend(self._places(item)) or found, f"{item} in the window")
+        x, y = found[len(found) // 2]
+        self._move(x, y)
+        self._mouse.hold(True)
+        self._mouse.hold(False)
+
+    def tap(self, control: str) -> None:
+        self.push(0.0, 0.0, 0.0)
+        self.click(f"press {control}")
+
+    def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
+        """Drag the stick of the larger part; slow motion is clicked on and off."""
+        is_level = math.hypot(right, forward) >= abs(up)
+        across, along = (right, forward) if is_level else (0.0, up)
+        wanted = int(not is_level) if across or along else None
+        if wanted is not None and fine != self._is_slow:
+            self._let_go()
+            self.click("press fine")
+            wait_until(lambda: self._is_slow == fine, "slow motion")
+        if wanted != self._dragged:
+            self._let_go()
+        if wanted is None:
+            return
+        box = stick_boxes(SIZE)[wanted]
+        radius = box.width / 2
+        if self._dragged is None:
+            self._move(box.left + radius, box.top + radius)
+            self._mouse.hold(True)
+            self._dragged = wanted
+        self._move(box.left + radius * (1 + across), box.top + radius * (1 - along))
+
+    def close(self) -> None:
+        self._mouse.close()
+
+    @property
+    def _is_slow(self) -> bool:
+        hints = self._lab.view.screen.hints
+        return any(hint.item == "press fine" and hint.action == "on" for hint in hints)
+
+    def _let_go(self) -> None:
+        if self._dragged is not None:
+            self._mouse.hold(False)
+            self._dragged = None
+
+    def _move(self, x: float, y: float) -> None:
+        self._mouse.move(self._corner[0] + round(x), self._corner[1] + round(y))
+
+    def _places(self, item: str) -> list[tuple[int, int]]:
+        """Return the pixels of a grid at which a click chooses an item."""
+        screen = self._lab.view.screen
+        facts = own_facts(screen.language, "mouse", None)
+        overlay = Overlay(vtkRenderer())
+        overlay.show(Content(replace(screen, status=(*screen.status, *facts))), SIZE)
+        grid = [(x, y) for y in range(0, SIZE[1], GRID_PX) for x in range(0, SIZE[0], GRID_PX)]
+        return [place for place in grid if overlay.item_at(*place) == item]
+
+
+class ClickingInWindow(StreamTrainee):
+    """Goes through the menus by clicks."""
+
+    def choose(self, item: str) -> None:
+        """Click on an item, which leads to another menu."""
+        before = self.menu.name
+        self.hands.click(item)
+        self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
+
+
+def test_the_first_point_of_the_trial_run_is_touched_by_the_mouse_alone(tmp_path):
+    with Lab(tmp_path, "--speed", SPEED, "--seed", "8", "--no-gamepad") as lab:
+        window = lab.open_window("window", "--size", "{}x{}".format(*SIZE), "--quality", "low")
+        mouse = WindowMouse(lab)
+        trainee = ClickingInWindow(lab.view, mouse)
+        trainee.until_menu("start")
+        for item in ("train", "skip", "next", "clicked", "row 1", "P", "row 3", "7", "done"):
+            trainee.choose(item)
+        assert trainee.value("trainee") == "P7"
+        trainee.begin_task("trial-run")
+        mouse.click("press sticks")
+        trainee.until(lambda: lab.view.screen.has_sticks, "the sticks")
+        trainee.touch("1")
+        assert trainee.touched == 1
+        trainee.press("undo", lambda: trainee.touched == 0, "the undo")
+        trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+        trainee.choose("resume")
+        window.wait_for_frames()
+        mouse.close()
