@@ -55,6 +55,8 @@ class WatchingView:
 
     Attributes:
         state, screen, scene: the latest.
+        holder: who has control, by the latest message.
+        pairing: code and addresses by which others are paired; None before.
         events: all, in order.
     """
 
@@ -62,6 +64,8 @@ class WatchingView:
         self.state: dict | None = None
         self.scene: dict | None = None
         self.screen = Screen()
+        self.holder = ""
+        self.pairing: tuple[str, str] | None = None
         self.events: list[dict] = []
         self._client = client
         self._bodies = client.join(kind="page", device="watcher")["bodies"]
@@ -84,6 +88,10 @@ class WatchingView:
                 message = self._client.next()
                 if message["type"] == "screen":
                     self.screen = screen_from_json(message["screen"])
+                elif message["type"] == "control":
+                    self.holder = message["holder"]
+                elif message["type"] == "pairing":
+                    self.pairing = message["code"], ", ".join(message["addresses"])
                 elif message["type"] == "event":
                     self.events.append(message)
                 elif message["type"] in ("state", "scene"):

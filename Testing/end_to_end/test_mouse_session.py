@@ -86,8 +86,9 @@ class WindowMouse:
 
     def _places(self, item: str) -> list[tuple[int, int]]:
         """Return the pixels of a grid at which a click chooses an item."""
-        screen = self._lab.view.screen
-        facts = own_facts(screen.language, "mouse", None)
+        view, screen = self._lab.view, self._lab.view.screen
+        pairing = None if screen.menu is None else view.pairing
+        facts = own_facts(screen.language, view.holder, pairing)
         overlay = Overlay(vtkRenderer())
         overlay.show(Content(replace(screen, status=(*screen.status, *facts))), SIZE)
         grid = [(x, y) for y in range(0, SIZE[1], GRID_PX) for x in range(0, SIZE[0], GRID_PX)]

@@ -25,10 +25,13 @@ from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, TouchStage
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, distance
 
 TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""
+
+ELSEWHERE_M = 0.003
+"""As far from a refused touch as this, the tip on the skin is about to touch anew."""
 
 
 class TrialScreen(ArmScreen):
@@ -46,6 +49,7 @@ class TrialScreen(ArmScreen):
         self._center: Vector = (0.0, 0.0, 0.0)
         self._is_beside = False
         self._was_refused = False
+        self._refused_at: Vector = (0.0, 0.0, 0.0)
         self._has_requested_menu = False
         self._is_practice_end_shown = False
         self._practice_step: StudyStep | None = None
@@ -61,6 +65,7 @@ class TrialScreen(ArmScreen):
         super().take(event)
         if event.kind in (EventKind.TOUCH, EventKind.UNDO, EventKind.REJECTED, EventKind.PHASE):
             self._was_refused = event.kind is EventKind.REJECTED
+            self._refused_at = self._session.tip
 
     @property
     def is_practice_over(self) -> bool:
@@ -148,9 +153,11 @@ class TrialScreen(ArmScreen):
                 "work.complete", trainee=training.trainee, count=len(training.touches), touch=key
             )
             return ScreenMessage(text, Tone.GOOD)
-        if self._was_refused:
+        is_on_skin = session.state.touch is TouchStage.ON_SKIN
+        has_gone_on = is_on_skin and distance(session.tip, self._refused_at) > ELSEWHERE_M
+        if self._was_refused and not has_gone_on:
             return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
-        if session.state.touch is TouchStage.ON_SKIN:
+        if is_on_skin:
             key = session.label(ControlName.TOUCH)
             return ScreenMessage(session.texts.say("work.on skin", touch=key), Tone.GOOD)
         if self._is_off_the_way():
