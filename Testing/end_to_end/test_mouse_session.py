@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import islice
 
 import pytest
 from vtkmodules.vtkRenderingCore import vtkRenderer
@@ -11,6 +12,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.stick import stick_boxes
 from rastrainer_simulator.desktop.picture import own_facts
+from rastrainer_simulator.net.views.screen import PRESS
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee
 from Testing.end_to_end.virtual_display import VirtualMouse
@@ -22,7 +24,7 @@ pytestmark = pytest.mark.soak
 SIZE = (960, 540)
 SPEED = "0.4"
 """Simulated seconds in a second: a stick is let go of in time, however late a picture is."""
-GRID_PX = 6
+GRID_PX, HINTS_PX = 10, 100
 
 
 class WindowMouse:
@@ -38,8 +40,7 @@ class WindowMouse:
         """Click on an item of the menu or on a hint, once it is shown."""
         found: list[tuple[int, int]] = []
         wait_until(lambda: found.extend(self._places(item)) or found, f"{item} in the window")
-        x, y = found[len(found) // 2]
-        self._move(x, y)
+        self._move(*found[0])
         self._mouse.hold(True)
         self._mouse.hold(False)
 
@@ -85,14 +86,17 @@ class WindowMouse:
         self._mouse.move(self._corner[0] + round(x), self._corner[1] + round(y))
 
     def _places(self, item: str) -> list[tuple[int, int]]:
-        """Return the pixels of a grid at which a click chooses an item."""
+        """Return the first pixel of a grid at which a click chooses an item; none without one."""
         view, screen = self._lab.view, self._lab.view.screen
         pairing = None if screen.menu is None else view.pairing
         facts = own_facts(screen.language, view.holder, pairing)
         overlay = Overlay(vtkRenderer())
         overlay.show(Content(replace(screen, status=(*screen.status, *facts))), SIZE)
-        grid = [(x, y) for y in range(0, SIZE[1], GRID_PX) for x in range(0, SIZE[0], GRID_PX)]
-        return [place for place in grid if overlay.item_at(*place) == item]
+        # Hints are at the lower edge: to look for them everywhere would keep the stream waiting.
+        top = SIZE[1] - HINTS_PX if item.startswith(PRESS) else 0
+        rows, columns = range(top, SIZE[1], GRID_PX), range(0, SIZE[0], GRID_PX)
+        grid = [(x, y) for y in rows for x in columns]
+        return list(islice((place for place in grid if overlay.item_at(*place) == item), 1))
 
 
 class ClickingInWindow(StreamTrainee):

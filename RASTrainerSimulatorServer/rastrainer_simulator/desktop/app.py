@@ -250,7 +250,8 @@ class DesktopWindow:
     def _log_frame(self, log: IO[str] | None) -> None:
         if log is None or self._inbox.state is None or self._inbox.scene is None:
             return
-        line = {"shown": time.monotonic(), "tick": self._inbox.state["tick"]}
+        quality = self._picture.viewports.quality.value
+        line = {"shown": time.monotonic(), "tick": self._inbox.state["tick"], "quality": quality}
         log.write(json.dumps(line) + "\n")
         log.flush()
 

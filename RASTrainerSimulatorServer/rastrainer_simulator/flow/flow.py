@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Phase
-from rastrainer_simulator.flow.clickable_hints import clickable_hint
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.procedure_result import (
@@ -18,6 +17,7 @@ from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
 from rastrainer_simulator.flow.pages.tutorial import TutorialDonePage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
+from rastrainer_simulator.flow.session.clickable_hints import clickable_hint
 from rastrainer_simulator.flow.session.obstacles import needs_tutorial
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world

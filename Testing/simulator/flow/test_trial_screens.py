@@ -202,6 +202,18 @@ def test_a_touch_that_is_too_far_is_refused_in_the_chosen_language_and_with_one_
     assert trainee.watcher.kinds.count("error") == 1
 
 
+def test_after_a_refused_touch_the_skin_is_said_again_where_the_tip_has_gone(trainee):
+    trainee.start("trial-run")
+    trainee.tap("touch")
+    trainee.until(lambda: trainee.presenter.screen.instruction.tone == "warning")
+    truth = trainee.loop.truth
+    center = truth.in_world(truth.target) / MM_PER_M
+    trainee.lower_onto(truth.in_world(truth.fiducials["1"]) / MM_PER_M, center)
+    trainee.until(lambda: trainee.state.touch == "on skin", "the skin")
+    trainee.step(30)
+    assert trainee.presenter.screen.instruction.text.startswith("On the skin")
+
+
 @pytest.mark.parametrize(
     ("choice", "task", "guidance"),
     [
