@@ -1,4 +1,4 @@
-"""The window by the mouse alone: from the ID to the first touch of the trial run."""
+"""The window by the mouse alone: the ID, the trial run, the sticks, Touch and the menu."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ class ClickingInWindow(StreamTrainee):
         self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
 
 
-def test_the_first_point_of_the_trial_run_is_touched_by_the_mouse_alone(tmp_path):
+def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the_menu(tmp_path):
     with Lab(tmp_path, "--speed", SPEED, "--seed", "8", "--no-gamepad") as lab:
         window = lab.open_window("window", "--size", "{}x{}".format(*SIZE), "--quality", "low")
         mouse = WindowMouse(lab)
@@ -121,9 +121,16 @@ def test_the_first_point_of_the_trial_run_is_touched_by_the_mouse_alone(tmp_path
         trainee.begin_task("trial-run")
         mouse.click("press sticks")
         trainee.until(lambda: lab.view.screen.has_sticks, "the sticks")
-        trainee.touch("1")
-        assert trainee.touched == 1
-        trainee.press("undo", lambda: trainee.touched == 0, "the undo")
+        start = trainee.tip.copy()
+        mouse.push(0.0, 0.0, 1.0)
+        trainee.until(lambda: trainee.tip[2] > start[2] + 0.01, "a move up")
+        mouse.push(1.0, 0.0, 0.0)
+        trainee.until_moved()
+        mouse.push(0.0, 0.0, 0.0)
+        trainee.until_still()
+        assert lab.view.holder == "mouse"
+        mouse.click("press touch")
+        trainee.until(lambda: trainee.refused == 1, "the refusal of a touch in the air")
         trainee.press("menu", lambda: trainee.menu is not None, "the menu")
         trainee.choose("resume")
         window.wait_for_frames()
