@@ -153,6 +153,12 @@ class TrainingState:
         return self.method is RegistrationMethod.FIDUCIALS
 
     @property
+    def is_tracing(self) -> bool:
+        """Whether the skin is traced now: all landmarks are touched, and nothing is registered."""
+        is_open = self.phase in (Phase.RUNNING, Phase.COMPLETE)
+        return self.trace is not None and self.next_point is None and is_open
+
+    @property
     def completed_s(self) -> float:
         """The trial's time at the last point that was touched or traced, s."""
         traced = () if self.trace is None else self.trace.points

@@ -6,6 +6,7 @@ import math
 
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
+    MAX_TRACE_POINTS,
     PROCEDURE_PHASES,
     TRIAL_RUN,
     CommandName,
@@ -117,6 +118,9 @@ class TrialScreen(ArmScreen):
             session.view.want_best()
         elif control is ControlName.UNDO:
             session.do(CommandName.UNDO)
+        elif control is ControlName.TOUCH and session.training.is_tracing:
+            trace = session.training.trace
+            session.do(CommandName.TRACE, {"on": trace is None or not trace.is_on})
         elif control is ControlName.TOUCH and phase is Phase.COMPLETE:
             session.pages.open(CompletePage(session))
         elif control is ControlName.TOUCH:
@@ -144,7 +148,7 @@ class TrialScreen(ArmScreen):
         """Return what to do now."""
         session = self._session
         training = session.training
-        if training.trace is not None and training.next_point is None and not self._was_refused:
+        if training.is_tracing and not self._was_refused:
             tone = Tone.GOOD if training.phase is Phase.COMPLETE else Tone.PLAIN
             return ScreenMessage(session.texts.again(training.instruction), tone)
         if training.phase is Phase.COMPLETE:
@@ -171,10 +175,10 @@ class TrialScreen(ArmScreen):
     def status(self) -> tuple[str, ...]:
         """Return the short facts at the edge."""
         session = self._session
-        training, say = session.training, session.texts.say
+        training = session.training
         facts = [
             session.task_title(training.task),
-            say("status.points", kept=len(training.touches), count=self._count),
+            self._points_so_far(),
             self._clock(),
         ]
         target = self._points.get(training.next_point or "")
@@ -185,9 +189,11 @@ class TrialScreen(ArmScreen):
     def hints(self) -> tuple[Hint, ...]:
         """Return the controls that matter."""
         session = self._session
-        is_complete = session.training.phase is Phase.COMPLETE
+        training = session.training
+        is_complete = training.phase is Phase.COMPLETE and not training.is_tracing
+        touch = "hint.register" if is_complete else "hint.touch"
         names = {
-            ControlName.TOUCH: "hint.register" if is_complete else "hint.touch",
+            ControlName.TOUCH: "hint.trace" if training.is_tracing else touch,
             ControlName.UNDO: "hint.undo",
             ControlName.FINE: "hint.fine",
             ControlName.BEST_VIEW: "hint.best_view",
@@ -201,6 +207,13 @@ class TrialScreen(ArmScreen):
         elif not is_complete:
             movement = self._movement_hints()
         return (*movement, *self._control_hints(names), *stick_hints(session))
+
+    def _points_so_far(self) -> str:
+        training, say = self._session.training, self._session.texts.say
+        if training.is_tracing and training.trace is not None:
+            traced = len(training.trace.points)
+            return say("status.traced", traced=traced, most=MAX_TRACE_POINTS)
+        return say("status.points", kept=len(training.touches), count=self._count)
 
     def _clock(self) -> str:
         session = self._session
