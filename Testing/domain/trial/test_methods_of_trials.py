@@ -61,7 +61,9 @@ def test_a_trace_corrects_what_the_landmarks_missed(scenario, traced):
     assert off_target(scenario, registered, pose) < 0.2
     assert off_target(scenario, coarse, pose) > 1.0
     assert registered.rigid.fre_mm < 0.05
-    assert list(registered.fits) == ["rigid"]
+    assert list(registered.fits) == list(registered.target_errors) == ["rigid"]
+    exact, missed = registered.target_errors["rigid"], coarse.target_errors["rigid"]
+    assert exact.expected_mm < missed.expected_mm
     arguments = registered.arguments("a3bb189e-8bf9-4888-9912-ace4e6543002")
     assert arguments["freMm"] == registered.rigid.fre_mm
 

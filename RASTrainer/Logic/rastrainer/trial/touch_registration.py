@@ -26,6 +26,7 @@ from rastrainer.registration.localization_error import (
 )
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.registration import Registration, register_all_kinds
+from rastrainer.registration.surface_error import knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error
 from rastrainer.scenario.method_task import TRACED_METHODS, task_by_method
@@ -80,10 +81,9 @@ def register_trial(
     task = task_by_method(scenario, given.task, given.method)
     labels, moving, fixed = pair(given.touches, PointList(task.labels, task.fiducials))
     fits = register_all_kinds(moving, fixed, labels)
-    normals = normals_at(scenario, given.task, labels, given.method)
     if given.method in TRACED_METHODS:
-        # A scaled or sheared head would fit any trace.
-        fits = {RIGID: fits[RIGID]}
+        return _by_trace(given, scenario, fits[RIGID], pause)
+    normals = normals_at(scenario, given.task, labels, given.method)
     errors = {}
     for kind, fit in fits.items():
         pause()
@@ -91,11 +91,17 @@ def register_trial(
         pause()
         errors[kind] = target_error(fit, scenario.target_position, localization)
     pause()
-    if given.method not in TRACED_METHODS:
-        return TouchRegistration(fits, errors)
-    match = match_surface(given.trace_mm, _head(scenario), fits[RIGID].matrix)
+    return TouchRegistration(fits, errors)
+
+
+def _by_trace(
+    given: GivenPoints, scenario: Scenario, coarse: Registration, pause: Callable[[], None]
+) -> TouchRegistration:
+    """Return the rigid registration alone: a scaled or sheared head would fit any trace."""
+    match = match_surface(given.trace_mm, _head(scenario), coarse.matrix)
     pause()
-    return TouchRegistration({RIGID: _matched(fits[RIGID], match)}, errors)
+    error = surface_target_error(knowledge_of(match), scenario.target_position)
+    return TouchRegistration({RIGID: _matched(coarse, match)}, {RIGID: error})
 
 
 def _localization_error(fit: Registration, normals: np.ndarray) -> LocalizationError:
