@@ -4,7 +4,12 @@ import json
 
 import pytest
 
-from rastrainer.slicer.link.arrivals import CHARACTERS_A_TURN, COMMANDS_A_TURN, MAX_KEPT, Arrivals
+from rastrainer.slicer.link.pending_commands import (
+    CHARACTERS_A_TURN,
+    COMMANDS_A_TURN,
+    MAX_KEPT,
+    Arrivals,
+)
 from rastrainer.slicer.signal import ErrorGuard, Signal
 
 

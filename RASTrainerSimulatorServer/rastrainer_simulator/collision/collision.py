@@ -11,9 +11,8 @@ import numpy as np
 
 from rastrainer_simulator.collision.capsules import segment_distance
 from rastrainer_simulator.collision.clearance import SHAFT_NEAR, Clearance, DistanceBounds, Nearest
-from rastrainer_simulator.collision.head_clearance import HeadClearance
+from rastrainer_simulator.collision.head_clearance import HeadClearance, LineOfSight
 from rastrainer_simulator.collision.head_surface import HeadSurface
-from rastrainer_simulator.collision.line_of_sight import LineOfSight
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, RobotShape
 from rastrainer_simulator.vectors import Vector
 

@@ -8,10 +8,149 @@ from functools import lru_cache
 import fcl
 import numpy as np
 
+from rastrainer.errors import InputError
 from rastrainer_simulator.collision.capsules import thin_segment
 from rastrainer_simulator.collision.clearance import Nearest
-from rastrainer_simulator.collision.closed_surface import ClosedSurface
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, vector
+
+# Shares of a triangle: below them a point lies on an edge or corner, and a triangle has no area.
+_ON_FEATURE = 1e-6
+_FLAT = 1e-12
+
+
+class ClosedSurface:
+    """Vertices, triangles turned outward, and a pseudonormal for every face, edge and vertex.
+
+    The sign of the distance to the nearest surface point is that of the scalar product with the
+    pseudonormal of the feature (face, edge or vertex) on which that point lies: a face's normal,
+    the sum of an edge's two face normals, or a vertex's face normals weighted by their angles
+    (Bærentzen and Aanæs 2005, 10.1109/TVCG.2005.49, theorem 1).
+    """
+
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
+        """Take (n, 3) float vertices and (m, 3) int triangles; equal vertices become one.
+
+        Raises:
+            InputError: the surface is not closed, or holds unusable numbers.
+        """
+        vertices, triangles = _checked(vertices, triangles)
+        neighbors = _neighbors(triangles, len(vertices))
+        if _volume(vertices, triangles) < 0.0:
+            triangles, neighbors = triangles[:, ::-1], neighbors[:, [1, 0, 2]]
+        self.vertices = vertices
+        self.triangles = triangles
+        self._corners = vertices[triangles]
+        faces = _face_normals(self._corners, neighbors)
+        angles = _corner_angles(self._corners)
+        around = [
+            np.bincount(triangles.ravel(), (faces[:, None, k] * angles).ravel(), len(vertices))
+            for k in range(3)
+        ]
+        # Rows: the face, its edges 01, 12, 20, its vertices 0, 1, 2.
+        self._normals = np.concatenate(
+            [
+                faces[:, None],
+                faces[:, None] + faces[neighbors],
+                np.stack(around, axis=1)[triangles],
+            ],
+            axis=1,
+        )
+
+    def pseudonormal(self, triangle: int, point: np.ndarray) -> list[float]:
+        """Return the outward direction (3 floats, not of unit length) at a point of a triangle."""
+        return self._normals[triangle, self._feature(triangle, point)].tolist()
+
+    def crossing(self, triangle: int, start: Vector, end: Vector) -> tuple[Vector, Vector]:
+        """Return where a segment goes through a triangle, and the outward normal there."""
+        normal = self._normals[triangle, 0]
+        corner = self._corners[triangle, 0]
+        before, behind = (float(normal @ (np.array(point) - corner)) for point in (start, end))
+        share = before / (before - behind) if before != behind else 0.0
+        point = vector(a + share * (b - a) for a, b in zip(start, end, strict=True))
+        return point, vector(normal.tolist())
+
+    def _feature(self, triangle: int, point: np.ndarray) -> int:
+        """Return the row of the face, edge or vertex on which the point lies."""
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._corners[triangle].tolist()
+        px, py, pz = point.tolist()
+        ux, uy, uz = bx - ax, by - ay, bz - az
+        vx, vy, vz = cx - ax, cy - ay, cz - az
+        wx, wy, wz = px - ax, py - ay, pz - az
+        uu, uv, vv = (
+            ux * ux + uy * uy + uz * uz,
+            ux * vx + uy * vy + uz * vz,
+            vx * vx + vy * vy + vz * vz,
+        )
+        wu, wv = wx * ux + wy * uy + wz * uz, wx * vx + wy * vy + wz * vz
+        area = uu * vv - uv * uv
+        small = _ON_FEATURE * area
+        at_1, at_2 = vv * wu - uv * wv, uu * wv - uv * wu
+        at_0 = area - at_1 - at_2
+        if at_2 < small:
+            return 5 if at_0 < small else 4 if at_1 < small else 1
+        if at_0 < small:
+            return 6 if at_1 < small else 2
+        return 3 if at_1 < small else 0
+
+
+def _checked(vertices: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    vertices = np.array(vertices, dtype=float)
+    triangles = np.array(triangles)
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or not np.isfinite(vertices).all():
+        raise InputError("The head's vertices should be an (n, 3) array of finite numbers.")
+    if not np.issubdtype(triangles.dtype, np.integer):
+        raise InputError("The head's triangles should be whole numbers: rows of its vertices.")
+    if triangles.ndim != 2 or triangles.shape[1] != 3 or len(triangles) < 4:
+        raise InputError("The head's triangles should be an (m, 3) array of at least four rows.")
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        raise InputError("The head's triangles should name vertices by their rows, from 0.")
+    vertices, index = np.unique(vertices, axis=0, return_inverse=True)
+    triangles = index.reshape(-1)[triangles.astype(np.int64)]
+    a, b, c = triangles.T
+    return vertices, triangles[(a != b) & (b != c) & (c != a)]
+
+
+def _neighbors(triangles: np.ndarray, vertex_count: int) -> np.ndarray:
+    """Return for each triangle (m, 3) the triangles across its edges 01, 12 and 20."""
+    start = triangles.ravel()
+    end = np.roll(triangles, -1, axis=1).ravel()
+    there, back = start * vertex_count + end, end * vertex_count + start
+    order = np.argsort(there)
+    found = np.searchsorted(there, back, sorter=order).clip(max=len(there) - 1)
+    twins = order[found]
+    open_edges = int((there[twins] != back).sum())
+    if open_edges or (np.diff(there[order]) == 0).any():
+        raise InputError(
+            "The head's surface should be closed, each edge between two triangles that are turned "
+            f"the same way; {open_edges or 'some'} edges are not."
+        )
+    return (twins // 3).reshape(-1, 3)
+
+
+def _volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
+
+
+def _face_normals(corners: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
+    """Return unit normals (m, 3); a triangle without area takes those of its neighbors."""
+    sides = np.roll(corners, -1, axis=1) - corners
+    normals = np.cross(sides[:, 0], sides[:, 1])
+    sizes = np.linalg.norm(normals, axis=1)
+    flat = sizes <= _FLAT * np.square(sides).sum(axis=(1, 2))
+    normals /= np.where(flat, 1.0, sizes)[:, None]
+    normals[flat] = 0.0
+    normals[flat] = normals[neighbors[flat]].sum(axis=1)
+    return normals
+
+
+def _corner_angles(corners: np.ndarray) -> np.ndarray:
+    """Return the angle (m, 3) at each corner, rad."""
+    u = np.roll(corners, -1, axis=1) - corners
+    v = np.roll(corners, 1, axis=1) - corners
+    sines = np.linalg.norm(np.cross(u, v), axis=2)
+    return np.arctan2(sines, np.einsum("ijk,ijk->ij", u, v))
+
 
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True)
 _ANY = fcl.CollisionRequest()

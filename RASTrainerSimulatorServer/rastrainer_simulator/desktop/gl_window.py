@@ -16,7 +16,8 @@ from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 from vtkmodules.vtkRenderingOpenGL2 import vtkGenericOpenGLRenderWindow
 
 from rastrainer.errors import RASTrainerError
-from rastrainer_simulator.desktop.panels.window_icon import SIZE, window_icon
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.theme import Color, rgba
 
 TITLE = "RASTrainer"
 LEAST_SIZE = (960, 540)
@@ -62,7 +63,7 @@ class GlWindow:
         except pygame.error as error:
             raise RASTrainerError(NO_WINDOW.format(reason=error)) from None
         self._window.set_icon(
-            pygame.image.frombuffer(window_icon().tobytes(), (SIZE, SIZE), "RGBA")
+            pygame.image.frombuffer(window_icon().tobytes(), (ICON_SIZE, ICON_SIZE), "RGBA")
         )
         pygame.key.set_repeat(REPEAT_AFTER_MS, REPEAT_EVERY_MS)
         self._window.minimum_size = tuple(
@@ -152,3 +153,23 @@ def _renderer_name(window: vtkGenericOpenGLRenderWindow) -> str:
     lines = window.ReportCapabilities().splitlines()
     found = [line for line in lines if line.startswith("OpenGL renderer string:")]
     return found[0].partition(":")[2].strip() if found else ""
+
+
+ICON_SIZE = 64
+NIGHT, SKIN, ARM = rgba(0x0E1726), rgba(0xD9A88C), rgba(0xF07818)
+DISKS: tuple[tuple[int, int, int, Color], ...] = (
+    (42, 42, 17, SKIN),
+    (34, 31, 4, rgba(0xFFCC0D)),
+    (46, 31, 4, rgba(0x199E40)),
+    (53, 40, 4, rgba(0x199E40)),
+)
+
+
+def window_icon() -> np.ndarray:
+    """Return the window's icon, (64, 64, 4) uint8: a head, its fiducials, the tool at the next."""
+    canvas = Canvas(ICON_SIZE, ICON_SIZE)
+    canvas.box(Box(0, 0, ICON_SIZE, ICON_SIZE), NIGHT, 12)
+    for x, y, radius, color in DISKS:
+        canvas.box(Box(x - radius, y - radius, 2 * radius, 2 * radius), color, radius)
+    canvas.stroke([(10, 54), (10, 30), (24, 14), (32, 27)], 6, ARM)
+    return canvas.pixels()

@@ -22,11 +22,16 @@ from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.procedure_state import Tool
-from rastrainer_simulator.record.display_use import DisplayReport, DisplayUse
 from rastrainer_simulator.record.procedure_entries import procedure_record
 from rastrainer_simulator.record.recorded_setup import versions
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
-from rastrainer_simulator.record.view_report import GhostReport, GuidanceReport, NotedReport
+from rastrainer_simulator.record.view_report import (
+    DisplayReport,
+    DisplayUse,
+    GhostReport,
+    GuidanceReport,
+    NotedReport,
+)
 from rastrainer_simulator.state import (
     Event,
     EventKind,

@@ -1,12 +1,81 @@
-"""What a trial's journal notes of its view, its aids, and the tutorial before it."""
+"""What a trial's journal notes of its display, view and aids, and of the tutorial before it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from typing import Any
 
-from rastrainer_simulator.record.display_use import DisplayReport
 from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+
+
+@dataclass(frozen=True)
+class DisplayReport:
+    """A view's report on the last second.
+
+    Attributes:
+        view: "desktop", "page" or "headset".
+        device: model of the headset or name of the browser; "" where unknown.
+        refresh_hz: of the display; 0 where unknown.
+        shown: frames shown.
+        dropped: frames dropped.
+    """
+
+    view: str
+    device: str
+    refresh_hz: float
+    shown: int
+    dropped: int
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> DisplayReport:
+        """Return the report of an entry, as made by `entry`."""
+        named = (entry[name] for name in ("view", "device", "refreshHz", "shown", "dropped"))
+        return cls(*named)
+
+    def entry(self) -> dict[str, Any]:
+        """Return the journal's entry, without its times."""
+        values = asdict(self)
+        values["refreshHz"] = values.pop("refresh_hz")
+        return {"kind": "display", **values}
+
+
+class DisplayUse:
+    """Adds up the reports of one trial.
+
+    Attributes:
+        guidance: how the trainee is guided to the next point; "" where no screen shows it.
+        ghost: which earlier trial was shown beside the arm; "" for none.
+    """
+
+    def __init__(self) -> None:
+        self.guidance = self.ghost = ""
+        self._last: DisplayReport | None = None
+        self._shown = 0
+        self._dropped = 0
+
+    def add(self, report: DisplayReport) -> None:
+        """Add a report."""
+        self._last = report
+        self._shown += report.shown
+        self._dropped += report.dropped
+
+    def summary(self) -> dict[str, str | float]:
+        """Return `display` of the trial's record: the last view, all frames, and the aids."""
+        aids = {"guidance": self.guidance, "ghost": self.ghost}
+        shown = {name: aid for name, aid in aids.items() if aid}
+        if self._last is None:
+            return {**shown}
+        device = {"device": self._last.device} if self._last.device else {}
+        return {
+            "kind": self._last.view,
+            **device,
+            **shown,
+            "refreshHz": self._last.refresh_hz,
+            "shownFrames": self._shown,
+            "droppedFrames": self._dropped,
+        }
+
 
 DECIMALS = 2
 

@@ -8,7 +8,7 @@
    pass closes the elbow exactly (`closure`, `elbow_circle`): FABRIK alone converges slowly below a
    micrometer (J. Intell. Robot. Syst. 2023, 10.1007/s10846-023-01895-2).
 3. The joint angles are read off the links, on the branch nearest to the last ones (`branches`).
-4. What is out of reach is replaced by the nearest that is not (`reaching`, `nearest_reach`).
+4. What is out of reach is replaced by the nearest that is not (`reaching`).
 """
 
 from __future__ import annotations

@@ -9,8 +9,7 @@ import scipy.stats
 from rastrainer.errors import InputError
 from rastrainer.statistics.crossover import fit_differences, is_separable
 from rastrainer.statistics.few_subjects import what_cannot_be_concluded
-from rastrainer.statistics.paired import compare_paired
-from rastrainer.statistics.rank_tests import rank_sum_test
+from rastrainer.statistics.paired import compare_paired, rank_sum_test
 
 rng = np.random.default_rng(8)
 ORDERS = {

@@ -16,8 +16,7 @@ from rastrainer.statistics.intervals import (
     small_sample_factor,
     subjects_needed,
 )
-from rastrainer.statistics.paired import compare_paired, equivalence_margin, holm
-from rastrainer.statistics.rank_tests import signed_rank_test
+from rastrainer.statistics.paired import compare_paired, equivalence_margin, holm, signed_rank_test
 
 rng = np.random.default_rng(3)
 SAMPLES = [rng.normal(0.4, 1.0, n) for n in (3, 4, 5, 8, 12, 25, 60)]

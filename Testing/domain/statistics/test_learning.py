@@ -17,8 +17,12 @@ from rastrainer.statistics.competence import (
     pass_mark,
     signal_probability,
 )
-from rastrainer.statistics.learning_curve import fit_learning_curve
-from rastrainer.statistics.trend import TrendVerdict, cohort_trend_p, falling_trend
+from rastrainer.statistics.trend import (
+    TrendVerdict,
+    cohort_trend_p,
+    falling_trend,
+    fit_learning_curve,
+)
 
 
 @pytest.mark.parametrize("rates", [(0.4, 0.2), (0.0, 0.2), (0.2, 1.0), (float("nan"), 0.5)])

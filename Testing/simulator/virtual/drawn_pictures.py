@@ -13,7 +13,7 @@ from rastrainer.head.surface_queries import outward_normals
 from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M, apply
 from rastrainer_simulator.collision.collision import Collision, Surroundings
-from rastrainer_simulator.collision.line_of_sight import LineOfSight
+from rastrainer_simulator.collision.head_clearance import LineOfSight
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.skin import Skin

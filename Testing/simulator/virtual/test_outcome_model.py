@@ -7,8 +7,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.report.elements.comparisons import compare_modes
 from rastrainer.statistics.intervals import paired_power
-from rastrainer.statistics.learning_curve import fit_learning_curve
-from rastrainer.statistics.trend import TrendVerdict, falling_trend
+from rastrainer.statistics.trend import TrendVerdict, falling_trend, fit_learning_curve
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer_simulator.virtual.outcome_model import (
     DOF,

@@ -20,10 +20,9 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
 from rastrainer_simulator.net.state_feed import StateFeed, StateSource
 from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
-from rastrainer_simulator.net.views.gate import Gate, add_security_headers
+from rastrainer_simulator.net.views.gate import Gate, PairingCode, Sessions, add_security_headers
 from rastrainer_simulator.net.views.messages import HELLO, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.page import NOT_BUILT, page_folder
-from rastrainer_simulator.net.views.pairing import PairingCode, Sessions
 from rastrainer_simulator.net.views.presenter import Hello, Presenter
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.net.views.views import Views

@@ -3,8 +3,7 @@ import logging
 import pytest
 
 from rastrainer_simulator.net.views import view_server as view_server_module
-from rastrainer_simulator.net.views.gate import COOKIE
-from rastrainer_simulator.net.views.pairing import PairingCode, Sessions
+from rastrainer_simulator.net.views.gate import COOKIE, PairingCode, Sessions
 from Testing.simulator.net.views.served import SUBPROTOCOL, raw_request, request
 
 UPGRADE = {

@@ -12,8 +12,16 @@ from rastrainer.report.elements.markup import Cell, Line, bullets, figure, parag
 from rastrainer.report.elements.scores import versions_note
 from rastrainer.report.elements.svg import mode_color
 from rastrainer.report.sections.paired_statistics import interval_text
-from rastrainer.statistics.learning_curve import MIN_TRIALS, LearningCurve, fit_learning_curve
-from rastrainer.statistics.trend import ALPHA, STEADY, CohortTrend, TrendVerdict, cohort_trend
+from rastrainer.statistics.trend import (
+    ALPHA,
+    MIN_FIT_TRIALS,
+    STEADY,
+    CohortTrend,
+    LearningCurve,
+    TrendVerdict,
+    cohort_trend,
+    fit_learning_curve,
+)
 from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, mode_title
 from rastrainer.study.study_data import StudyData
 
@@ -81,7 +89,7 @@ def _curve(trend: CohortTrend | None, outcome: Outcome) -> LearningCurve | None:
     """Return the curve of the means if they fall significantly."""
     if trend is None or not trend.is_shown or outcome.better > 0:
         return None
-    return fit_learning_curve(trend.means) if len(trend.means) >= MIN_TRIALS else None
+    return fit_learning_curve(trend.means) if len(trend.means) >= MIN_FIT_TRIALS else None
 
 
 def _chart(

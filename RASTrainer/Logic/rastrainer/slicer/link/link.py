@@ -20,10 +20,9 @@ from rastrainer.protocol import (
     CommandName,
     check_arguments,
 )
-from rastrainer.slicer.link.arrivals import Arrivals
 from rastrainer.slicer.link.connection import ConnectorKit, SlicerConnection
 from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
-from rastrainer.slicer.link.pending_commands import OnReply, PendingCommands, Request
+from rastrainer.slicer.link.pending_commands import Arrivals, OnReply, PendingCommands, Request
 from rastrainer.slicer.link.simulator_search import ConnectionCheck, checkedAddress, checkPort
 from rastrainer.slicer.scene.link_nodes import prepareNodes
 from rastrainer.slicer.signal import ErrorGuard, Signal

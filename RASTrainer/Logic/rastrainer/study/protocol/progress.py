@@ -8,6 +8,7 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.json_checks import is_number
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import Step, StepKind
@@ -205,10 +206,9 @@ def _checked_reason(reason: Any, what: str) -> str:
 
 
 def _checked_minutes(step: Step, minutes: Any) -> float:
-    is_number = isinstance(minutes, (int, float)) and not isinstance(minutes, bool)
-    if not is_number or not step.minutes <= minutes < float("inf"):
+    if not is_number(minutes) or not step.minutes <= minutes < float("inf"):
         what = "The trial run" if step.kind is StepKind.TRIAL_RUN else "The break"
-        took = f"{minutes:.1f}" if is_number else "none"
+        took = f"{minutes:.1f}" if is_number(minutes) else "none"
         raise InputError(
             f"{what} takes {step.minutes:g} minutes, of which {took} are over; to continue "
             "earlier, skip it with a reason."
