@@ -119,6 +119,8 @@ def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the
             trainee.choose(item)
         assert trainee.value("trainee") == "P7"
         trainee.begin_task("trial-run")
+        # Until the window has loaded the scene, it shows the menu before.
+        window.wait_for_tick(lab.view.state["tick"])
         mouse.click("press sticks")
         trainee.until(lambda: lab.view.screen.has_sticks, "the sticks")
         start = trainee.tip.copy()

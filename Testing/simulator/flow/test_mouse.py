@@ -1,4 +1,4 @@
-"""By the mouse alone: menus, the ID, the sticks on the screen, touches and a procedure's phases."""
+"""By the mouse alone: menus, the ID, the sticks on the screen, touches, undo and the menu."""
 
 from __future__ import annotations
 
