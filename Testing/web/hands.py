@@ -58,6 +58,11 @@ _MOVE = """async (by) => {
 }"""
 
 
+_IS_TARGET = """(target) => {
+  const box = document.querySelector(target)?.getBoundingClientRect();
+  return box !== undefined && Math.min(box.width, box.height) >= 24;
+}"""
+"""Whether what is to be clicked is as large as WCAG 2.2 wants it (2.5.8)."""
 _SLOW_IS = """(word) =>
   document.querySelector("#hints [data-item='press fine']")?.textContent.endsWith(word)"""
 
@@ -152,10 +157,12 @@ class PageMouse:
     def click(self, item: str) -> None:
         """Click on an item of the menu or on a hint, once it is there."""
         target = f"#menu li[data-name='{item}'] button, #hints [data-item='{item}']"
-        self._page.wait_for_selector(target)
-        box = self._page.query_selector(target).bounding_box()
-        assert min(box["width"], box["height"]) >= 24
-        assert self._page.eval_on_selector(target, "e => getComputedStyle(e).cursor") == "pointer"
+        place = self._page.locator(target)
+        # The page may set the hints anew at any moment.
+        self._page.wait_for_function(_IS_TARGET, arg=target)
+        while (box := place.bounding_box()) is None:
+            self._page.wait_for_selector(target)
+        assert place.evaluate("e => getComputedStyle(e).cursor") == "pointer"
         self._page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
 
     def tap(self, control: str) -> None:

@@ -10,10 +10,10 @@ from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 
-DIAMETER, KNOB = 264, 104
+DIAMETER, KNOB = 264, 88
 ABOVE_HINTS = 172
 """How far a stick's lower end is above the window's."""
-_TEXT_SHARE, _TEXT_TOP = 0.62, 0.7
+_TEXT_SHARE, _TEXT_TOP = 0.6, 0.66
 
 
 @dataclass(frozen=True)
