@@ -53,7 +53,8 @@ def task_by_method(scenario: Scenario, task_name: str, method: RegistrationMetho
     if len(landmarks) < COARSE_LANDMARKS:
         raise InputError(
             f"The scenario {scenario.name} has {len(landmarks)} landmarks, and a trial by "
-            f"{method.value} needs {COARSE_LANDMARKS}: place them in Slicer, or choose fiducials."
+            f"{method.value} needs {COARSE_LANDMARKS}: add them to its scenario.json, or choose "
+            "fiducials."
         )
     if method is RegistrationMethod.SURFACE:
         landmarks = landmarks[:COARSE_LANDMARKS]
