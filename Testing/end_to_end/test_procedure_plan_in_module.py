@@ -112,6 +112,7 @@ def test_lines_change_their_order_and_a_checkpoint_is_placed_by_buttons(host):
     assert host.text("lineNameLineEdit") == "Second"
     assert not host.find("raiseLineButton").enabled
     host.choose("linesTable", 1)
+    host.wait_until(lambda: host.find("raiseLineButton").enabled, "the second line can be raised")
     host.press("raiseLineButton")
     assert [row[0] for row in cells(host)] == ["First", "Second"]
     host.press("placeCheckpointButton")

@@ -27,6 +27,7 @@ COMMANDS = {
     "Jog": {"velocityMmS": [10, -20, 30], "frame": "world", "durationS": 0.1},
     "MoveTipTo": {"positionMm": [500, 0, 400], "speedMmS": 100},
     "Capture": {},
+    "Trace": {"on": True},
     "Undo": {},
     "Register": {},
     "UseRegistration": _REGISTRATION,

@@ -29,6 +29,7 @@ ARGUMENTS = {
     "StartTask": {"task": "task-1", "trainee": "anna", "seed": None},
     "Jog": {"velocityMmS": [1, 2, 3]},
     "MoveTipTo": {"positionMm": [500, 0, 300], "direction": None},
+    "Trace": {"on": True},
     "SetCamera": {"camera": "far"},
     "SubmitRegistration": REGISTRATION,
     "UseRegistration": REGISTRATION,
