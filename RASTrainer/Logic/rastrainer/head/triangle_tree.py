@@ -12,7 +12,7 @@ import numpy as np
 
 LEAF = 8
 """Triangles in a box of the lowest level."""
-TOP_LEVEL, LEVELS_AT_ONCE = 5, 1
+TOP_LEVEL = 5
 POOR_GUESS_MM = 2.0
 REPRESENTED_LEVEL = 9
 """Boxes of this level are told apart by the middle of one lowest box within each."""
@@ -120,10 +120,9 @@ class TriangleTree:
             who, box = who[kept], box[kept]
             if level == last:
                 return who, box
-            step = min(LEVELS_AT_ONCE, last - level)
-            level += step
-            who = np.repeat(who, 2**step)
-            box = (box[:, None] * 2**step + np.arange(2**step)).ravel()
+            level += 1
+            who = np.repeat(who, 2)
+            box = (box[:, None] * 2 + np.arange(2)).ravel()
 
 
 @dataclass(frozen=True)
