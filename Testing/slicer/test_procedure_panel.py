@@ -54,10 +54,11 @@ def tell(host, simulator, phase, **procedure):
     """Have the simulator say how far the procedure is, and wait until it is shown."""
     told = {"name": "seeg", "trajectory": 1, "trajectories": 5, "registrationInUse": True}
     state = {**STATE, "phase": phase, "procedure": {**told, **procedure}}
+    logic = host.widget.logic.session.procedure
+    before = logic.status
     simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
-    status = host.widget.logic.session.procedure
-    host.wait_until(lambda: status.status.phase == phase, "the phase has come")
-    host.let_pass(0.15)
+    host.wait_until(lambda: logic.status != before, "the state has come")
+    assert logic.status.phase == phase
 
 
 def sent(simulator, name):

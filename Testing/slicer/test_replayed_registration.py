@@ -49,36 +49,35 @@ def trials(host, make_record):
     return fre
 
 
-def replay(host, number, task):
+def replay(host, trials, number, task):
+    """Replay a trial and wait until its own touches are registered."""
     host.choose("trialComboBox", f"{number}: {task}")
     host.press("replayButton")
-    host.let_pass(0.3)
+    expected = pytest.approx(trials[task], abs=0.01)
+    host.wait_until(lambda: shown_fre(host) == expected, f"the touches of {task} are registered")
+    assert host.find("residualsTable").rowCount == 15
 
 
 def shown_fre(host):
-    return float(host.find("fitsTable").item(0, 1).text())
+    shown = host.find("fitsTable").item(0, 1)
+    return None if shown is None else float(shown.text())
 
 
 def test_a_replay_of_another_task_registers_its_own_touches(host, trials):
     for number, task in (*enumerate(TASKS, start=1), (1, "task-1")):
-        replay(host, number, task)
-        assert shown_fre(host) == pytest.approx(trials[task], abs=0.01)
-        assert host.find("residualsTable").rowCount == 15
+        replay(host, trials, number, task)
 
 
-@pytest.mark.usefixtures("trials")
-def test_what_was_left_out_of_one_trial_is_not_left_out_of_the_next(host):
-    replay(host, 1, "task-1")
+def test_what_was_left_out_of_one_trial_is_not_left_out_of_the_next(host, trials):
+    replay(host, trials, 1, "task-1")
     host.choose("residualsTable", 3)
     host.press("excludeButton")
     assert host.find("residualsTable").rowCount == 14
-    replay(host, 2, "task-2")
-    assert host.find("residualsTable").rowCount == 15
+    replay(host, trials, 2, "task-2")
 
 
-@pytest.mark.usefixtures("trials")
-def test_touches_are_not_paired_with_another_tasks_fiducials(host):
-    replay(host, 1, "task-1")
+def test_touches_are_not_paired_with_another_tasks_fiducials(host, trials):
+    replay(host, trials, 1, "task-1")
     host.choose("taskComboBox", "Task 2")
     host.press("showScenarioButton")
     host.wait_until(lambda: "show the task" in host.text("registrationText"), "it is said")
@@ -88,9 +87,10 @@ def test_touches_are_not_paired_with_another_tasks_fiducials(host):
     host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "they are registered")
 
 
-@pytest.mark.usefixtures("trials")
-def test_a_trial_that_is_played_is_not_disturbed_and_begins_without_the_replays_touches(host):
-    replay(host, 1, "task-1")
+def test_a_trial_that_is_played_is_not_disturbed_and_begins_without_the_replays_touches(
+    host, trials
+):
+    replay(host, trials, 1, "task-1")
     tasks = {"scenario": "colin27", "title": "Colin", "tasks": []}
     answers = {"ListTasks": tasks}
     with SimulatorDouble(lambda name, _arguments: answers.get(name, {})) as simulator:
