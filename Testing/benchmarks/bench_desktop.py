@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, Phase
 from rastrainer_simulator.desktop.app import TRIED_FRAMES
 from Testing.benchmarks.row import row
 from Testing.benchmarks.watched_loop import WatchedLoop
@@ -76,6 +76,7 @@ def rows(quick: bool) -> list[dict]:
         beside, large = _count(lab, slicer, window, seconds)
         window.kill()
         window = _open(lab, SMALL)
+        _resume(lab, slicer)
         _warm_up(lab, window)
         _, small = _count(lab, slicer, window, seconds)
     streamed, shown = 1e3 * np.array(delays).T
@@ -111,6 +112,7 @@ def _count(lab: Lab, slicer: Client, window: WindowProcess, seconds: int) -> tup
     drawn = len(window.frames())
     swung = _swing(lab, slicer, seconds)
     rate = (len(window.frames()) - drawn) / swung.seconds
+    assert lab.view.state["phase"] == Phase.RUNNING, "The arm did not move all the time."
     return swung, Drawn(rate, _qualities(window)[-1])
 
 
@@ -122,6 +124,14 @@ def _start_trial(lab: Lab, slicer: Client) -> None:
         assert reply.ok, reply.error
     wait_until(lambda: lab.view.screen.menu is None, "the task")
     wait_until(lambda: lab.view.scene["fiducials"], "its scene")
+
+
+def _resume(lab: Lab, slicer: Client) -> None:
+    """Resume the trial, which is paused when the window that shows it is closed."""
+    wait_until(lambda: lab.view.state["phase"] == Phase.PAUSED, "the pause")
+    reply = slicer.send_command(CommandName.RESUME, {}, timeout=20)
+    assert reply.ok, reply.error
+    wait_until(lambda: lab.view.screen.menu is None, "the task")
 
 
 def _delay(lab: Lab, window: WindowProcess, random: np.random.Generator) -> Delay:
