@@ -30,6 +30,14 @@ def test_whether_registration_or_hands_caused_more_is_said_with_its_interval(wor
     assert re.search(r"\[95 %: −?\d\.\d\d, −?\d\.\d\d\]", words)
 
 
+def test_the_error_over_trainees_has_an_interval_and_the_limits_are_stated(words):
+    found = re.search(r"own RMS was (\d\.\d\d) mm on average \[95 %: (\S+), (\S+)\]", words)
+    value, low, high = (float(number) for number in found.groups())
+    assert low < value < high
+    assert "no entry is off by more than 3 mm, no target by more than 3 mm" in words
+    assert "least distance kept (mm)" in words
+
+
 def test_published_figures_are_for_orientation_with_their_sources(words):
     assert "phantoms: RONNA G3, ROSA, Leksell 0.43, 0.53, 0.72 doi:10.3389/fnbot.2022" in words
     assert "patients, DBS 1.91 doi:10.1093/neuros/nyaa428" in words

@@ -10,6 +10,12 @@ from typing import Any
 import numpy as np
 
 from rastrainer.number_text import counted, fixed, percent
+from rastrainer.procedure.score import (
+    ANGLE_LIMIT_DEG,
+    ENTRY_LIMIT_MM,
+    PLUNGE_LIMIT_MM,
+    TARGET_LIMIT_MM,
+)
 from rastrainer.report.elements.markup import bullets, figure, heading, paragraph, section, table
 from rastrainer.report.elements.svg import FAINT, INK, Sheet, axis_over, number, y_grid
 from rastrainer.statistics.estimates import mean
@@ -28,8 +34,8 @@ PUBLISHED = (
 )
 HEADER = (
     *("Procedure", "n", "lines", "trainees", "target, RMS (mm)", "by registration (mm)"),
-    *("by hand (mm)", "entry, RMS (mm)", "angle, RMS (°)", "deepest plunge (mm)", "hits"),
-    "acceptable",
+    *("by hand (mm)", "entry, RMS (mm)", "angle, RMS (°)", "deepest plunge (mm)"),
+    *("least distance kept (mm)", "hits", "acceptable"),
 )
 PHASES = {
     "running": "touching",
@@ -47,6 +53,9 @@ TRAINEE_HEADER = (
     *("trainee", "n", "lines", "target, RMS (mm)", "by registration (mm)", "by hand (mm)"),
     "score, mean",
 )
+
+LEAST_TRAINEES = 3
+"""Fewer say nothing about others."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +104,16 @@ class _Group:
     @property
     def hits(self) -> int:
         """How many times an instrument hit a no-go structure."""
-        return sum(distance <= 0 for line in self.lines for distance in line["keptMm"].values())
+        return sum(distance <= 0 for distance in self._kept_mm)
+
+    @property
+    def least_kept_mm(self) -> float | None:
+        """Least distance from a no-go structure; None where there was none to keep away from."""
+        return min(self._kept_mm, default=None)
+
+    @property
+    def _kept_mm(self) -> list[float]:
+        return [distance for line in self.lines for distance in line["keptMm"].values()]
 
     @property
     def plunge_mm(self) -> float:
@@ -104,8 +122,16 @@ class _Group:
 
     @property
     def trainees(self) -> tuple[str, ...]:
-        """Who carried them out."""
-        return tuple(dict.fromkeys(trial.trainee for trial in self.trials))
+        """Who carried them out, sorted."""
+        return tuple(sorted({trial.trainee for trial in self.trials}))
+
+    @property
+    def by_trainee(self) -> list[_Group]:
+        """The procedures of each trainee, in the order of `trainees`."""
+        return [
+            _Group.of([trial for trial in self.trials if trial.trainee == name])
+            for name in self.trainees
+        ]
 
 
 def procedures(data: StudyData) -> str:
@@ -138,7 +164,7 @@ def procedures(data: StudyData) -> str:
         figure([split_chart(kinds)], caption),
         table([list(TIME_HEADER)], [_time_row(KINDS[kind][0], kinds[kind]) for kind in kinds]),
         heading("Trainees"),
-        table([list(TRAINEE_HEADER)], _trainee_rows(done)),
+        table([list(TRAINEE_HEADER)], _trainee_rows(everything)),
         heading("Published figures, for orientation"),
         table(
             [["what", "target point error (mm)", "source"]],
@@ -162,6 +188,7 @@ def _sentences(group: _Group, trials: int) -> list[str]:
         f"{fixed(group.rms('targetPointError'), 2)} mm (RMS over all lines); the part that the "
         f"registration caused was {fixed(registration, 2)} mm, that of the hands "
         f"{fixed(hand, 2)} mm.",
+        _spread_sentence(group),
         _difference_sentence(group),
         f"{group.acceptable} of {len(group.trials)} procedures were acceptable "
         f"({percent(group.acceptable / len(group.trials))}); "
@@ -176,22 +203,31 @@ def _hits(count: int) -> str:
     return f"{counted(count, 'time')} an instrument hit a no-go structure"
 
 
+def _spread_sentence(group: _Group) -> str:
+    """Return the error over the trainees, whose lines are not independent; "" for too few."""
+    if len(group.trainees) < LEAST_TRAINEES:
+        return ""
+    found = mean(np.array([own.rms("targetPointError") for own in group.by_trainee]))
+    low, high = found.interval
+    return (
+        f"Each trainee's own RMS was {fixed(found.value, 2)} mm on average "
+        f"[95 %: {fixed(low, 2)}, {fixed(high, 2)}]."
+    )
+
+
 def _difference_sentence(group: _Group) -> str:
     """Return whether registration or hand caused more, over the trainees; "" for too few."""
-    pairs = [
-        (
-            _Group.of([t for t in group.trials if t.trainee == name]).rms(
-                "targetPointError", "byRegistrationMm"
-            ),
-            _Group.of([t for t in group.trials if t.trainee == name]).rms(
-                "targetPointError", "byHandMm"
-            ),
-        )
-        for name in group.trainees
-    ]
-    if len(pairs) < 3:
+    if len(group.trainees) < LEAST_TRAINEES:
         return ""
-    found = mean(np.array([registration - hand for registration, hand in pairs]))
+    found = mean(
+        np.array(
+            [
+                own.rms("targetPointError", "byRegistrationMm")
+                - own.rms("targetPointError", "byHandMm")
+                for own in group.by_trainee
+            ]
+        )
+    )
     low, high = found.interval
     verdict = "it cannot be said which of both caused more"
     if low > 0:
@@ -199,8 +235,9 @@ def _difference_sentence(group: _Group) -> str:
     elif high < 0:
         verdict = "the hands caused more than the registration"
     return (
-        f"Over {len(pairs)} trainees, {verdict}: registration minus hands, as RMS of each trainee, "
-        f"was {fixed(found.value, 2)} mm on average [95 %: {fixed(low, 2)}, {fixed(high, 2)}]."
+        f"Over {len(group.trainees)} trainees, {verdict}: registration minus hands, as RMS of each "
+        f"trainee, was {fixed(found.value, 2)} mm on average "
+        f"[95 %: {fixed(low, 2)}, {fixed(high, 2)}]."
     )
 
 
@@ -216,6 +253,7 @@ def _row(title: str, group: _Group) -> list[str]:
         fixed(group.rms("entryPointError"), 2),
         fixed(group.angle_deg, 2),
         fixed(group.plunge_mm, 1),
+        "–" if group.least_kept_mm is None else fixed(group.least_kept_mm, 1),
         str(group.hits),
         f"{group.acceptable} of {len(group.trials)}",
     ]
@@ -237,22 +275,19 @@ def _time_row(title: str, group: _Group) -> list[str]:
     ]
 
 
-def _trainee_rows(done: Sequence[TrialRow]) -> list[list[str]]:
-    rows = []
-    for name in sorted({trial.trainee for trial in done}):
-        group = _Group.of([trial for trial in done if trial.trainee == name])
-        rows.append(
-            [
-                name,
-                str(len(group.trials)),
-                str(len(group.lines)),
-                fixed(group.rms("targetPointError"), 2),
-                fixed(group.rms("targetPointError", "byRegistrationMm"), 2),
-                fixed(group.rms("targetPointError", "byHandMm"), 2),
-                fixed(float(np.mean(group.scores)), 1),
-            ]
-        )
-    return rows
+def _trainee_rows(everything: _Group) -> list[list[str]]:
+    return [
+        [
+            name,
+            str(len(group.trials)),
+            str(len(group.lines)),
+            fixed(group.rms("targetPointError"), 2),
+            fixed(group.rms("targetPointError", "byRegistrationMm"), 2),
+            fixed(group.rms("targetPointError", "byHandMm"), 2),
+            fixed(float(np.mean(group.scores)), 1),
+        ]
+        for name, group in zip(everything.trainees, everything.by_trainee, strict=True)
+    ]
 
 
 def _explanation() -> str:
@@ -261,8 +296,12 @@ def _explanation() -> str:
         "procedure share a registration. The trainee saw the plan where their own registration put "
         "it; the error of each target is the sum of two vectors, from the plan to where it was "
         "shown, and from there to the instrument's tip. Their lengths do not add up: the two parts "
-        "may cancel out. The same angular deviation misses a deeper target by more. Geometry is "
-        "rigid, and depths of drilling are for training."
+        "may cancel out. A procedure is acceptable where each instrument meets the skull, no entry "
+        f"is off by more than {ENTRY_LIMIT_MM:g} mm, no target by more than {TARGET_LIMIT_MM:g} mm "
+        f"and no line by more than {ANGLE_LIMIT_DEG:g}°, no drill goes more than "
+        f"{PLUNGE_LIMIT_MM:g} mm past the inner table, and nothing is hit. The same angular "
+        "deviation misses a deeper target by more. Geometry is rigid, and depths of drilling are "
+        "for training."
     )
 
 
