@@ -89,8 +89,10 @@ def test_why_the_touches_were_not_registered_is_said_once(theater):
     theater.say("verifying")
     theater.run_until(lambda: theater.said)
     assert theater.said == ["The touches were not registered: This is refused."]
+    assert theater.procedure.isRegistrationFailed
     theater.touches = theater.touches[:3]
     theater.say("running")
+    theater.run_until(lambda: not theater.procedure.isRegistrationFailed)
     theater.say("verifying")
     theater.run_until(lambda: len(theater.said) == 2)
     assert "must hold touches, a list of 15" in theater.said[1]

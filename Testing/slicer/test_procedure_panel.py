@@ -76,6 +76,7 @@ def test_a_procedure_is_started_beside_the_task(surgery):
 
 def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):
     host, simulator = surgery
+    simulator.responder = lambda name, _arguments: None if name == "ListTasks" else {}
     tell(host, simulator, "verifying", registrationInUse=False)
     assert host.text("procedureInstructionText") == "The touches are being registered."
     assert not host.find("acceptButton").enabled
@@ -102,6 +103,18 @@ def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):
                 f"{command} is sent",
             )
     assert "while the registration is verified" in host.find("acceptButton").toolTip
+
+
+def test_touches_that_cannot_be_registered_can_only_be_touched_again(surgery):
+    host, simulator = surgery
+    simulator.responder = lambda name, _arguments: f"{name} is refused."
+    tell(host, simulator, "verifying", registrationInUse=False)
+    host.wait_until(lambda: host.find("registerAgainButton").enabled, "they can be touched again")
+    assert not host.find("acceptButton").enabled
+    assert "could not be registered: let all points be" in host.text("procedureInstructionText")
+    assert "were not registered: " in host.text("procedureMessageText")
+    host.press("registerAgainButton")
+    host.wait_until(lambda: sent(simulator, "RegisterAgain"), "they are touched again")
 
 
 def test_the_errors_are_shown_with_what_registration_and_hand_caused(host):

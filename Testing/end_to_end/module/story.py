@@ -80,9 +80,7 @@ class Story:
     def use_scenario_in_simulator(self) -> None:
         host = self.host
         host.press("loadScenarioButton")
-        asked = host.text("scenarioText")
-        assert "was asked to load" in asked
-        host.let_pass(0.3)
+        host.wait_until(lambda: " now." in host.text("scenarioText"), "the scenario is loaded")
         assert host.text("stateText").startswith("Connected")
 
     def abort_a_trial_run(self) -> None:

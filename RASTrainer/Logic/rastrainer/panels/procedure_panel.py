@@ -122,9 +122,11 @@ class ProcedurePanel:
         ui, status = self._ui, self._logic.status
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setText(ui.procedureStateText, stateText(status, isConnected))
-        setSentence(ui.procedureInstructionText, instruction(status) if isConnected else "")
+        setSentence(ui.procedureInstructionText, self._instruction() if isConnected else "")
         for step in STEPS:
             isReady = status.isRegistered or Phase.VERIFYING not in step.phases
+            # What cannot be registered can only be touched again.
+            isReady |= step.button == "registerAgainButton" and self._logic.isRegistrationFailed
             isNow = status.isUnderWay and status.phase in [phase.value for phase in step.phases]
             when = _(" or ").join(WHEN[phase] for phase in step.phases)
             reason = _("Only {when}.").format(when=when)
@@ -135,6 +137,11 @@ class ProcedurePanel:
             setUsable(getattr(ui, step.button), isConnected and isNow and isReady, step.tip, reason)
         if self._logic.outcome is not self._shown:
             self._showOutcome()
+
+    def _instruction(self) -> str:
+        if self._logic.isRegistrationFailed:
+            return _("The touches could not be registered: let all points be touched again.")
+        return instruction(self._logic.status)
 
     def _action(self, step: _Step) -> Callable[[], None]:
         def act() -> None:

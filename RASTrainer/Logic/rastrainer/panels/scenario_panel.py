@@ -74,10 +74,11 @@ class ScenarioPanel:
         """Load the chosen head into the simulator."""
         with slicer.util.tryWithErrorDisplay(_("The scenario was not loaded.")):
             scenario = self._session.scenario.find(chosenData(self._ui.scenarioComboBox))
-            self._session.training.loadScenario(scenario.name)
             self._showMessage(
                 _("The simulator was asked to load {title}.").format(title=scenario.title)
             )
+            loaded = _("The simulator uses {title} now.").format(title=scenario.title)
+            self._session.training.loadScenario(scenario.name, lambda: self._showMessage(loaded))
 
     def showRobot(self, shown: bool) -> None:
         """Show the robot in the 3D view, or hide it."""

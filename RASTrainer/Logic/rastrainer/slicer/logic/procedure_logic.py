@@ -90,6 +90,8 @@ class ProcedureLogic:
         answered: emits the sentence of a command that was refused, empty where it was accepted.
         status: of the trial's procedure.
         outcome: of the procedure that was scored last; None before, and during the next one.
+        isRegistrationFailed: whether the touches that wait for it could not be registered; the
+            reason has been emitted by `answered`.
     """
 
     def __init__(
@@ -113,6 +115,7 @@ class ProcedureLogic:
         self.answered = Signal()
         self.status = ProcedureStatus()
         self.outcome: ProcedureOutcome | None = None
+        self.isRegistrationFailed = False
         self._scene = scene
         self._link = link
         self._findScenario = findScenario
@@ -189,10 +192,12 @@ class ProcedureLogic:
         if trialId != self._trialId:
             self._trialId = trialId
             self.outcome = None if status.name else self.outcome
+        isWaiting = status.phase == Phase.VERIFYING.value and not status.isRegistered
+        self.isRegistrationFailed = self.isRegistrationFailed and isWaiting
         if status != self.status:
             self.status = status
             self.changed.emit()
-        if status.phase != Phase.VERIFYING.value or status.isRegistered:
+        if not isWaiting:
             self._registering = ""
         elif status.name and self._registering != trialId:
             self._registering = trialId
@@ -235,4 +240,6 @@ class ProcedureLogic:
 
     def _fail(self, reason: Exception | str) -> None:
         text = _("The touches were not registered: {reason}").format(reason=reason)
+        self.isRegistrationFailed = True
         self.answered.emit(text)
+        self.changed.emit()

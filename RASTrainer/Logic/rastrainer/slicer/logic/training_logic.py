@@ -22,6 +22,9 @@ from rastrainer.slicer.scene.trial_scene import forgetStoredTouches, noteTouched
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
+LOADING_S = 30.0
+"""How long the simulator may take to load a scenario."""
+
 
 @dataclass(frozen=True)
 class TrialStatus:
@@ -176,9 +179,17 @@ class TrainingLogic:
             raise InputError(_("This trial is over. The trial that is open now was not aborted."))
         self._send(CommandName.ABORT, {"trialId": trialId})
 
-    def loadScenario(self, folder: str) -> None:
-        """Load another scenario into the simulator, between two trials."""
-        self._send(CommandName.LOAD_SCENARIO, {"folder": folder}, timeoutS=30.0)
+    def loadScenario(self, folder: str, done: Callable[[], None]) -> None:
+        """Load another scenario into the simulator, between two trials; call `done` once it has."""
+
+        def takeAnswer(reply: Reply) -> None:
+            self.answered.emit(reply.error)
+            if reply.ok:
+                done()
+
+        self._link.send(
+            CommandName.LOAD_SCENARIO, {"folder": folder}, takeAnswer, timeoutS=LOADING_S
+        )
 
     def _startUnlessTutorial(self, reply: Reply, who: Mapping[str, str]) -> None:
         """Start the trial run, unless the simulator has opened the tutorial before it."""
@@ -191,12 +202,8 @@ class TrainingLogic:
         else:
             self._send(CommandName.START_TASK, {"task": TRIAL_RUN, **who})
 
-    def _send(
-        self, name: str, arguments: Mapping[str, Any] | None = None, timeoutS: float = 5.0
-    ) -> None:
-        self._link.send(
-            name, arguments, lambda reply: self.answered.emit(reply.error), timeoutS=timeoutS
-        )
+    def _send(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
+        self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         self._state, self._stateTime = state, self._clock()
