@@ -8,7 +8,7 @@ from rastrainer.procedure.meshes import read_procedure_meshes
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.control_points import setPoints, worldPoints
-from rastrainer.slicer.scene.procedure_plan_nodes import noGoNodes, planLines
+from rastrainer.slicer.scene.procedure_plan_nodes import instrumentOf, noGoNodes, planLines
 from Testing.end_to_end.module.story import Story
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
@@ -114,6 +114,20 @@ def test_lines_change_their_order_and_a_checkpoint_is_placed_by_buttons(host):
     host.wait_until(lambda: host.find("raiseLineButton").enabled, "the second line can be raised")
     host.press("raiseLineButton")
     assert [row[0] for row in cells(host)] == ["First", "Second"]
+    host.type("lineDiameterSpinBox", "2.0")
+    kept = cells(host)[0], worldPoints(planLines(host.scene)[0]).tolist()
+    for _line in range(2):
+        host.choose("linesTable", 0)
+        host.press("removeLineButton")
+    assert cells(host) == []
+    for _line in range(2):
+        host.press("restoreLineButton")
+    assert [row[0] for row in cells(host)] == ["First", "Second"]
+    first, second = planLines(host.scene)
+    assert (cells(host)[0], worldPoints(first).tolist()) == kept
+    assert instrumentOf(first)[0] == 2.0
+    assert instrumentOf(second)[0] == 1.3
+    assert not host.find("restoreLineButton").enabled
     host.press("placeCheckpointButton")
     host.place(0.0, 80.0, 40.0)
     checkpoints = host.find("checkpointsComboBox").currentNode()

@@ -174,6 +174,7 @@ NOT_IN_THE_TOUR = {
     "connectToRunningButton": "it needs a Slicer that has crashed",
     "endRunningButton": "it needs a Slicer that has crashed",
     "sampleDataButton": "it needs the Internet",
+    "restoreLineButton": "the tour removes no line; the host's tests press it",
     "raiseLineButton": "the tour's procedure has one line; the host's tests press it",
     "placeCheckpointButton": "the tour's procedure has its checkpoints; the host's tests press it",
 }

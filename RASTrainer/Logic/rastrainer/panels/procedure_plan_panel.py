@@ -25,6 +25,7 @@ from rastrainer.slicer.scene.control_points import worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing
 from rastrainer.slicer.scene.procedure_plan_nodes import (
     FIDUCIALS,
+    RemovedLine,
     checkpointList,
     instrumentOf,
     isNoGo,
@@ -33,6 +34,8 @@ from rastrainer.slicer.scene.procedure_plan_nodes import (
     noGoNodes,
     planLines,
     raiseLine,
+    removeLine,
+    restoreLine,
     setInstrument,
     setNoGo,
 )
@@ -58,11 +61,13 @@ class ProcedurePlanPanel:
         self._seen: tuple = ()
         self._checked: tuple[tuple, CheckedPlan] | None = None
         self._problem = ""
+        self._removed: list[RemovedLine] = []
         self._work = CancelableWork(self._showProblem, self._showProgress, self.showState)
         fillComboBox(ui.procedureKindComboBox, KINDS, ProcedureKind.BIOPSY.value)
         ui.editProcedureButton.connect("clicked()", self.edit)
         ui.placeLineButton.connect("clicked()", self.placeLine)
         ui.removeLineButton.connect("clicked()", self.removeLine)
+        ui.restoreLineButton.connect("clicked()", self.restoreLine)
         ui.raiseLineButton.connect("clicked()", self.raiseLine)
         ui.placeCheckpointButton.connect("clicked()", self.placeCheckpoint)
         ui.linesTable.connect("itemSelectionChanged()", self._showLine)
@@ -90,7 +95,7 @@ class ProcedurePlanPanel:
         with slicer.util.tryWithErrorDisplay(_("The procedure cannot be edited.")):
             ui = self._ui
             procedure = self._logic.edit(self._scenario(), chosenData(ui.procedurePlanComboBox))
-            self._checked, self._problem = None, ""
+            self._checked, self._problem, self._removed = None, "", []
             self._name = "" if procedure is None else procedure.name
             if procedure is not None:
                 ui.procedureTitleLineEdit.text = procedure.title
@@ -108,10 +113,16 @@ class ProcedurePlanPanel:
             self.showState()
 
     def removeLine(self) -> None:
-        """Remove the chosen line."""
+        """Remove the chosen line; it can be restored."""
         line = self._line()
         if line is not None:
-            slicer.mrmlScene.RemoveNode(line)
+            self._removed.append(removeLine(slicer.mrmlScene, line))
+            self.showState()
+
+    def restoreLine(self) -> None:
+        """Bring the line back that was removed last."""
+        if self._removed:
+            restoreLine(slicer.mrmlScene, self._removed.pop())
             self.showState()
 
     def raiseLine(self) -> None:
@@ -176,6 +187,12 @@ class ProcedurePlanPanel:
             line is not None,
             _("Remove the chosen line."),
             _("Choose a line in the table first."),
+        )
+        setUsable(
+            ui.restoreLineButton,
+            bool(self._removed),
+            _("Bring back the line that was removed last."),
+            _("No line has been removed."),
         )
         setUsable(
             ui.raiseLineButton,

@@ -6,6 +6,7 @@ saved with the scene.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -40,14 +41,48 @@ def raiseLine(scene: Any, line: Any) -> None:
     place = lines.index(line)
     if place > 0:
         lines[place - 1 : place + 1] = [line, lines[place - 1]]
-    for number, each in enumerate(lines):
-        each.SetAttribute(ORDER_ATTRIBUTE, str(number))
+    _noteOrder(lines)
 
 
 def newPlanLine(scene: Any) -> Any:
     """Return a line of the plan that lacks its entry or target, for the next clicks."""
     unfinished = [line for line in planLines(scene) if len(placedRows(line)) < ENDS]
     return unfinished[0] if unfinished else _addLine(scene, scene.GenerateUniqueName(_("Line")))
+
+
+@dataclass(frozen=True)
+class RemovedLine:
+    """A line that was removed from the plan.
+
+    Attributes:
+        name: of the line.
+        ends: (n, 3) float, RAS mm; n is 2 unless it was not placed completely.
+        instrument: diameter and safety distance, mm.
+        place: among the lines of the plan, from 0.
+    """
+
+    name: str
+    ends: np.ndarray
+    instrument: tuple[float, float]
+    place: int
+
+
+def removeLine(scene: Any, line: Any) -> RemovedLine:
+    """Remove a line from the plan; return what `restoreLine` needs to bring it back."""
+    place = planLines(scene).index(line)
+    removed = RemovedLine(line.GetName(), worldPoints(line), instrumentOf(line), place)
+    scene.RemoveNode(line)
+    return removed
+
+
+def restoreLine(scene: Any, removed: RemovedLine) -> None:
+    """Bring a removed line back to its place among the others."""
+    lines = planLines(scene)
+    line = _addLine(scene, removed.name)
+    setInstrument(line, *removed.instrument)
+    setPoints(line, (_("Entry"), _("Target"))[: len(removed.ends)], removed.ends)
+    lines.insert(removed.place, line)
+    _noteOrder(lines)
 
 
 def instrumentOf(line: Any) -> tuple[float, float]:
@@ -138,6 +173,11 @@ def _addLine(scene: Any, name: str) -> Any:
     line.GetDisplayNode().SetOccludedVisibility(True)
     setInstrument(line, USUAL_DIAMETER_MM, USUAL_SAFETY_MM)
     return line
+
+
+def _noteOrder(lines: list[Any]) -> None:
+    for number, line in enumerate(lines):
+        line.SetAttribute(ORDER_ATTRIBUTE, str(number))
 
 
 def _number(text: str | None, usual: float) -> float:
