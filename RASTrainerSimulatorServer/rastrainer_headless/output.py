@@ -45,6 +45,12 @@ def results_json(analysis: TrialAnalysis) -> dict[str, Any]:
         if analysis.truth is None
         else _truth_json(analysis.truth, analysis.expected_tre),
         "score": None if analysis.score is None else analysis.score.to_json(),
+        "procedure": None
+        if analysis.procedure is None
+        else {
+            "score": analysis.procedure.score.to_json(),
+            "trajectories": [each.to_json() for each in analysis.procedure.analysis.trajectories],
+        },
         "feedback": list(analysis.feedback.sentences),
         "motion": dict(record.motion),
         "ctps": None if analysis.published_score is None else _ctps_json(analysis.published_score),

@@ -1,6 +1,6 @@
 """A biopsy from the menu to the result, by gamepad alone and by the keys of a page alone.
 
-No Slicer is there: the simulator registers the points and scores the procedure itself.
+Slicer's side registers the touches and scores the trial.
 """
 
 from __future__ import annotations
@@ -90,6 +90,7 @@ def operated(tmp_path_factory, request) -> dict:
 
 
 def operate(trainee: ProcedureTrainee, lab: Lab, device: str) -> dict:
+    slicer = lab.start_slicer()
     begin(trainee, device)
     for number in range(1, 16):
         trainee.touch(str(number))
@@ -110,6 +111,7 @@ def operate(trainee: ProcedureTrainee, lab: Lab, device: str) -> dict:
     seen["inserted"] = trainee.procedure, trainee.ruler
     trainee.next_step("release", "registered")
     trainee.until_menu("result")
+    seen["slicer"] = slicer.told_until("trial")[-1]["results"]
     seen["result"] = trainee.menu
     trainee.choose("procedure")
     trainee.until_menu("procedure-errors")
@@ -171,7 +173,18 @@ def test_the_ruler_brings_drill_and_needle_to_their_depths(operated):
     assert abs(line["depthByHandMm"]) <= 1.5
 
 
-def test_the_simulator_scores_it_and_shows_the_errors(operated):
+def test_slicers_side_scores_the_touches_and_the_procedure(operated):
+    assert operated["slicer"]["task"] == "task-1"
+    score = operated["result"].facts[0].value
+    assert score.startswith(f"{operated['slicer']['procedure']['score']['score']:.0f}")
+    (line,), (shown,) = (
+        operated["slicer"]["procedure"]["trajectories"],
+        operated["scored"]["trajectories"],
+    )
+    assert line["targetPointError"]["mm"] == shown["targetMm"]
+
+
+def test_the_errors_are_shown(operated):
     labels = [fact.label for fact in operated["result"].facts]
     assert labels[:2] == ["Score of the procedure", "Target point error (RMS)"]
     assert "Target point error" in [fact.label for fact in operated["errors"].facts]
