@@ -31,7 +31,7 @@ const WORK: Seat = { aside: 0.6, above: 0.05, away: 1.1 };
 /** Like a picture that lies on the table beside the head: the arm is seldom before it. */
 const CLOSE_UP: Seat = { aside: 0.72, above: -0.5, away: 0.85 };
 /** Between the head and the close-up, below what is read at work. */
-const GUIDING: Seat = { aside: 0.27, above: -0.42, away: 0.85 };
+const GUIDING: Seat = { aside: 0.24, above: -0.42, away: 0.85 };
 /** Below a menu. While the arm is driven, so far above the head's top that no point of it is covered. */
 const WARNING_AT_MENU: Seat = { aside: 0, above: -0.54, away: 0.55 };
 const WARNING_AWAY = 1;
@@ -43,7 +43,7 @@ const WIDE = 0.86;
 const PICTURE_WIDE = 0.8;
 const CLOSE_UP_WIDE = 0.72;
 const WARNING_WIDE = 0.66;
-const GUIDING_WIDE = 0.28;
+const GUIDING_WIDE = 0.24;
 /** Order of drawing; what points at a board comes after it. */
 const ON_TOP = 10;
 const BUTTON = { size: 32, color: COLORS.text, isBold: true };
