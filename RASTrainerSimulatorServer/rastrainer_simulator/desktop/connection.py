@@ -18,6 +18,7 @@ from rastrainer_simulator.desktop.glb_parts import read_parts
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent
 from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
 from rastrainer_simulator.desktop.screen_reader import screen_from_json
+from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.messages import HELLO, SUBPROTOCOL
 from rastrainer_simulator.net.views.screen import focused_picture
 
@@ -126,6 +127,10 @@ class ServerConnection:
 
     def _take_welcome(self, message: Mapping[str, Any]) -> None:
         self._inbox.bodies = tuple(message["bodies"])
+        self._inbox.trace = ShownTrace()
+
+    def _take_trace(self, message: Mapping[str, Any]) -> None:
+        self._inbox.trace = self._inbox.trace.with_news(message)
 
     def _take_event(self, message: Mapping[str, Any]) -> None:
         number = int(message["number"])
@@ -178,6 +183,7 @@ _TAKE: Mapping[str, Callable[[ServerConnection, Mapping[str, Any]], None]] = {
     "event": ServerConnection._take_event,
     "control": ServerConnection._take_control,
     "pairing": ServerConnection._take_pairing,
+    "trace": ServerConnection._take_trace,
 }
 
 

@@ -14,6 +14,7 @@ from rastrainer.finite_json import decode_finite_json
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import Part
 from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.screen import Screen
 
 STATE_MEMBERS = (
@@ -65,6 +66,7 @@ class Inbox:
         bodies: names in the order of a state's poses.
         thumbnails: pictures of the menus' items by where they come from.
         screen: what the trainee reads; None before the first.
+        trace: what was traced over the skin, and where to draw next.
         scene: None until one has been loaded.
         sounds: those not played yet.
         problem: key of the text that says why there is no connection; "" while there is one.
@@ -74,6 +76,7 @@ class Inbox:
         self.state: Mapping[str, Any] | None = None
         self._unread: str | None = None
         self.screen: Screen | None = None
+        self.trace = ShownTrace()
         self.scene: LoadedScene | None = None
         self.sounds: deque[SoundEvent] = deque(maxlen=16)
         self.problem = "window.connecting"

@@ -138,6 +138,9 @@ class Overlay:
             self._place("status", margin if screen.menu is None else right, margin)
         top = margin
         width, height = self._slots["status"].sprite.size
+        if self._paint("legend", screen.coverage, strips.legend, brush, aside):
+            self._place("legend", margin, margin + height + brush.px(theme.STEP))
+            height += self._slots["legend"].sprite.size[1] + brush.px(theme.STEP)
         if screen.status and width > aside + margin:
             # Wider than the room beside the messages: they come below it.
             top += height + brush.px(1.5 * theme.STEP)
@@ -281,6 +284,7 @@ _SLOTS = (
     "gauge",
     *(f"{name} {part}" for name in STICKS for part in ("stick", "knob")),
     "status",
+    "legend",
     "hints",
     *(f"warning{index}" for index in range(MAX_WARNINGS)),
     "instruction",

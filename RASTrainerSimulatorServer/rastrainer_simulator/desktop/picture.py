@@ -26,6 +26,7 @@ from rastrainer_simulator.desktop.panels.target_arrow import Direction, directio
 from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, touch_ring
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
+from rastrainer_simulator.desktop.trace_marks import TraceMarks
 from rastrainer_simulator.desktop.viewports import Viewports
 from rastrainer_simulator.net.views.screen import Menu, Screen, focused_picture
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
@@ -104,6 +105,7 @@ class Picture:
         self._overlay = Overlay(self.viewports.overlay)
         self._scene: ShownScene | None = None
         self._errors = ErrorArrows()
+        self._trace = TraceMarks()
         self._loaded: LoadedScene | None = None
         self._drawn_state: Mapping[str, Any] | None = None
         self._cleared: tuple[ShownScene | None, bool] = (None, False)
@@ -137,6 +139,7 @@ class Picture:
         self.viewports.wants_inset = screen is None or screen.menu is None
         if self._errors.show(() if screen is None else screen.errors):
             self._must_draw = True
+        self._show_trace()
         self._clear_head(screen is not None and screen.is_head_clear)
         self.viewports.prepare(now)
         if self._overlay.show(self._content(now), self._window.size):
@@ -152,6 +155,13 @@ class Picture:
         """Draw better, or faster."""
         self.viewports.set_quality(quality)
         self._drawn_state = None
+
+    def _show_trace(self) -> None:
+        head = None if self._scene is None else self._scene.poses.get("head")
+        if self._scene is None or head is None or not self._trace.show(self._inbox.trace, head):
+            return
+        self._scene.paint_skin(self._inbox.trace)
+        self._must_draw = True
 
     def _clear_head(self, is_clear: bool) -> None:
         wanted = (self._scene, is_clear)
@@ -177,7 +187,8 @@ class Picture:
             return
         self._loaded, self._drawn_state = loaded, None
         self._scene = ShownScene(loaded.parts, self.viewports.quality.is_physical)
-        self._scene.actors += self._errors.actors
+        self._scene.actors += [*self._errors.actors, *self._trace.actors]
+        self._scene.paint_skin(self._inbox.trace)
         self.viewports.show(self._scene, loaded.cameras)
 
     def _take_state(self, now: float) -> None:
@@ -262,11 +273,12 @@ class Picture:
         return touch_ring(state, tool[:3, 3], self.viewports.main, self._window.size)
 
     def _target(self) -> tuple[Direction, int] | None:
-        """Return the direction to the next fiducial and its distance in mm, if out of sight."""
+        """Return the direction to the next place and its distance in mm, if out of sight."""
         state = self._inbox.state
-        if self._scene is None or self._loaded is None or state is None or state["next"] is None:
+        if self._scene is None or self._loaded is None or state is None:
             return None
-        place = self._loaded.fiducials.get(state["next"])
+        traced = self._inbox.trace.place
+        place = self._loaded.fiducials.get(state["next"] or "", traced and traced[0])
         head, tool = self._scene.poses.get("head"), self._scene.poses.get("tool")
         if place is None or head is None or tool is None:
             return None

@@ -28,12 +28,12 @@ def add_plain_lights(renderer: vtkRenderer) -> None:
         renderer.AddLight(light)
 
 
-def lit_colors(normals: np.ndarray, color: tuple[float, float, float]) -> np.ndarray:
+def lit_colors(normals: np.ndarray, color: np.ndarray | tuple[float, float, float]) -> np.ndarray:
     """Return the color of each vertex in this light, (n, 3) uint8.
 
     Args:
         normals: (n, 3) float, in World, of unit length.
-        color: of the surface, sRGB, 0 to 1.
+        color: of the surface, or (n, 3) of each vertex, sRGB, 0 to 1.
     """
     light = np.full(len(normals), AMBIENT)
     for direction, intensity in LIGHTS:

@@ -44,6 +44,7 @@ def screen_from_json(value: Json) -> Screen:
         has_arrow=bool(value["has_arrow"]),
         errors=tuple(_error(arrow) for arrow in value["errors"]),
         is_head_clear=bool(value["is_head_clear"]),
+        coverage=str(value["coverage"]),
         ruler=None if value["ruler"] is None else _ruler(value["ruler"]),
     )
 

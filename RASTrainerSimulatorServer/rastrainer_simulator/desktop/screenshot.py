@@ -21,6 +21,7 @@ from rastrainer.files.writing import make_private_folder
 from rastrainer.python_environment import python_words
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.performance import Quality
+from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.rendering.offscreen import write_png
 
@@ -42,20 +43,22 @@ class Screenshot:
     scene: LoadedScene | None
     state: Mapping[str, Any] | None
     screen: Screen | None
+    trace: ShownTrace
     problem: str
     holder: str
 
     @classmethod
     def of(cls, inbox: Inbox, path: Path, size: tuple[int, int], quality: Quality) -> Screenshot:
         """Return what the inbox says now; `size` is in pixels."""
-        members = (inbox.scene, inbox.state, inbox.screen, inbox.problem, inbox.holder)
-        return cls(path, size, quality, *members)
+        members = (inbox.scene, inbox.state, inbox.screen, inbox.trace)
+        return cls(path, size, quality, *members, inbox.problem, inbox.holder)
 
     def inbox(self) -> Inbox:
         """Return an inbox that says the same again."""
         inbox = Inbox()
         inbox.scene, inbox.state = self.scene, self.state
-        inbox.screen, inbox.problem, inbox.holder = self.screen, self.problem, self.holder
+        inbox.screen, inbox.trace = self.screen, self.trace
+        inbox.problem, inbox.holder = self.problem, self.holder
         return inbox
 
 

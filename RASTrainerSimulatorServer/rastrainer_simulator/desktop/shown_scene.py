@@ -12,7 +12,9 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
 
 from rastrainer_simulator.desktop.glb_parts import Finish, Part
 from rastrainer_simulator.desktop.plain_light import AMBIENT, DIFFUSE, lit_colors
+from rastrainer_simulator.desktop.shown_trace import ShownTrace, SkinPaint
 from rastrainer_simulator.scene.nodes import (
+    COVERED,
     GHOST,
     GHOST_OPACITY,
     NEXT,
@@ -86,6 +88,7 @@ FED = ("drill", "electrode")
 NO_GO = "no_go_"
 CLEAR_SKIN = 0.3
 PULSE_COLOR = (1.0, 0.97, 0.75)
+SKIN_NODE = "skin"
 STILL_BODIES = ("", "head", "stand")
 """Do not move during a trial; "" is the room."""
 
@@ -106,6 +109,7 @@ class ShownScene:
         self.poses: dict[str, np.ndarray] = {}
         self._still: dict[str, list[tuple[vtkActor, Part]]] = {body: [] for body in STILL_BODIES}
         self._is_physical = is_physical
+        self._coverage = SkinPaint()
         self._ghost = _Ghost()
         for part in parts:
             actor = self._actor(part)
@@ -158,12 +162,24 @@ class ShownScene:
         """
         rotation = self.poses.get(body, np.eye(4))[:3, :3]
         for actor, part in self._still[body]:
-            actor.GetMapper().SetScalarVisibility(not self._is_physical)
+            covered = self._coverage.shares if SKIN_NODE in part.nodes else None
+            has_colors = covered is not None or not self._is_physical
+            actor.GetMapper().SetScalarVisibility(has_colors)
             actor.GetProperty().SetLighting(self._is_physical)
-            if not self._is_physical:
-                colors = lit_colors(part.normals @ rotation.T, to_srgb(part.finish.color))
-                data = actor.GetMapper().GetInput().GetPointData()
-                data.SetScalars(numpy_to_vtk(colors, deep=True))
+            if not has_colors:
+                continue
+            # As light where a shader computes with it, else as screens take it.
+            of_light = (lambda color: color) if self._is_physical else to_srgb
+            colors = np.array(of_light(part.finish.color))
+            if covered is not None:
+                paint = np.array(of_light(COVERED.linear_color))
+                colors = colors + covered[:, None] * (paint - colors)
+            if self._is_physical:
+                shown = (255.0 * colors + 0.5).astype(np.uint8)
+            else:
+                shown = lit_colors(part.normals @ rotation.T, colors)
+            data = actor.GetMapper().GetInput().GetPointData()
+            data.SetScalars(numpy_to_vtk(shown, deep=True))
 
     def mark(self, next_point: str | None, touched: Collection[str], touch: TouchStage) -> None:
         """Color the tool's tip and the fiducials."""
@@ -193,9 +209,15 @@ class ShownScene:
             if name.startswith(NO_GO):
                 self._set_visible(name, bool(shown) and name in no_go)
 
+    def paint_skin(self, trace: ShownTrace) -> None:
+        """Paint the skin around what was traced."""
+        for _actor, part in self._still["head"]:
+            if SKIN_NODE in part.nodes and self._coverage.cover(part.vertices, trace):
+                self._light_still("head")
+
     def clear_head(self, is_clear: bool) -> None:
         """Let what is within the head be seen through the skin, or not."""
-        for actor in self._named["skin"]:
+        for actor in self._named[SKIN_NODE]:
             actor.GetProperty().SetOpacity(CLEAR_SKIN if is_clear else 1.0)
 
     def _set_visible(self, name: str, is_visible: bool) -> None:

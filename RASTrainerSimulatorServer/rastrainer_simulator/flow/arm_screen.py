@@ -64,6 +64,10 @@ class ArmScreen:
         """Return the errors of touches that may be seen: a trial's are told with its score."""
         return ()
 
+    def coverage(self) -> str:
+        """Return what the paint on the skin says; "" where none is painted."""
+        return ""
+
     def ruler(self) -> DepthRuler | None:
         """Return the scale of depths while something is fed; else None."""
         return None
@@ -118,19 +122,19 @@ class ArmScreen:
             for control, key in names.items()
         )
 
-    def _toward(self, label: str, target: Vector) -> str:
-        """Return how far and in which directions a point is (World, m), in words.
+    def _toward(self, name: str, target: Vector) -> str:
+        """Return how far and in which directions a point is (World, m), in words, after its name.
 
         Near the point nothing but that is said: words that lead onto it would replace looking.
         """
         session = self._session
         away = MM_PER_M * distance(session.tip, target)
         if away < LOOKED_AT_MM:
-            return session.texts.say("status.near", point=label, distance=f"{LOOKED_AT_MM:.0f}")
+            return session.texts.say("status.near", name=name, distance=f"{LOOKED_AT_MM:.0f}")
         words = direction_words(session.tip, target, self._axes())
         return session.texts.say(
             "status.toward",
-            point=label,
+            name=name,
             distance=f"{STEP_MM * round(away / STEP_MM):.0f}",
             direction=", ".join(session.texts.say(f"way.{word}") for word in words),
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Phase
+from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.procedure_result import (
@@ -165,6 +165,7 @@ class Flow:
             language=session.preferences.language,
             errors=work.errors(),
             is_head_clear=work.is_head_clear,
+            coverage=work.coverage(),
             ruler=work.ruler(),
         )
 
@@ -265,6 +266,10 @@ class Flow:
             if training.task == TRIAL_RUN and learned is not None:
                 self._control_loop.note_display(learned)
             session.view.begin(session.setup, truth, session.state)
+            is_guided = training.trace is not None and guidance is not Guidance.NONE
+            session.places.forget()
+            if is_guided:
+                session.places.begin(training.trial_id, session.setup, truth)
             session.begin_ghost(truth.head_to_world)
             session.trainee = training.trainee
             session.mode = training.mode

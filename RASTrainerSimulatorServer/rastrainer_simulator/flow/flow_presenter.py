@@ -25,7 +25,14 @@ from rastrainer_simulator.input.inputs import (
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.subscribers import Subscribers
 from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, FeedbackEvent
-from rastrainer_simulator.net.views.presenter import Control, Feedback, Frames, Hello, ViewUpdate
+from rastrainer_simulator.net.views.presenter import (
+    Control,
+    Feedback,
+    Frames,
+    Hello,
+    TraceGuidance,
+    ViewUpdate,
+)
 from rastrainer_simulator.net.views.screen import PRESS, Screen, ScreenMessage, Tone
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.record.view_report import DisplayReport
@@ -90,6 +97,7 @@ class FlowPresenter:
         self._flow.close()
         self._session.view.close()
         self._session.ghost.close()
+        self._session.places.close()
         self.shown.close()
         self._control_loop.hold_sticks(HANDS_OFF)
 
@@ -113,6 +121,11 @@ class FlowPresenter:
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
         """Return where the ghost beside the arm is; None where none is shown."""
         return None if self._flow.playback is not None else self._session.ghost.poses(now)
+
+    def trace_guidance(self, now: SimulationState) -> TraceGuidance:
+        """Return how a trainee who traces the skin is guided; not at all while a trial is shown."""
+        is_replayed = self._flow.playback is not None
+        return TraceGuidance() if is_replayed else self._session.places.guidance(now)
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control."""

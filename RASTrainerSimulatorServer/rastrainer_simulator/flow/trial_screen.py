@@ -7,6 +7,7 @@ import math
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
+    MIN_TRACE_POINTS,
     PROCEDURE_PHASES,
     TRIAL_RUN,
     CommandName,
@@ -182,9 +183,18 @@ class TrialScreen(ArmScreen):
             self._clock(),
         ]
         target = self._points.get(training.next_point or "")
+        name = session.texts.say("status.point", point=training.next_point)
+        if training.is_tracing:
+            target, name = session.places.in_world(), session.texts.say("status.next place")
         if target is not None and self.guidance is Guidance.WORDS:
-            facts.append(self._toward(training.next_point or "", target))
+            facts.append(self._toward(name, target))
         return tuple(facts)
+
+    def coverage(self) -> str:
+        """Return what the paint on the skin says; "" where none is painted."""
+        session = self._session
+        distance = session.places.guidance(session.state).covered_mm
+        return session.texts.say("coverage", distance=f"{distance:.0f}") if distance else ""
 
     def hints(self) -> tuple[Hint, ...]:
         """Return the controls that matter."""
@@ -212,7 +222,8 @@ class TrialScreen(ArmScreen):
         training, say = self._session.training, self._session.texts.say
         if training.is_tracing and training.trace is not None:
             traced = len(training.trace.points)
-            return say("status.traced", traced=traced, most=MAX_TRACE_POINTS)
+            limits = {"least": MIN_TRACE_POINTS, "most": MAX_TRACE_POINTS}
+            return say("status.traced", traced=traced, **limits)
         return say("status.points", kept=len(training.touches), count=self._count)
 
     def _clock(self) -> str:

@@ -158,7 +158,7 @@ class TutorialScreen(ArmScreen):
             facts.append(say(key, done=coarse * int(done / coarse), goal=int(goal)))
         label = tutorial.practice.state.next_point
         if tutorial.may_touch and label is not None:
-            facts.append(self._toward(label, self._points[label]))
+            facts.append(self._toward(say("status.point", point=label), self._points[label]))
         return tuple(facts)
 
     def hints(self) -> tuple[Hint, ...]:

@@ -10,7 +10,14 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.loop.subscribers import Subscribers
 from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, feedback_event
-from rastrainer_simulator.net.views.presenter import Control, Feedback, Frames, Hello, ViewUpdate
+from rastrainer_simulator.net.views.presenter import (
+    Control,
+    Feedback,
+    Frames,
+    Hello,
+    TraceGuidance,
+    ViewUpdate,
+)
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
@@ -186,6 +193,10 @@ class ReplayPresenter:
 
     def ghost(self, now: SimulationState) -> None:
         """A recorded trial has none beside it."""
+
+    def trace_guidance(self, now: SimulationState) -> TraceGuidance:  # noqa: ARG002
+        """Nobody is guided: only what was traced is drawn."""
+        return TraceGuidance()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:  # noqa: ARG002
         """Turn the view."""

@@ -21,6 +21,7 @@ import { TargetArrow } from "./target_arrow";
 import { say, useLanguage } from "./texts";
 import { TouchControls } from "./touch_controls";
 import { TouchRing } from "./touch_ring";
+import { TraceMarks } from "./trace_marks";
 import { ViewMouse } from "./view_mouse";
 import { GuidingPanel } from "./guiding_panel";
 import { Headset } from "./xr/headset";
@@ -44,6 +45,7 @@ export class Page {
   private readonly arrow = new TargetArrow();
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
   private readonly errors = new ErrorArrows();
+  private readonly trace = new TraceMarks();
   private readonly ghost = new Ghost();
   private readonly guiding = new GuidingPanel();
   private readonly loading = new Loading();
@@ -95,6 +97,10 @@ export class Page {
       case "welcome":
         this.bodies = news.bodies;
         this.poses = new PoseStream(news.bodies.length);
+        this.trace.reset();
+        break;
+      case "trace":
+        this.trace.take(news);
         break;
       case "scene":
         void this.load(news);
@@ -219,6 +225,7 @@ export class Page {
     const { model } = stage;
     if (state === null || model === null || flat === null) return;
     if (this.errors.show(this.screen?.errors ?? [], model.root)) this.isDue = true;
+    if (this.trace.show(model)) this.isDue = true;
     if (this.headset !== null) {
       if (frame === undefined) return;
       this.place(model);
@@ -267,7 +274,7 @@ export class Page {
     this.overlay.showInset(inset);
     this.overlay.showError(isWorking && isTouchError(state.touch));
     this.ring?.show(model, state, flat.camera, isWorking);
-    this.arrow.show(model, flat.camera, isWorking && this.screen?.has_arrow ? state.next : null);
+    this.arrow.show(model, flat.camera, state.next, isWorking && (this.screen?.has_arrow ?? false));
     flat.draw(inset !== "");
     this.frames.drawn();
   }

@@ -80,6 +80,8 @@ export interface Screen {
   readonly errors: readonly ErrorArrow[];
   /** Whether what is within the head is seen through the skin. */
   readonly is_head_clear: boolean;
+  /** What the paint on the skin says while it is traced; "" where none is painted. */
+  readonly coverage: string;
   readonly ruler: DepthRuler | null;
 }
 
@@ -189,7 +191,18 @@ export interface PairingNews {
   readonly addresses: readonly string[];
 }
 
-export type News = Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews | PairingNews;
+/** What is new of a trace over the skin: points in `head`, mm, after the first `known` ones. */
+export interface TraceNews {
+  readonly type: "trace";
+  readonly known: number;
+  readonly points: readonly Triple[];
+  /** So far around the points the skin is painted; 0 where it is not. */
+  readonly coveredMm: number;
+  /** Where the next points would help most, and the outward normal there; in `head`. */
+  readonly next: { readonly positionMm: Triple; readonly normal: Triple } | null;
+}
+
+export type News = TraceNews | Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews | PairingNews;
 
 /** What a view says about itself when it connects. */
 export interface Hello {

@@ -19,6 +19,7 @@ export class Overlay {
   private warnings: readonly Message[] = [];
   private menu: Menu | null = null;
   private facts: readonly string[] = [];
+  private coverage = "";
   private pairing: PairingNews | null = null;
   private readonly menuView: MenuView;
 
@@ -36,6 +37,7 @@ export class Overlay {
       parent.dataset.tone = screen.instruction.tone;
     });
     this.facts = screen.status;
+    this.coverage = screen.coverage;
     this.showFacts();
     this.part("hints", screen.hints, (parent) => {
       for (const hint of screen.hints) {
@@ -119,7 +121,14 @@ export class Overlay {
     const isTold = pairing !== null && this.menu !== null;
     const how = isTold ? [say("pairing", { code: pairing.code, address: pairing.addresses[1] ?? pairing.addresses[0]! })] : [];
     const facts = [...this.facts, ...how];
-    this.part("status", facts, (parent) => parent.append(...facts.map((fact) => element("li", fact))));
+    this.part("status", [facts, this.coverage], (parent) => {
+      parent.append(...facts.map((fact) => element("li", fact)));
+      if (this.coverage === "") return;
+      const legend = element("li", "");
+      legend.className = "legend";
+      legend.append(element("i", ""), this.coverage);
+      parent.append(legend);
+    });
   }
 
   private showMenu(): void {

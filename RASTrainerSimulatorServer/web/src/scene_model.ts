@@ -1,6 +1,7 @@
 /** The scene that the simulator made: loaded, batched, moved and colored as its state says. */
 
 import {
+  BufferAttribute,
   Color,
   Group,
   Mesh,
@@ -38,8 +39,12 @@ export const COLORS = {
   free: new Color().setRGB(0.05, 0.3, 1.0, "srgb"),
   near: new Color().setRGB(0.35, 0.85, 1.0, "srgb"),
   onSkin: new Color().setRGB(0.2, 0.85, 0.4, "srgb"),
+  traced: new Color().setRGB(0.02, 0.13, 0.42, "srgb"),
+  covered: new Color().setRGB(0.34, 0.71, 0.91, "srgb"),
   error: new Color().setRGB(1.0, 0.05, 0.05, "srgb"),
 };
+
+const WHITE = new Color(1, 1, 1);
 
 export class SceneModel {
   /** All of it; its children are in World (x forward, y left, z up), m. */
@@ -49,12 +54,16 @@ export class SceneModel {
   private readonly named = new Map<string, Object3D>();
   private readonly fiducials = new Map<string, Mesh>();
   private readonly waiting = glow(COLORS.waiting);
-  private readonly next = glow(COLORS.next);
+  private readonly nextMark = glow(COLORS.next);
   private readonly touched = glow(COLORS.touched);
   private readonly tip = glow(COLORS.free);
   private markedNext: string | null = "";
   private markedTouches = -1;
   private pulses = false;
+  /** Where to draw next over the skin, in `head`, m. */
+  nextPlace: Vector3 | null = null;
+  private readonly skinColor = new Color();
+  private skinMesh: Mesh | null = null;
   private readonly skin = new MeshStandardMaterial({ roughness: 0.6 });
   private readonly noGo: Object3D[] = [];
 
@@ -73,12 +82,35 @@ export class SceneModel {
     return this.named.get(name);
   }
 
-  /** Return where a fiducial of the present task is in World, m, written into `target`. */
-  fiducial(label: string, target: Vector3): Vector3 | null {
-    const place = this.news.fiducials[label];
+  /** Return where a fiducial, or without one the place to draw next, is in World, m, written into `target`. */
+  next(label: string | null, target: Vector3): Vector3 | null {
+    const place = label === null ? this.nextPlace?.toArray() : this.news.fiducials[label];
     const head = this.named.get("head");
     if (place === undefined || head === undefined) return null;
     return target.fromArray(place).applyQuaternion(head.quaternion).add(head.position);
+  }
+
+  /** The vertices of the skin, in `head`, m. */
+  get skinVertices(): BufferAttribute | null {
+    return (this.skinMesh?.geometry.getAttribute("position") as BufferAttribute | undefined) ?? null;
+  }
+
+  /** Paint the skin, each vertex by a share of 0 to 1; null takes the paint away. */
+  paintSkin(shares: Float32Array | null): void {
+    const { skin, skinMesh } = this;
+    if (skinMesh === null) return;
+    if (skin.vertexColors !== (shares !== null)) {
+      skin.vertexColors = shares !== null;
+      skin.color.copy(shares === null ? this.skinColor : WHITE);
+      skin.needsUpdate = true;
+    }
+    if (shares === null) return;
+    const colors = new Float32Array(3 * shares.length);
+    const color = new Color();
+    shares.forEach((share, index) => {
+      color.copy(this.skinColor).lerp(COLORS.covered, share).toArray(colors, 3 * index);
+    });
+    skinMesh.geometry.setAttribute("color", new BufferAttribute(colors, 3));
   }
 
   /** Color the tool's tip and the fiducials. */
@@ -90,7 +122,7 @@ export class SceneModel {
     this.pulses = state.next !== null;
     for (const [label, mesh] of this.fiducials) {
       const isTouched = state.touched.includes(label);
-      mesh.material = isTouched ? this.touched : label === state.next ? this.next : this.waiting;
+      mesh.material = isTouched ? this.touched : label === state.next ? this.nextMark : this.waiting;
     }
   }
 
@@ -124,7 +156,7 @@ export class SceneModel {
   /** Brighten and darken the next fiducial; return whether it changes the picture at `now` (s). */
   pulse(now: number): boolean {
     const share = 0.5 - 0.5 * Math.cos((2 * Math.PI * now) / PULSE_S);
-    this.next.color.copy(COLORS.next).lerp(PULSE_COLOR, share);
+    this.nextMark.color.copy(COLORS.next).lerp(PULSE_COLOR, share);
     return this.pulses;
   }
 
@@ -170,7 +202,9 @@ export class SceneModel {
     head.add(marks);
     batch(marks, "matt", new Set());
     if (skin instanceof Mesh) {
-      this.skin.color.copy(ownColor(skin).color);
+      this.skinColor.copy(ownColor(skin).color);
+      this.skin.color.copy(this.skinColor);
+      this.skinMesh = skin;
       skin.material = this.skin;
     }
   }

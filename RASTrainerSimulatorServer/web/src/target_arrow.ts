@@ -15,10 +15,10 @@ export class TargetArrow {
   private readonly tip = new Vector3();
   private shown = "";
 
-  /** Point at a fiducial; null hides the arrow. */
-  show(model: SceneModel | null, camera: PerspectiveCamera, label: string | null): void {
+  /** Point at a fiducial, or without one at the place to draw next over the skin. */
+  show(model: SceneModel | null, camera: PerspectiveCamera, label: string | null, isWanted: boolean): void {
     const place = byId("target");
-    const found = label === null ? null : (model?.fiducial(label, this.point) ?? null);
+    const found = isWanted ? (model?.next(label, this.point) ?? null) : null;
     const tool = model?.node("tool");
     if (found === null || tool === undefined) {
       place.hidden = true;
@@ -34,7 +34,8 @@ export class TargetArrow {
     const across = sign * this.point.x * camera.aspect;
     const up = sign * this.point.y;
     const reach = REACH * Math.min(camera.aspect / Math.abs(across), 1 / Math.abs(up));
-    const text = `${label}: ${Math.round(distance * 200) * 5} mm`;
+    const name = label === null ? "" : `${label}: `;
+    const text = `${name}${Math.round(distance * 200) * 5} mm`;
     const left = 50 + (50 * across * reach) / camera.aspect;
     const top = 50 - 50 * up * reach;
     this.place(place, text, left, top, Math.atan2(-up, across));

@@ -1,4 +1,4 @@
-"""The expected error of a surface match against the true one, and guidance to the next place."""
+"""The expected error of a surface match against the true one, and the next place."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,6 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.registration.surface_error import (
-    covered,
     expected_surface_tre,
     knowledge_of,
     knowledge_so_far,
@@ -19,7 +18,6 @@ from Testing.domain.registration.traces import (
     colin27,
     head_pose,
     places,
-    random_walk,
     traced,
 )
 
@@ -108,27 +106,6 @@ def expected_at_targets(head, rows):
     return float(np.sqrt(np.mean(tre**2)))
 
 
-def guided(head, allowed, count):
-    rows = []
-    while len(rows) < count:
-        knowledge = knowledge_so_far(head.vertices[rows], head.vertex_normals[rows], head)
-        best = next_best_place(knowledge, head, head.middle + ASIDE, allowed)
-        away = np.linalg.norm(head.vertices - best.position, axis=1)
-        rows += away.argsort()[:10].tolist()
-    return np.array(rows)
-
-
-def test_guidance_halves_the_expected_error_of_drawing_at_random(head):
-    allowed = (head.vertices[:, 1] > 0.0) & (head.vertices[:, 2] > -60.0)
-    count = 100
-    drawn = [
-        expected_at_targets(head, random_walk(head, allowed, np.random.default_rng(seed), count))
-        for seed in range(10)
-    ]
-    by_guidance = expected_at_targets(head, guided(head, allowed, count))
-    assert by_guidance < 0.5 * min(drawn)
-
-
 def test_the_next_place_gains_what_it_says(head):
     allowed = np.zeros(len(head.vertices), dtype=bool)
     allowed[places(head, "face")] = True
@@ -146,11 +123,3 @@ def test_before_the_first_point_the_pose_is_as_open_as_landmarks_leave_it(head):
     knowledge = knowledge_so_far(np.zeros((0, 3)), np.zeros((0, 3)), head)
     (tre,) = expected_surface_tre(knowledge, head.middle[None], 0.0)
     assert tre == pytest.approx(10.0 * np.sqrt(3.0))
-
-
-def test_the_skin_near_the_trace_is_covered(head):
-    trace = head.vertices[[100, 5000]]
-    near = covered(trace, head, 8.0)
-    away = np.linalg.norm(head.vertices[:, None] - trace, axis=2).min(axis=1)
-    assert np.array_equal(near, away <= 8.0)
-    assert not covered(np.zeros((0, 3)), head, 8.0).any()

@@ -5,7 +5,9 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase
+from rastrainer.registration.trace_guidance import COVERED_MM
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.net.views.presenter import TraceGuidance
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 
 
@@ -23,6 +25,74 @@ def traced(trainee):
     return len(trainee.state.training.trace.points)
 
 
+def prefer(trainee, guidance):
+    session = trainee.presenter._session
+    session.prefer(replace(session.preferences, guidance=guidance))
+
+
+def landmarks_touched(trainee, task="task-1"):
+    """Start a trial of a task by surface, and touch its landmarks."""
+    assert trainee.submit("StartTask", task=task, trainee="P07", method="surface").ok
+    trainee.until_menu(None)
+    for number in range(3):
+        trainee.tap("touch")
+        trainee.until(lambda number=number: trainee.touched > number, "the touch")
+        trainee.step()
+
+
+def guidance(trainee):
+    return trainee.presenter.trace_guidance(trainee.state)
+
+
+def facts(trainee):
+    return " | ".join(trainee.presenter.screen.status)
+
+
+@pytest.mark.parametrize("choice", ["words", "arrow"])
+def test_guidance_paints_what_is_covered_and_shows_where_to_draw_next(trainee, choice):
+    prefer(trainee, choice)
+    landmarks_touched(trainee)
+    trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
+    assert guidance(trainee).covered_mm == COVERED_MM
+    trainee.until(lambda: trainee.presenter.screen.coverage, "the legend")
+    assert trainee.presenter.screen.coverage == "Within 10 mm of traced points"
+    assert trainee.presenter.screen.has_arrow
+    trainee.until(lambda: ("Next place: " in facts(trainee)) is (choice == "words"), "the words")
+
+
+def test_after_a_stroke_elsewhere_another_place_is_next(trainee):
+    prefer(trainee, "arrow")
+    landmarks_touched(trainee)
+    trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
+    first = guidance(trainee).next_place
+    trainee.tap("touch")
+    trainee.until(lambda: trainee.state.training.trace.is_on, "a stroke")
+    trainee.hands.push(0.9, 0.0, 0.0, fine=False)
+    trainee.until(lambda: traced(trainee) > MIN_TRACE_POINTS, "the points")
+    trainee.hands.push(0.0, 0.0, 0.0, fine=False)
+    trainee.tap("touch")
+    trainee.until(lambda: guidance(trainee).next_place != first, "another place")
+
+
+def test_without_guidance_nothing_but_the_trace_is_shown(trainee):
+    prefer(trainee, "none")
+    landmarks_touched(trainee)
+    for _ in range(200):
+        trainee.step()
+        assert guidance(trainee) == TraceGuidance()
+    assert trainee.presenter.screen.coverage == ""
+    assert not trainee.presenter.screen.has_arrow
+
+
+def test_guidance_fades_from_task_to_task_as_for_fiducials(trainee):
+    prefer(trainee, "fading")
+    landmarks_touched(trainee, "task-2")
+    trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
+    assert trainee.submit("Abort").ok
+    landmarks_touched(trainee, "task-3")
+    assert guidance(trainee) == TraceGuidance()
+
+
 def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_controls(trainee):
     start = {"task": "task-1", "trainee": "P07", "method": "surface"}
     assert trainee.submit("StartTask", **start).ok
@@ -33,7 +103,7 @@ def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_con
         trainee.tap("touch")
         trainee.until(lambda number=number: trainee.touched > number, "the touch")
         trainee.step()
-    assert trainee.presenter.screen.status[1] == "0 of 500 points traced"
+    assert trainee.presenter.screen.status[1] == "0 of 30–500 points traced"
     assert "draw the tip over the skin" in trainee.presenter.screen.instruction.text
     assert "Begin or end a stroke" in [hint.action for hint in trainee.presenter.screen.hints]
     trainee.tap("touch")
@@ -46,7 +116,7 @@ def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_con
     trainee.step()
     count = traced(trainee)
     assert trainee.state.training.phase is Phase.COMPLETE
-    assert trainee.presenter.screen.status[1] == f"{count} of 500 points traced"
+    assert trainee.presenter.screen.status[1] == f"{count} of 30–500 points traced"
     trainee.tap("menu")
     trainee.until_menu("trial")
     trainee.choose("register")

@@ -183,16 +183,6 @@ def next_best_place(
     )
 
 
-def covered(places: np.ndarray, mesh: HeadMesh, radius_mm: float) -> np.ndarray:
-    """Return which vertices (v,) bool lie within a distance of a trace's points (n, 3), RAS mm."""
-    near = np.zeros(len(mesh.vertices), dtype=bool)
-    squares = np.sum(mesh.vertices**2, axis=1)
-    for place in places:
-        away = squares - 2.0 * mesh.vertices @ place + place @ place
-        near |= away <= radius_mm**2
-    return near
-
-
 def _rows(
     places: np.ndarray, normals: np.ndarray, center: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
 from rastrainer_simulator.net.views.screen import Hint, ScreenMessage
+from rastrainer_simulator.scene.nodes import COVERED
 
 LEAST_TARGET_PX = 24
 """Height of what can be clicked: WCAG 2.2, 2.5.8."""
@@ -43,6 +44,19 @@ def status(facts: Sequence[str], brush: Brush, room: int) -> np.ndarray:
         canvas.box(place, theme.GLASS, height / 2)
         inside = place.top + brush.px(theme.STEP)
         brush.write(canvas, fact, theme.SMALL_STRONG, theme.TEXT, place.left + pad, inside)
+    return canvas.pixels()
+
+
+def legend(text: str, brush: Brush, _room: int) -> np.ndarray:
+    """Return what the paint on the skin says, beside a sample of it."""
+    pad, step = brush.px(theme.GAP), brush.px(theme.STEP)
+    sample = brush.line_height(theme.SMALL_STRONG)
+    width = sample + brush.width(text, theme.SMALL_STRONG) + 2 * pad + step
+    canvas = Canvas(width, sample + 2 * step)
+    canvas.box(Box(0, 0, canvas.width, canvas.height), theme.GLASS, canvas.height / 2)
+    inside = Box(pad, step, sample, sample).inset(sample // 8)
+    canvas.box(inside, (*COVERED.color, 1.0), step)
+    brush.write(canvas, text, theme.SMALL_STRONG, theme.TEXT, pad + sample + step, step)
     return canvas.pixels()
 
 

@@ -41,6 +41,7 @@ from rastrainer_simulator.flow.session.progress import DoneTasks
 from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.flow.session.screen_sticks import ScreenSticks
 from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
+from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trial_ghost import TrialGhost
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
@@ -159,6 +160,7 @@ class TrainingSession:
         self.pages = OpenPages(happened)
         self.view = TrialView()
         self.ghost = TrialGhost()
+        self.places = TracePlaces()
         self.tutorial: Tutorial | None = None
         self.tutorials = FinishedTutorials(services.records)
         self.screen_sticks = ScreenSticks()
@@ -272,6 +274,7 @@ class TrainingSession:
         """Take the newest state, and what has been answered within `dt` seconds."""
         self._time += dt
         self.state = state
+        self.places.advance(dt, state)
         if self.own_score is not None:
             is_in_study = self.study.step_of(self.training.trainee) is not None
             self.own_score.advance(dt, self.training, self.scenario, is_in_study)

@@ -12,7 +12,7 @@ import numpy as np
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.messages import PROTOCOL
-from rastrainer_simulator.net.views.presenter import Control, Feedback
+from rastrainer_simulator.net.views.presenter import Control, Feedback, TraceGuidance
 from rastrainer_simulator.net.views.screen import Screen, screen_to_json
 from rastrainer_simulator.procedure_state import Tool
 from rastrainer_simulator.scene.nodes import no_go_name
@@ -30,6 +30,7 @@ SCREEN = "screen"
 EVENT = "event"
 CONTROL = "control"
 PAIRING = "pairing"
+TRACE = "trace"
 
 BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand", "plan")
 GHOST_LINKS = (7,)
@@ -122,6 +123,14 @@ def event(feedback: Feedback) -> str:
         rumble=feedback.rumble,
         data=feedback.data,
     )
+
+
+def trace(known: int, new: Sequence[Sequence[float]], guidance: TraceGuidance) -> str:
+    """Return what is new of a trace: `new` points (head, mm) after the first `known` ones."""
+    place = guidance.next_place
+    shown = None if place is None else {"positionMm": place.position, "normal": place.normal}
+    covered_mm = guidance.covered_mm
+    return _text(TRACE, known=known, points=new, coveredMm=covered_mm, next=shown)
 
 
 def control(now: Control, view: int) -> str:

@@ -75,6 +75,27 @@ class Control:
 ViewUpdate = Screen | Feedback | Control
 
 
+@dataclass(frozen=True)
+class SkinPlace:
+    """A place on the skin in the head's frame: RAS mm, and the outward unit normal there."""
+
+    position: tuple[float, float, float]
+    normal: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class TraceGuidance:
+    """How a trainee who traces the skin is guided.
+
+    Attributes:
+        covered_mm: so far around the traced points the skin is painted; 0 where it is not.
+        next_place: where the next points would help most; None where that is not shown.
+    """
+
+    covered_mm: float = 0.0
+    next_place: SkinPlace | None = None
+
+
 class Presenter(Protocol):
     """The flow and the controls, as the view server sees them.
 
@@ -99,6 +120,9 @@ class Presenter(Protocol):
 
         Each is (4, 4) float, to World, m; None where none is shown.
         """
+
+    def trace_guidance(self, now: SimulationState) -> TraceGuidance:
+        """Return how a trainee who traces the skin is guided in a state."""
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control.

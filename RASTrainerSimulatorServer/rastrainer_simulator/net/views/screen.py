@@ -178,6 +178,7 @@ class Screen:
         has_arrow: whether a view shows an arrow toward a next point that is out of sight.
         errors: arrows that are drawn in the scene.
         is_head_clear: whether the skin is drawn so that what is within the head is seen.
+        coverage: what the paint on the skin says while it is traced; "" where none is painted.
         ruler: while a drill or an instrument is in the guide; else None.
     """
 
@@ -192,6 +193,7 @@ class Screen:
     has_arrow: bool = False
     errors: tuple[ErrorArrow, ...] = ()
     is_head_clear: bool = False
+    coverage: str = ""
     ruler: DepthRuler | None = None
 
 

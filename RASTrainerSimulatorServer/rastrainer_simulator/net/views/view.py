@@ -213,7 +213,7 @@ class Outbox:
         self._is_filled.set()
 
     def put_event(self, text: str) -> None:
-        """Have an event sent after those before it."""
+        """Have a text sent after those before it, and none of them left out."""
         if len(self._events) >= self._most_events:
             self.is_overfull = True
         else:

@@ -22,6 +22,7 @@ from rastrainer_simulator.net.views.presenter import (
     ViewUpdate,
 )
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.trace_news import TraceNews
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.scene.scene_files import SceneFiles
 from rastrainer_simulator.state import SimulationState
@@ -50,6 +51,7 @@ class Views:
         self._task = ""
         self._scene = ""
         self._pairing = ""
+        self._trace = TraceNews()
         self._loading: asyncio.Task[None] | None = None
         self._watching: asyncio.Task[None] | None = None
         self._unsubscribe = presenter.subscribe(self._send_update)
@@ -96,6 +98,10 @@ class Views:
         text = self._state_text(now)
         for view in self._views.values():
             view.outbox.put_latest(outgoing.STATE, text)
+        news = self._trace.news(now, self._presenter.trace_guidance(now), time.monotonic())
+        if news is not None:
+            for view in self._views.values():
+                view.outbox.put_event(news)
 
     def _send_all(self, view: View) -> None:
         """Send a view that has just joined the present state."""
@@ -108,6 +114,9 @@ class Views:
         put(outgoing.CONTROL, outgoing.control(self._presenter.control, view.number))
         put(outgoing.SCREEN, outgoing.screen(self._presenter.screen))
         put(outgoing.STATE, self._state_text(now))
+        trace = self._trace.everything()
+        if trace is not None:
+            view.outbox.put_event(trace)
         self._put_pairing(view)
 
     def _put_pairing(self, view: View) -> None:

@@ -8,6 +8,8 @@ const INSTRUCTION = { size: 46, color: COLORS.text, isBold: true };
 const FACT = { size: 36, color: COLORS.text };
 const HINT = { size: 32, color: COLORS.soft };
 const CAP = { size: 32, color: COLORS.text, isBold: true };
+/** Of the paint on the skin. */
+const SAMPLE = "#57b5e8";
 const NOTICE = { size: 32, color: COLORS.text };
 
 /** Paint from the top on; the board is as high as what is on it. */
@@ -33,6 +35,11 @@ export function paintWork(pen: Pen, screen: Screen, holder: string, width: numbe
     if (isRowFull) y += 52;
   }
   y += x > PAD ? 72 : 20;
+  if (screen.coverage !== "") {
+    pen.box(PAD, y - 10, 36, 36, SAMPLE, 8);
+    pen.line(screen.coverage, PAD + 52, y + 10, FACT, room - 52);
+    y += 52;
+  }
   y = paintHints(pen, screen, y, width);
   pen.line(holder, PAD, y + 28, HINT, room);
   pen.behind(width, Math.min(height, y + 76), COLORS.night);

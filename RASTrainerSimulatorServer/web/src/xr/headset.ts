@@ -136,7 +136,7 @@ export class Headset {
     this.looked = now;
     this.hear(model);
     this.boards.closeUp.draw(this.stage, this.boards.room, state.inset);
-    this.arrow.show(model, this.camera, this.hasArrow ? state.next : null);
+    this.arrow.show(model, this.camera, state.next, this.hasArrow);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
 

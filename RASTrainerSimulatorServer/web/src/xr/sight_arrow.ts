@@ -36,9 +36,9 @@ export class SightArrow {
     this.group.visible = false;
   }
 
-  /** Point at a fiducial, for eyes at `camera`; null hides the arrow. */
-  show(model: SceneModel, camera: PerspectiveCamera, label: string | null): void {
-    const found = label === null ? null : model.fiducial(label, this.point);
+  /** Point at a fiducial, or without one at the place to draw next, for eyes at `camera`. */
+  show(model: SceneModel, camera: PerspectiveCamera, label: string | null, isWanted: boolean): void {
+    const found = isWanted ? model.next(label, this.point) : null;
     this.group.visible = false;
     if (found === null) return;
     camera.getWorldPosition(this.eyes);

@@ -10,7 +10,7 @@ import aiohttp
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.presenter import Control
+from rastrainer_simulator.net.views.presenter import Control, TraceGuidance
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.viewpoint.orbit import CameraPose
@@ -29,6 +29,7 @@ class RecordingPresenter:
     def __init__(self):
         self.screen = Screen()
         self.control = Control()
+        self.guidance = TraceGuidance()
         self.calls = []
         self._listeners = []
 
@@ -42,6 +43,9 @@ class RecordingPresenter:
 
     def ghost(self, _now):
         """Show none beside the arm."""
+
+    def trace_guidance(self, _now):
+        return self.guidance
 
     def tell(self, *news):
         for one in news:

@@ -1,0 +1,112 @@
+"""Where the next points of the present trial's trace would help most, found in a thread."""
+
+from __future__ import annotations
+
+import logging
+from concurrent.futures import Future, ThreadPoolExecutor
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.errors import RASTrainerError
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.registration.trace_guidance import COVERED_MM, TraceGuide
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.loop.precise_clock import raise_thread_priority
+from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.trace_state import TraceState
+from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.vectors import Vector, vector
+
+LOOK_S = 0.25
+"""Between two searches; one takes about 10 ms."""
+
+_log = logging.getLogger(__name__)
+
+
+class TracePlaces:
+    """Guides through the trace of one trial after another.
+
+    The places are marks on the patient's skin, as fiducials are: they are found and drawn where
+    the head truly is.
+    """
+
+    def __init__(self) -> None:
+        # Set aside while it holds the interpreter, it would make the control loop wait.
+        self._worker = ThreadPoolExecutor(1, "next places", raise_thread_priority)
+        self._guide: tuple[SimulationSetup, TraceGuide] | None = None
+        self._trial: tuple[str, SimulationSetup, Truth] | None = None
+        self._asked: TraceState | None = None
+        self._found: Future[SkinPlace | None] | None = None
+        self._place: SkinPlace | None = None
+        self._since_s = 0.0
+
+    def begin(self, trial_id: str, setup: SimulationSetup, truth: Truth) -> None:
+        """Guide through a trial from now on."""
+        self.forget()
+        self._trial = trial_id, setup, truth
+
+    def forget(self) -> None:
+        """Guide no more."""
+        self._trial = self._asked = self._found = self._place = None
+
+    def close(self) -> None:
+        """End the thread."""
+        self.forget()
+        self._worker.shutdown(wait=False)
+
+    def advance(self, dt: float, state: SimulationState) -> None:
+        """Take what has been found, and look for the next place of a trace that has changed."""
+        self._since_s += dt
+        if self._found is not None and self._found.done():
+            self._place, self._found = self._found.result(), None
+        training = state.training
+        if self._trial is None or not training.is_tracing or training.trial_id != self._trial[0]:
+            return
+        trace = training.trace
+        if trace is None or trace is self._asked:
+            return
+        if self._found is not None or self._since_s < LOOK_S:
+            return
+        self._asked, self._since_s = trace, 0.0
+        self._found = self._worker.submit(self._find, *self._trial[1:], trace)
+
+    def guidance(self, state: SimulationState) -> TraceGuidance:
+        """Return how a trainee is guided in a state."""
+        training = state.training
+        if self._trial is None or training.trial_id != self._trial[0] or training.trace is None:
+            return TraceGuidance()
+        return TraceGuidance(COVERED_MM, self._place if training.next_point is None else None)
+
+    def in_world(self) -> Vector | None:
+        """Return the next place in World, m; None where there is none."""
+        if self._trial is None or self._place is None:
+            return None
+        place = self._trial[2].in_world(np.array(self._place.position))
+        return vector((place / MM_PER_M).tolist())
+
+    def _find(self, setup: SimulationSetup, truth: Truth, trace: TraceState) -> SkinPlace | None:
+        """Return the next place; called in the thread."""
+        try:
+            guide = self._guide_of(setup)
+        except (RASTrainerError, OSError):
+            _log.exception("The next place of a trace cannot be found")
+            return None
+        world = np.array([point.position for point in trace.points]).reshape(-1, 3)
+        places = transforms.apply(transforms.inverse(truth.head_to_world), MM_PER_M * world)
+        found = guide.next_place(places, trace.is_on)
+        if found is None:
+            return None
+        position, normal = np.round(found.position, 2), np.round(guide.normal_at(found), 4)
+        return SkinPlace(vector(position.tolist()), vector(normal.tolist()))
+
+    def _guide_of(self, setup: SimulationSetup) -> TraceGuide:
+        if self._guide is None or self._guide[0] is not setup:
+            scenario = setup.scenario
+            to_head = transforms.inverse(scenario.head_to_world)
+            eye = transforms.apply(to_head, scenario.cameras["close-up"].position)
+            mesh = read_head_mesh(scenario.head_mesh)
+            self._guide = setup, TraceGuide(mesh, scenario.target_position, eye)
+        return self._guide[1]

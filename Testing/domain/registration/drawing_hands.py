@@ -1,0 +1,57 @@
+"""Virtual trainees who trace Colin27 by what is drawn, or at will, and what their traces tell."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.registration.surface_error import DAB, expected_surface_tre, knowledge_so_far
+from rastrainer.registration.trace_guidance import TraceGuide, guided_targets
+
+TARGET = np.array([0.7815, -16.9395, 1.432])
+EYE = np.array([0.8, 583.1, 221.4])
+"""Of the scenario, RAS mm: the target, and from where its close-up is looked."""
+AIMED_MM = 3.0
+"""Standard deviation, on each axis, of where a hand begins that aims at the ring."""
+EACH_LOOK = 4
+"""Points that are drawn between two looks at the ring."""
+
+
+def draw_by_guidance(head: HeadMesh, guide: TraceGuide, seed: int, count: int) -> np.ndarray:
+    """Return points (count, 3) of a hand that knows nothing but where the ring is.
+
+    It begins about there, draws straight in any direction, and lifts when the ring has moved.
+    """
+    random = np.random.default_rng(seed)
+    places = np.zeros((0, 3))
+    while len(places) < count:
+        ring = guide.next_place(places, is_drawing=False)
+        assert ring is not None
+        at = ring.position + random.normal(0.0, AIMED_MM, 3)
+        heading = random.normal(0.0, 1.0, 3)
+        shown = ring
+        while shown is not None and shown.vertex == ring.vertex and len(places) < count:
+            for _ in range(EACH_LOOK):
+                at = head.skin.tree.nearest(at[None]).positions[0]
+                places = np.concatenate([places, at[None]])
+                heading = _along_skin(head, at, heading)
+                # Back toward the ring, where the way has led past it.
+                heading = heading if np.linalg.norm(at - ring.position) < 0.8 * DAB else -heading
+                at = at + heading
+            shown = guide.next_place(places, is_drawing=True)
+    return places[:count]
+
+
+def expected_mm(head: HeadMesh, places: np.ndarray) -> float:
+    """Return the expected TRE after points on the skin (n, 3), RMS over the guided targets."""
+    rows = np.argmin(np.linalg.norm(head.vertices - places[:, None], axis=2), axis=1)
+    knowledge = knowledge_so_far(places, head.vertex_normals[rows], head)
+    return float(
+        np.sqrt(np.mean(expected_surface_tre(knowledge, guided_targets(TARGET), 0.0) ** 2))
+    )
+
+
+def _along_skin(head: HeadMesh, at: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    normal = head.vertex_normals[np.linalg.norm(head.vertices - at, axis=1).argmin()]
+    along = heading - (heading @ normal) * normal
+    return along / np.linalg.norm(along)

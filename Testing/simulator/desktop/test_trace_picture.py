@@ -1,0 +1,129 @@
+"""What the window draws of a trace: marks, the paint around them, and a ring where to draw next."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.desktop.camera import Viewpoint
+from rastrainer_simulator.desktop.glb_parts import read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.performance import Quality
+from rastrainer_simulator.desktop.picture import Picture
+from rastrainer_simulator.desktop.shown_trace import ShownTrace, SkinPaint
+from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, SCREEN, state_text
+
+MARKS, RING = ((0, 15, 80), (30, 60, 130)), ((240, 190, 0), (255, 220, 40))
+PAINT = ((40, 100, 140), (120, 210, 255))
+AHEAD = [[x, -98.0, 20.0] for x in np.arange(-20.0, 21.0, 2.0)]
+"""Points on the forehead of the ball that is the head, mm."""
+WIDE_MM = 60.0
+"""The ball has few corners, and only corners are painted."""
+NEXT = {"positionMm": [0.0, -95.4, -30.0], "normal": [0.0, -0.954, -0.3]}
+
+
+def news(points=(), known=0, covered_mm=WIDE_MM, next_place=NEXT):
+    return {"known": known, "points": points, "coveredMm": covered_mm, "next": next_place}
+
+
+@pytest.fixture(scope="module")
+def inbox(glb):
+    inbox = Inbox()
+    inbox.bodies, inbox.problem, inbox.screen = BODIES, "", SCREEN
+    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
+    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
+    return inbox
+
+
+@pytest.fixture(scope="module")
+def picture(gl_window, inbox):
+    picture = Picture(gl_window, inbox, Quality.LOW)
+    yield picture
+    for renderer in list(gl_window.render_window.GetRenderers()):
+        gl_window.render_window.RemoveRenderer(renderer)
+
+
+@pytest.fixture
+def show(gl_window, inbox, picture):
+    """Return a function that shows a trace and returns the pixels of the main picture."""
+    times = iter(np.arange(0.0, 1e4, 10.0))
+    picture.set_quality(Quality.LOW)
+
+    def show(trace, screen=SCREEN):
+        inbox.trace, inbox.screen = trace, screen
+        inbox.take_state(state_text(next=None, touched=[]))
+        for now in (float(next(times)), float(next(times))):
+            picture.is_due(now)
+        picture.draw()
+        return gl_window.pixels().astype(int)
+
+    return show
+
+
+def count(pixels, color):
+    low, high = color
+    return int(np.all((pixels >= low) & (pixels <= high), axis=2).sum())
+
+
+def test_marks_paint_and_ring_are_drawn_and_go_with_the_trace(show):
+    before = show(ShownTrace())
+    drawn = show(ShownTrace().with_news(news(AHEAD)))
+    for color in (MARKS, PAINT, RING):
+        assert count(drawn, color) > count(before, color) + 60
+    assert np.array_equal(show(ShownTrace()), before)
+
+
+def test_in_physical_light_the_skin_is_painted_too(show, picture):
+    picture.set_quality(Quality.MEDIUM)
+    before, drawn = show(ShownTrace()), show(ShownTrace().with_news(news(AHEAD)))
+    assert count(drawn, PAINT) > count(before, PAINT) + 60
+
+
+def test_without_guidance_there_are_marks_alone(show):
+    before = show(ShownTrace())
+    drawn = show(ShownTrace().with_news(news(AHEAD, covered_mm=0.0, next_place=None)))
+    assert count(drawn, MARKS) > count(before, MARKS) + 60
+    for color in (PAINT, RING):
+        assert abs(count(drawn, color) - count(before, color)) < 20
+
+
+def test_the_legend_has_a_sample_of_the_paint(show):
+    plain = show(ShownTrace())
+    legend = show(ShownTrace(), replace(SCREEN, coverage="Within 10 mm of traced points"))
+    assert count(legend, PAINT) > count(plain, PAINT) + 60
+
+
+def test_nothing_is_drawn_again_while_the_trace_stays(show, picture):
+    show(ShownTrace().with_news(news(AHEAD)))
+    assert not picture.is_due(1e5)
+
+
+def test_news_continue_a_trace_and_take_a_stroke_back():
+    trace = ShownTrace().with_news(news([[1, 2, 3], [4, 5, 6]]))
+    longer = trace.with_news(news([[7, 8, 9]], known=2))
+    assert longer.points.tolist() == pytest.approx(
+        np.array([[1, 2, 3], [4, 5, 6], [7, 8, 9]]) / 1e3
+    )
+    assert longer.with_news(news(known=1)).points == pytest.approx(np.array([[1, 2, 3]]) / 1e3)
+    assert len(longer.with_news(news(known=0)).points) == 0
+
+
+def test_the_paint_is_the_same_whether_a_trace_comes_at_once_or_in_pieces():
+    vertices = np.random.default_rng(3).uniform(-0.02, 0.02, (500, 3))
+    whole, pieces = SkinPaint(), SkinPaint()
+    points = [[float(x), 0.0, 0.0] for x in range(-10, 10)]
+    trace = ShownTrace().with_news(news(points[:7], covered_mm=10.0))
+    assert pieces.cover(vertices, trace)
+    assert not pieces.cover(vertices, trace)
+    trace = trace.with_news(news(points[7:], 7, 10.0))
+    assert pieces.cover(vertices, trace)
+    assert whole.cover(vertices, trace)
+    assert np.array_equal(whole.shares, pieces.shares)
+    shorter = trace.with_news(news(known=5, covered_mm=10.0))
+    assert pieces.cover(vertices, shorter)
+    again = SkinPaint()
+    again.cover(vertices, shorter)
+    assert np.array_equal(again.shares, pieces.shares)
+    away = np.linalg.norm(1e3 * vertices[:, None] - np.array(points), axis=2).min(axis=1)
+    assert np.array_equal(whole.shares == 1.0, away <= 5.0)
+    assert np.array_equal(whole.shares == 0.0, away >= 10.0)
