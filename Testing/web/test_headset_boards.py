@@ -186,9 +186,8 @@ def test_the_close_up_looks_along_the_skin_wherever_the_next_touch_is(work):
 
 ARROW = """(place) => {
   const { arrow, camera } = page.headset;
-  const model = { fiducial: (label, target) => target.fromArray(place) };
-  arrow.show(model, camera, place && "7");
-  if (place === null) arrow.show(model, camera, null);
+  const model = { next: (label, target) => target.fromArray(place) };
+  arrow.show(model, camera, "7", place !== null);
   const up = arrow.group.position.clone().set(0, 1, 0).applyQuaternion(arrow.group.quaternion);
   const { x, y, z } = arrow.group.position;
   return { isSeen: arrow.group.visible, way: [up.x, -up.z, up.y], at: [x, -z, y],
