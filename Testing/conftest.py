@@ -81,3 +81,8 @@ def pytest_runtest_logfinish():
 
 def pytest_collection_modifyitems(items):
     items.sort(key=lambda item: item.path.relative_to(HERE).parts[0] not in LONGEST)
+
+
+def pytest_collection_finish():
+    # What is imported stays to the end: no collection needs to look through it again.
+    gc.freeze()

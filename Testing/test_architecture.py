@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -111,8 +112,14 @@ def room_of(module: str) -> str:
     return module if is_package else module.rpartition(".")[0]
 
 
+@functools.cache
+def nodes_of(module: str) -> list[ast.AST]:
+    """Return all statements and expressions of a file; each is read once, by the first test."""
+    return list(ast.walk(ast.parse(FILES[module].read_text(encoding="utf-8"))))
+
+
 def imported(module: str) -> Iterator[str]:
-    for node in ast.walk(ast.parse(FILES[module].read_text(encoding="utf-8"))):
+    for node in nodes_of(module):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -122,8 +129,16 @@ def imported(module: str) -> Iterator[str]:
                 yield full if full in FILES else node.module
 
 
-IMPORTS = {module: sorted(set(imported(module))) for module in FILES}
-OURS = {module: [name for name in names if name in FILES] for module, names in IMPORTS.items()}
+@functools.cache
+def imports() -> dict[str, list[str]]:
+    return {module: sorted(set(imported(module))) for module in FILES}
+
+
+@functools.cache
+def our_imports() -> dict[str, list[str]]:
+    return {
+        module: [name for name in names if name in FILES] for module, names in imports().items()
+    }
 
 
 def test_every_room_has_its_floor():
@@ -142,7 +157,7 @@ def may_import(room: str, other: str) -> bool:
 def test_a_room_imports_only_rooms_of_floors_above_its_line(room):
     upward = [
         f"{module} → {other}"
-        for module, others in OURS.items()
+        for module, others in our_imports().items()
         if module in FILES and FILES[module].name != "__init__.py" and room_of(module) == room
         for other in others
         if FILES[other].name != "__init__.py" and not may_import(room, room_of(other))
@@ -152,7 +167,7 @@ def test_a_room_imports_only_rooms_of_floors_above_its_line(room):
 
 def test_no_file_imports_itself_by_way_of_others():
     try:
-        TopologicalSorter(OURS).prepare()
+        TopologicalSorter(our_imports()).prepare()
     except CycleError as error:
         pytest.fail(" → ".join(error.args[1]))
 
@@ -162,7 +177,7 @@ def test_no_floor_has_more_than_twelve_rooms():
 
 
 def outsiders(modules: Iterator[str]) -> set[str]:
-    names = {name.partition(".")[0] for module in modules for name in IMPORTS[module]}
+    names = {name.partition(".")[0] for module in modules for name in imports()[module]}
     return names - set(FOLDERS)
 
 
@@ -178,7 +193,7 @@ def test_what_belongs_to_slicer_or_qt_is_imported_only_where_it_may_be(part):
 
 
 def test_only_the_checksum_may_look_for_a_package_that_slicer_lacks():
-    users = [module for module in FILES if "fastcrc" in " ".join(IMPORTS[module])]
+    users = [module for module in FILES if "fastcrc" in " ".join(imports()[module])]
     assert [user for user in users if user.startswith("rastrainer.")] in (
         [],
         ["rastrainer.igtl.wire"],
@@ -187,9 +202,6 @@ def test_only_the_checksum_may_look_for_a_package_that_slicer_lacks():
 
 def test_no_class_of_the_product_has_the_name_of_another():
     names = [
-        node.name
-        for path in FILES.values()
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-        if isinstance(node, ast.ClassDef)
+        node.name for module in FILES for node in nodes_of(module) if isinstance(node, ast.ClassDef)
     ]
     assert [name for name, count in Counter(names).items() if count > 1] == []

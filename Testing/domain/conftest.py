@@ -2,5 +2,5 @@
 
 from hypothesis import settings
 
-settings.register_profile("seeded", derandomize=True, deadline=None, max_examples=300)
+settings.register_profile("seeded", derandomize=True, deadline=None, max_examples=100)
 settings.load_profile("seeded")

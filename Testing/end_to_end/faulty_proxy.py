@@ -101,7 +101,7 @@ class FaultyProxy:
 
     def _carry(self, client: socket.socket, fault: Fault) -> None:
         try:
-            server = socket.create_connection((HOST, self.target), 5.0)
+            server = socket.create_connection((HOST, self.target), 60)
         except OSError:
             client.close()
             return

@@ -11,7 +11,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.journal.journal_file import read_journal
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 
-TIMEOUT_S = 30.0
+TIMEOUT_S = 120.0
 AGAIN_S = 0.5
 """Taps that come faster than the simulator takes them would wait in a row, the sticks behind."""
 

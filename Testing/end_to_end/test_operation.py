@@ -35,14 +35,14 @@ class NoViews(SimulatorProcess):
 
 
 def do(client, name, **arguments):
-    return client.send_command(name, arguments, timeout=20)
+    return client.send_command(name, arguments, timeout=60)
 
 
 def in_phase(client, phase):
     def is_so(message):
         return json.loads(message.content.text)["phase"] == phase
 
-    return json.loads(client.wait_for(DeviceName.SIM_STATE, is_so, timeout=20).content.text)
+    return json.loads(client.wait_for(DeviceName.SIM_STATE, is_so, timeout=60).content.text)
 
 
 def journal(folder):
@@ -90,7 +90,7 @@ def ended(tmp_path_factory):
         view.join()
         pairing = urllib.request.Request(f"{simulator.url}/pair", b'{"code": "000000"}')
         with contextlib.suppress(urllib.error.HTTPError):
-            urllib.request.urlopen(pairing, timeout=20)
+            urllib.request.urlopen(pairing, timeout=60)
         with socket.create_connection(("127.0.0.1", simulator.port)) as stranger:
             stranger.sendall(b"no message at all" * 10_000)
             assert do(client, "StartTask", task="task-1", trainee=TRAINEE).ok

@@ -65,7 +65,7 @@ class Surgeon:
 
     def state(self, is_wanted) -> dict:
         found = self.player.wait_for(
-            "SimState", lambda message: is_wanted(json.loads(message.content.text)), 20
+            "SimState", lambda message: is_wanted(json.loads(message.content.text)), 60
         )
         return json.loads(found.content.text)
 

@@ -38,7 +38,7 @@ class Arm:
         self._direction = 1.0
 
     def do(self, name, **arguments):
-        reply = self._client.send_command(name, arguments, timeout=20)
+        reply = self._client.send_command(name, arguments, timeout=60)
         assert reply.ok, f"{name}: {reply.error}"
 
     def move(self):

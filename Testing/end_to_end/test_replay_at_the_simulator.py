@@ -56,7 +56,7 @@ def slicer(simulator):
         trial = play_trial(slicer, scenario, "task-1", "P07", 5, BRISK)
         for command, arguments in (("SubmitRegistration", REGISTRATION), ("TrialScored", SCORE)):
             arguments = {"trialId": trial.trial_id, **arguments}
-            assert slicer.send_command(command, arguments, timeout=20).ok
+            assert slicer.send_command(command, arguments, timeout=60).ok
         yield slicer
 
 
@@ -95,7 +95,7 @@ def test_all_views_see_the_trial_again_then_the_arm_and_then_its_ghost(tmp_path,
         wait_until(lambda view=view: shown(view) == "result", "the result again")
         wait_until(lambda view=view: view.state["phase"] == "scored", "the arm")
     task = {"task": "task-1", "trainee": "P07", "mode": "desktop"}
-    assert slicer.send_command("StartTask", task, timeout=20).ok
+    assert slicer.send_command("StartTask", task, timeout=60).ok
     for view in (first, second):
         wait_until(lambda view=view: view.state["ghost"] is not None, "the ghost")
         assert view.state["ghost"].keys() == {"link_7", "tool"}
@@ -103,6 +103,6 @@ def test_all_views_see_the_trial_again_then_the_arm_and_then_its_ghost(tmp_path,
         wait_until(
             lambda view=view, begin=begin: math.dist(ghost_tip(view), begin) > 0.02, "its way"
         )
-    assert slicer.send_command("Abort", timeout=20).ok
+    assert slicer.send_command("Abort", timeout=60).ok
     wait_until(lambda: first.state["ghost"] is None, "its end")
     assert journal.read_bytes() == before

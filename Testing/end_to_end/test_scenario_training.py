@@ -38,10 +38,10 @@ def trains_on(port, name, title):
         loaded = client.send_command("LoadScenario", {"folder": name}, timeout=60)
         assert (loaded.ok, loaded.error) == (True, "")
         assert dict(loaded.data) == {"name": name, "title": title}
-        listed = client.send_command("ListTasks", {}, timeout=20)
+        listed = client.send_command("ListTasks", {}, timeout=60)
         assert listed.data["scenario"] == name
         task = listed.data["tasks"][0]["name"]
-        started = client.send_command("StartTask", {"task": task, "trainee": "anna"}, timeout=20)
+        started = client.send_command("StartTask", {"task": task, "trainee": "anna"}, timeout=60)
         assert (started.ok, started.error) == (True, "")
         state = client.wait_for(
             "SimState", lambda told: json.loads(told.content.text)["phase"] == "running", 20

@@ -18,7 +18,7 @@ from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
 
 def test_simulator_ends_cleanly_on_ctrl_c_while_a_client_is_connected(tmp_path):
     with SimulatorProcess(tmp_path) as simulator, Client(port=simulator.port) as client:
-        client.wait_for("ToolTipToWorld", timeout=20)
+        client.wait_for("ToolTipToWorld", timeout=60)
         assert simulator.stop(signal.SIGINT) == (0, "")
 
 
@@ -27,10 +27,10 @@ def test_simulator_connects_to_a_listening_slicer_and_takes_its_commands(tmp_pat
         address = "{}:{}".format(*slicer.getsockname())
         with SimulatorProcess(tmp_path, "--connect", address) as simulator:
             assert simulator.ready == f"RASTrainer simulator ready; it connects to {address}"
-            slicer.settimeout(20)
+            slicer.settimeout(60)
             connection, _address = slicer.accept()
             with connection:
-                connection.settimeout(20)
+                connection.settimeout(60)
                 connection.sendall(pack(Message("command", Command(1, "ListTasks"))))
                 reader, reply = MessageReader(), None
                 while reply is None:

@@ -86,7 +86,7 @@ def start_playing(port):
 
 
 def do(client, name, **arguments):
-    reply = client.send_command(name, arguments, timeout=20)
+    reply = client.send_command(name, arguments, timeout=60)
     assert reply.ok, f"{name}: {reply.error}"
 
 
@@ -95,7 +95,7 @@ def move_to(client, place):
         return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - place) < 1.5
 
     do(client, "MoveTipTo", positionMm=place.tolist(), speedMmS=400)
-    client.wait_for("ToolTipToWorld", is_there, 20)
+    client.wait_for("ToolTipToWorld", is_there, 60)
 
 
 @pytest.fixture(scope="module")

@@ -39,8 +39,8 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study(loop_thread, tmp_
         Client(port=simulator.port) as slicer,
         ViewClient(loop_thread, simulator.url, key) as view,
     ):
-        assert slicer.send_command("Hello", hello, timeout=20).ok
-        assert slicer.send_command("StudyStep", step.arguments(), timeout=20).ok
+        assert slicer.send_command("Hello", hello, timeout=60).ok
+        assert slicer.send_command("StudyStep", step.arguments(), timeout=60).ok
         view.join(kind="desktop")
         go_to(view, "train", "introduction")
         go_to(view, "skip", "controls")
@@ -50,8 +50,8 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study(loop_thread, tmp_
         assert enabled(screen) == ["task-2"]
         assert "play Task 2" in screen["menu"]["paragraphs"][0]
         done = StudyStep("P07", "all-done", 19, 19)
-        assert slicer.send_command("StudyStep", done.arguments(), timeout=20).ok
+        assert slicer.send_command("StudyStep", done.arguments(), timeout=60).ok
         screen = screen_where(view, lambda screen: not enabled(screen))
         assert "All steps of the study are done" in screen["menu"]["paragraphs"][0]
-        refused = slicer.send_command("StudyStep", {"trainee": "P07", "kind": "dance"}, timeout=20)
+        refused = slicer.send_command("StudyStep", {"trainee": "P07", "kind": "dance"}, timeout=60)
         assert "kind must be one of questionnaire, trial-run" in refused.error

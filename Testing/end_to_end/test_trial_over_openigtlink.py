@@ -41,13 +41,13 @@ class Player(Client):
             self.offers.append(json.loads(message.content.body))
 
     def do(self, name: str, **arguments) -> dict:
-        reply = self.send_command(name, arguments, timeout=20)
+        reply = self.send_command(name, arguments, timeout=60)
         assert reply.ok, f"{name}: {reply.error}"
         return dict(reply.data)
 
     def move_to(self, position: np.ndarray) -> None:
         self.do("MoveTipTo", positionMm=position.tolist(), speedMmS=400)
-        self.wait_for("ToolTipToWorld", lambda tip: distance(tip, position) < NEAR_MM, 20)
+        self.wait_for("ToolTipToWorld", lambda tip: distance(tip, position) < NEAR_MM, 60)
 
     def next_offer(self) -> dict:
         count = len(self.offers)
@@ -61,7 +61,7 @@ class Player(Client):
         """Wait for a number of them, one a second."""
         for _ in range(count):
             last = self.latest.get("SimServer")
-            self.wait_for("SimServer", lambda beat, last=last: beat is not last, 20)
+            self.wait_for("SimServer", lambda beat, last=last: beat is not last, 60)
 
 
 def distance(tip, position: np.ndarray) -> float:
@@ -84,7 +84,7 @@ def play(player: Player, scenario: Scenario, **start: str) -> dict:
         lower_onto_skin(player, fiducial, 2 * fiducial - place_above)
         player.do("Capture")
         player.move_to(place_above)
-    points = player.wait_for("CapturedPoints", lambda m: len(m.content.points) == 15, 20)
+    points = player.wait_for("CapturedPoints", lambda m: len(m.content.points) == 15, 60)
     answers["points"] = points.content.points
     answers["Register"] = player.do("Register")
     return answers

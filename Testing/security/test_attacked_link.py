@@ -30,7 +30,7 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> None:
         SimulatorProcess(folder, "--no-views", "--seed", "1") as simulator,
         Client(port=simulator.port) as good,
     ):
-        good.wait_for("SimServer", timeout=20)
+        good.wait_for("SimServer", timeout=60)
         warming = LinkAttack(simulator.port, warm_up, seed=1, policed=policed)
         warming.run()
         quiet = cost_of(simulator.pid, good)

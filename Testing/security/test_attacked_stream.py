@@ -23,7 +23,7 @@ def attack(folder, warm_up: int, count: int, capsys) -> None:
         ViewClient(thread, simulator.url, key) as view,
     ):
         view.join()
-        slicer.wait_for("SimServer", timeout=20)
+        slicer.wait_for("SimServer", timeout=60)
         attacked = StreamAttack(simulator.view_port, key, seed=7)
         attacked.run(warm_up)
         before = settled(simulator.pid, slicer, cost_of(simulator.pid, slicer))

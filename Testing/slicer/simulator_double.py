@@ -157,7 +157,7 @@ def _close(open_socket: socket.socket) -> None:
     open_socket.close()
 
 
-def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeout: float = 30.0):
+def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeout: float = 60.0):
     """Call `process` every few ms until `condition()`; the host's timer, in a test."""
     end = time.monotonic() + timeout
     while not condition():

@@ -74,7 +74,7 @@ def test_what_takes_a_result_may_have_more_done(work):
 
 def test_closing_hands_over_what_ends_soon_and_begins_nothing_more(work):
     may_end, told = threading.Event(), []
-    work.do(lambda: may_end.wait(10.0), lambda _result: work.do(lambda: 3, told.append))
+    work.do(lambda: may_end.wait(60), lambda _result: work.do(lambda: 3, told.append))
     work.do(lambda: told.append("begun"), told.append)
     may_end.set()
     work.close()

@@ -40,7 +40,7 @@ def wait_for(connector, condition):
     wait_until(condition, connector.PeriodicProcess)
 
 
-def sent(connector, name, content="{}", timeout=5.0):
+def sent(connector, name, content="{}", timeout=60.0):
     command = HeadlessCommand()
     command.SetName(name)
     command.SetCommandContent(content)

@@ -82,7 +82,7 @@ def silent(make_room):
     may_answer = threading.Event()
 
     def answer(name, _arguments):
-        assert name == "Hello" or may_answer.wait(20)
+        assert name == "Hello" or may_answer.wait(60)
         return {}
 
     room = make_room(answer)

@@ -110,7 +110,7 @@ def test_a_name_is_looked_up_beside_the_main_thread_and_once_at_a_time(monkeypat
 
     def look_up(host, *_more):
         asked.append(host)
-        assert answers.wait(20)
+        assert answers.wait(60)
         return [(None, None, None, None, ("127.0.0.1", 0))]
 
     monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)
@@ -127,7 +127,7 @@ def test_a_name_that_is_looked_up_for_too_long_is_given_up(monkeypatch):
     answers, clock = threading.Event(), Clock()
 
     def look_up(*_):
-        answers.wait(20)
+        answers.wait(60)
         raise socket.gaierror
 
     monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)

@@ -200,7 +200,7 @@ def test_in_a_checkout_its_sources_are_run_as_they_are(tmp_path):
     program, told = SimulatorProgram(), []
     program.wroteLine.connect(told.append)
     program.start(setup.command(["simulator"]))
-    wait_until(lambda: not program.isRunning, program.process, 20.0)
+    wait_until(lambda: not program.isRunning, program.process)
     assert told == ["Edited since."]
 
 
@@ -228,10 +228,10 @@ def test_an_installed_simulator_starts_reports_its_port_and_stops(setup, source)
     command = setup.command(["simulator", "--port", "18999"])
     program.start(command)
     assert program.state is ProgramState.STARTING
-    wait_until(lambda: program.state is ProgramState.READY, program.process, 20.0)
+    wait_until(lambda: program.state is ProgramState.READY, program.process)
     assert program.port == 18999
     program.stop()
-    wait_until(lambda: not program.isRunning, program.process, 20.0)
+    wait_until(lambda: not program.isRunning, program.process)
     assert program.state is ProgramState.STOPPED
 
 
@@ -240,7 +240,7 @@ def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(setup, s
     program, told = SimulatorProgram(), []
     program.pairingChanged.connect(lambda: told.append(program.pairingSentence))
     program.start(setup.command(["simulator", "--port", "1", "--lan"]))
-    wait_until(lambda: program.pairingCode == "678901", program.process, 20.0)
+    wait_until(lambda: program.pairingCode == "678901", program.process)
     program.stop()
     here = "In a browser or a headset open http://127.0.0.1:18945"
     everywhere = f"{here} or https://192.0.2.7:18946 or https://192.0.2.8:18946"
@@ -258,7 +258,7 @@ def test_a_simulator_that_ends_by_itself_says_why(setup, source):
     run_setup(setup, source)
     program = SimulatorProgram()
     program.start(setup.command(["simulator", "--port", "1", "--end"]))
-    wait_until(lambda: program.state is ProgramState.FAILED, program.process, 20.0)
+    wait_until(lambda: program.state is ProgramState.FAILED, program.process)
     assert program.sentence.endswith("(status 3): The port is taken.")
 
 
@@ -266,7 +266,7 @@ def test_a_simulator_whose_window_is_closed_has_simply_ended(setup, source):
     run_setup(setup, source)
     program = SimulatorProgram()
     program.start(setup.command(["simulator", "--port", "1", "--close"]))
-    wait_until(lambda: not program.isRunning, program.process, 20.0)
+    wait_until(lambda: not program.isRunning, program.process)
     assert (program.state, program.sentence) == (ProgramState.STOPPED, "The simulator has ended.")
 
 

@@ -97,7 +97,7 @@ class Place:
         """Return a client that may command the simulator."""
         client = self._stack.enter_context(Client(port=self.simulator.port))
         hello = {"protocolVersion": PROTOCOL_VERSION, "client": "carrier"}
-        assert client.send_command("Hello", hello, timeout=20).ok
+        assert client.send_command("Hello", hello, timeout=60).ok
         return client
 
     def start_slicer(self) -> subprocess.Popen:
@@ -210,7 +210,7 @@ class CarriedTrainee(Trainee):
             # A machine that is too busy to draw counts as a headset that is not worn.
             self.choose("resume")
         target = {"positionMm": (MM_PER_M * place).tolist(), "speedMmS": 400}
-        reply = self._client.send_command("MoveTipTo", target, timeout=20)
+        reply = self._client.send_command("MoveTipTo", target, timeout=60)
         assert reply.ok, reply.error
         give_up = self.view.state["time"] + 4.0
         while np.linalg.norm(place - self.tip) > 0.002 and self.view.state["time"] < give_up:
@@ -228,7 +228,7 @@ class CarriedTrainee(Trainee):
         self.steer_to(place, 0.002)
         below = lowered(MM_PER_M * place, MM_PER_M * self.head_center)
         target = {"positionMm": below, "speedMmS": 400}
-        assert self._client.send_command("MoveTipTo", target, timeout=20).ok
+        assert self._client.send_command("MoveTipTo", target, timeout=60).ok
         self.until(lambda: self.view.state["proximity"] == "contact", f"contact at {label}")
         return True
 
@@ -238,7 +238,7 @@ class CarriedTrainee(Trainee):
             label = self.view.state["next"]
             self.approach(label, 0.004)
             self.lower_onto(label)
-            assert self._client.send_command("Capture", {}, timeout=20).ok
+            assert self._client.send_command("Capture", {}, timeout=60).ok
             self.until(lambda k=kept: self.touched > k, f"touch {label}")
 
 

@@ -101,7 +101,7 @@ def test_a_page_cannot_send_commands_to_the_openigtlink_port(place, stranger, fo
     answer = stranger.evaluate(TRY_TO_COMMAND, [f"http://127.0.0.1:{port}", list(command)])
     assert answer == "refused"
     with Client(port=port) as client:
-        state = client.wait_for("SimState", timeout=20)
+        state = client.wait_for("SimState", timeout=60)
     assert "somebody-else" not in state.content.text
 
 

@@ -8,7 +8,8 @@ from Testing.web.chromium import PATIENCE_MS, draw_nothing, launch
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
 
-SLOW_LINE = {"offline": False, "latency": 0, "downloadThroughput": 400_000, "uploadThroughput": -1}
+LINE = {"offline": False, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1}
+SLOW_LINE = {**LINE, "downloadThroughput": 400_000}
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +46,7 @@ def test_the_scene_tells_how_much_of_it_has_come(place, browser):
     page.wait_for_selector("#loading:has-text('Loading the scene:')")
     total = page.eval_on_selector("#loading progress", "bar => bar.max")
     assert 1e6 < total < 5e6
+    network.send("Network.emulateNetworkConditions", LINE)
     page.wait_for_selector("body[data-scene]")
     page.wait_for_selector("#loading", state="hidden")
     page.context.close()

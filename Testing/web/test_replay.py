@@ -39,7 +39,7 @@ def place(tmp_path_factory):
                 ("TrialScored", SCORE),
             ):
                 arguments = {"trialId": trial.trial_id, **arguments}
-                assert slicer.send_command(command, arguments, timeout=20).ok
+                assert slicer.send_command(command, arguments, timeout=60).ok
         yield place
 
 

@@ -38,7 +38,7 @@ class Peer:
 
     def close(self) -> None:
         self._listener.close()
-        self._thread.join(10)
+        self._thread.join(60)
 
     def _serve(self) -> None:
         reader = MessageReader()
@@ -82,7 +82,7 @@ def test_answers_are_matched_by_number_in_any_order(peer):
         first = []
         thread = threading.Thread(target=lambda: first.append(client.send_command("A")))
         thread.start()
-        has_first.wait(10)
+        has_first.wait(60)
         assert client.send_command("B").data == {"to": "B"}
         thread.join()
         assert first[0].data == {"to": "A"}

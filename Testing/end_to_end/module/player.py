@@ -82,7 +82,7 @@ class Player:
 
 
 def _do(client: Client, name: str, **arguments: object) -> None:
-    reply = client.send_command(name, arguments, timeout=20)
+    reply = client.send_command(name, arguments, timeout=60)
     assert reply.ok, f"{name}: {reply.error}"
 
 
@@ -91,4 +91,4 @@ def _move_to(client: Client, place: np.ndarray) -> None:
         return np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - place) < NEAR_ENOUGH_MM
 
     _do(client, "MoveTipTo", positionMm=place.tolist(), speedMmS=SPEED_MM_S)
-    client.wait_for("ToolTipToWorld", is_there, 20)
+    client.wait_for("ToolTipToWorld", is_there, 60)

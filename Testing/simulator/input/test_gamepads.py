@@ -15,7 +15,7 @@ from Testing.sdl_virtual_gamepad import WHEEL, VirtualGamepad
 
 
 def poll_until(gamepads, condition):
-    give_up = time.monotonic() + 5.0
+    give_up = time.monotonic() + 60.0
     while not condition():
         assert time.monotonic() < give_up
         gamepads.poll()

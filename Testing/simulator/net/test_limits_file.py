@@ -74,10 +74,10 @@ def test_the_simulator_turns_away_one_client_more_than_the_file_allows(tmp_path)
         SimulatorProcess(tmp_path / "records", "--no-views") as simulator,
         Client(port=simulator.port) as client,
     ):
-        assert client.send_command("Hello", HELLO, timeout=20).ok
+        assert client.send_command("Hello", HELLO, timeout=60).ok
         with pytest.raises(LinkError), Client(port=simulator.port) as one_more:
-            one_more.send_command("Hello", HELLO, timeout=20)
-        assert client.send_command("Hello", HELLO, timeout=20).ok
+            one_more.send_command("Hello", HELLO, timeout=60)
+        assert client.send_command("Hello", HELLO, timeout=60).ok
 
 
 def test_the_simulator_starts_no_more_trials_than_the_file_allows(tmp_path):
@@ -87,9 +87,9 @@ def test_the_simulator_starts_no_more_trials_than_the_file_allows(tmp_path):
         SimulatorProcess(tmp_path / "records", "--no-views") as simulator,
         Client(port=simulator.port) as client,
     ):
-        assert client.send_command("StartTask", task, timeout=20).ok
-        assert client.send_command("Abort", timeout=20).ok
-        assert "too often" in client.send_command("StartTask", task, timeout=20).error
+        assert client.send_command("StartTask", task, timeout=60).ok
+        assert client.send_command("Abort", timeout=60).ok
+        assert "too often" in client.send_command("StartTask", task, timeout=60).error
 
 
 def test_a_wrong_file_ends_the_start_with_one_sentence_and_status_2(tmp_path):

@@ -59,14 +59,23 @@ def test_a_broken_file_in_the_cache_is_built_again(built, setup):
     assert asyncio.run(SceneFiles(folder).scene(setup, "")) == file
 
 
-def test_who_does_not_wait_any_more_ends_the_building(setup, tmp_path):
+def test_who_does_not_wait_any_more_ends_the_building(setup, tmp_path, monkeypatch):
+    start, started = asyncio.create_subprocess_exec, []
+
+    async def note(*arguments, **named):
+        started.append(await start(*arguments, **named))
+        return started[-1]
+
     async def give_up():
         building = asyncio.create_task(SceneFiles(tmp_path).scene(setup, ""))
-        await asyncio.sleep(0.3)
+        while not started:
+            await asyncio.sleep(0.001)
         building.cancel()
         await asyncio.gather(building, return_exceptions=True)
 
+    monkeypatch.setattr(scene_files_module.asyncio, "create_subprocess_exec", note)
     asyncio.run(give_up())
+    assert [process.returncode is None for process in started] == [False]
     assert list(tmp_path.iterdir()) == []
 
 

@@ -73,7 +73,7 @@ def make(library):
 @pytest.mark.parametrize("may_be_anywhere", [True, False])
 def test_scenario_that_comes_with_us_is_loaded_by_its_name(make, may_be_anywhere):
     loop = Loop()
-    answer = make(loop, may_be_anywhere).load("colin27").result(10)
+    answer = make(loop, may_be_anywhere).load("colin27").result(60)
     assert (answer.ok, answer.data) == (True, {"name": "colin27", "title": "Colin27"})
     assert loop.simulations[0].folder == asset_path("scenarios", "colin27")
 
@@ -81,14 +81,14 @@ def test_scenario_that_comes_with_us_is_loaded_by_its_name(make, may_be_anywhere
 @pytest.mark.parametrize("may_be_anywhere", [True, False])
 def test_scenario_of_the_library_is_loaded_by_its_name(make, library, may_be_anywhere):
     loop = Loop()
-    assert make(loop, may_be_anywhere).load("ball").result(10).ok
+    assert make(loop, may_be_anywhere).load("ball").result(60).ok
     assert loop.simulations[0].folder == library / "ball"
 
 
 def test_scenarios_are_listed_with_their_pictures_and_problems(make, library):
     loader = make(Loop(), may_be_anywhere=False)
     assert loader.picture("ball") is None
-    listed = {entry.name: entry for entry in loader.listed().result(10)}
+    listed = {entry.name: entry for entry in loader.listed().result(60)}
     assert set(listed) == {"ball", "broken", "colin27"}
     assert "scenario.json" in listed["broken"].problem
     assert loader.picture("ball") == library / "ball" / "preview.png"
@@ -97,13 +97,13 @@ def test_scenarios_are_listed_with_their_pictures_and_problems(make, library):
 
 
 def test_any_folder_may_be_loaded_by_its_path_on_one_computer(make, tmp_path):
-    assert make(Loop(), may_be_anywhere=True).load(str(tmp_path)).result(10).ok
+    assert make(Loop(), may_be_anywhere=True).load(str(tmp_path)).result(60).ok
 
 
 @pytest.mark.parametrize("folder", ["/etc", "../colin27", "colin27/..", "."])
 def test_client_of_another_computer_reaches_no_other_folder(make, folder):
     loop = Loop()
-    answer = make(loop, may_be_anywhere=False).load(folder).result(10)
+    answer = make(loop, may_be_anywhere=False).load(folder).result(60)
     assert not answer.ok
     assert "LoadScenario takes one of ball, colin27;" in answer.message
     assert loop.simulations == []
@@ -115,10 +115,10 @@ def test_while_a_scenario_is_being_loaded_no_further_one_is(make):
     loop.replace_simulation = lambda _simulation: handover
     loader = make(loop, may_be_anywhere=True)
     first = loader.load("colin27")
-    assert [loader.load("colin27").result(10) for _ in range(3)] == [Answer(0, False, BUSY)] * 3
+    assert [loader.load("colin27").result(60) for _ in range(3)] == [Answer(0, False, BUSY)] * 3
     handover.set_result(loop.answer)
-    assert first.result(10).ok
-    assert loader.load("colin27").result(10).ok
+    assert first.result(60).ok
+    assert loader.load("colin27").result(60).ok
 
 
 @pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE])
@@ -130,11 +130,11 @@ def test_in_a_trial_nothing_is_read_of_a_scenario(make, phase):
     assert loader.load("colin27").result(0) == Answer(0, False, TRIAL_IS_OPEN)
     loop.latest.training.phase = Phase.REGISTERED
     loop.replace_simulation = Loop().replace_simulation
-    assert loader.load("colin27").result(10).ok
+    assert loader.load("colin27").result(60).ok
 
 
 def test_folder_that_cannot_be_used_is_refused_in_one_sentence(make, tmp_path):
-    answer = make(Loop(), may_be_anywhere=True).load(str(tmp_path / "none")).result(10)
+    answer = make(Loop(), may_be_anywhere=True).load(str(tmp_path / "none")).result(60)
     assert (answer.ok, "does not exist" in answer.message) == (False, True)
 
 
@@ -159,11 +159,11 @@ def test_a_scenario_whose_procedure_cannot_be_carried_out_is_refused_and_nothing
 def test_refusal_of_the_control_loop_is_passed_on(make):
     loop = Loop()
     loop.answer = Answer(0, False, "A trial is running.")
-    assert make(loop, may_be_anywhere=True).load("colin27").result(10) == loop.answer
+    assert make(loop, may_be_anywhere=True).load("colin27").result(60) == loop.answer
 
 
 def test_the_present_scenario_is_made_again_wherever_it_came_from(make, tmp_path):
     loop = Loop()
     loop.setup = SimpleNamespace(scenario=SimpleNamespace(folder=tmp_path))
-    assert make(loop, may_be_anywhere=False).reload().result(10).ok
+    assert make(loop, may_be_anywhere=False).reload().result(60).ok
     assert loop.simulations[0].folder == tmp_path

@@ -26,10 +26,13 @@ class Members:
     signals: frozenset[str]
     methods: frozenset[str]
 
-    def signatures(self, signal: str) -> list[str]:
-        """Return the signatures of the signal of that name, that with most arguments first."""
-        found = [text for text in self.signals if text.partition("(")[0] == signal]
-        return sorted(found, key=_argument_count, reverse=True)
+    @functools.cached_property
+    def signatures(self) -> dict[str, list[str]]:
+        """The signatures of each signal by its name, those with most arguments first."""
+        found: dict[str, list[str]] = {}
+        for text in sorted(self.signals, key=_argument_count, reverse=True):
+            found.setdefault(text.partition("(")[0], []).append(text)
+        return found
 
 
 def module_of(class_name: str) -> str | None:

@@ -69,8 +69,8 @@ class Proxy(metaclass=ProxyType):
             return from_qt(self._qt.property(name))
         if name == "name" and "objectName" in members.properties:
             return self._qt.objectName()
-        if signatures := members.signatures(name):
-            return BoundSignal(self, signatures[0])
+        if name in members.signatures:
+            return BoundSignal(self, members.signatures[name][0])
         if ALIASES.get(name, name) not in members.methods:
             raise _missing(type(self), name)
         if name in ("connect", "disconnect"):
@@ -163,8 +163,9 @@ def _forwarding(name: str) -> Callable[..., Any]:
 
 def _qt_attribute(owner: Any, name: str) -> Any:
     for spelling in (ALIASES.get(name, name), name, name + "_"):
-        if hasattr(owner, spelling):
-            return getattr(owner, spelling)
+        found = getattr(owner, spelling, None)
+        if found is not None:
+            return found
     raise NotImplementedError(f"Slicer has {name}, but the host does not offer it yet.")
 
 

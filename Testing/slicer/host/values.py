@@ -20,6 +20,8 @@ from shibokensupport.signature import get_signature
 from Testing.slicer.host.failures import FAILURES
 
 PROXY = "_proxyOfHost"
+PLAIN = frozenset({str, int, float, bool, type(None)})
+"""Types whose values are the same on both sides; most are of these."""
 _wrappers: list[Callable[[Any], Any]] = []
 
 
@@ -33,6 +35,8 @@ def wrap_objects_with(wrap: Callable[[Any], Any]) -> None:
 
 def to_qt(value: Any) -> Any:
     """Return what PySide6 takes for a value of ours."""
+    if type(value) in PLAIN:
+        return value
     if isinstance(value, (np.integer, np.bool_)):
         raise TypeError(f"PythonQt takes no {type(value).__name__}: convert it to a Python number.")
     if isinstance(value, tuple) and type(value) is tuple:
@@ -44,6 +48,8 @@ def to_qt(value: Any) -> Any:
 
 def from_qt(value: Any) -> Any:
     """Return what PythonQt would give for a value of PySide6."""
+    if type(value) in PLAIN:
+        return value
     if isinstance(value, enum.Enum):
         return value.value
     if isinstance(value, (list, tuple)) and type(value) in (list, tuple):
@@ -53,6 +59,8 @@ def from_qt(value: Any) -> Any:
 
 def call(owner: type, function: Callable[..., Any], name: str, arguments: tuple) -> Any:
     """Call a function of a class of PySide6 with arguments as PythonQt takes them."""
+    if not arguments:
+        return from_qt(function())
     return from_qt(function(*_given(arguments, _enumerations(owner, name))))
 
 

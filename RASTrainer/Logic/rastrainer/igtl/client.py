@@ -19,6 +19,8 @@ from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName, decode_told_object
 
+PATIENCE_S = 30.0
+"""How long is waited by default: a machine that is busy may answer only after some seconds."""
 _PIECE_BYTES = 64 * 1024
 
 
@@ -50,7 +52,7 @@ class Client:
         host: str = DEFAULT_HOST,
         port: int = DEFAULT_PORT,
         on_message: Callable[[Message], None] | None = None,
-        timeout: float = 5.0,
+        timeout: float = PATIENCE_S,
     ):
         """Connect within `timeout` seconds.
 
@@ -108,7 +110,7 @@ class Client:
             raise LinkError("The connection is lost.") from None
 
     def send_command(
-        self, name: str, arguments: Mapping[str, Any] | None = None, timeout: float = 5.0
+        self, name: str, arguments: Mapping[str, Any] | None = None, timeout: float = PATIENCE_S
     ) -> Reply:
         """Send a command and return its answer.
 
@@ -133,7 +135,7 @@ class Client:
         self,
         device: str,
         accept: Callable[[Message], bool] = lambda _message: True,
-        timeout: float = 5.0,
+        timeout: float = PATIENCE_S,
     ) -> Message:
         """Return the latest message of `device` that `accept` accepts, waiting for it if needed.
 

@@ -18,6 +18,7 @@ from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer, Motion, SimulationState, TrainingState
 
 HOST = "127.0.0.1"
+PATIENCE_S = 60.0
 
 
 class LoopThread:
@@ -32,16 +33,36 @@ class LoopThread:
     def __exit__(self, *_exception):
         self.loop.call_soon_threadsafe(self.loop.stop)
         self._thread.join()
+        self.loop.run_until_complete(_end_all())
         self.loop.close()
 
-    def run(self, coroutine):
-        return asyncio.run_coroutine_threadsafe(coroutine, self.loop).result(10)
+    def run(self, coroutine, timeout=PATIENCE_S):
+        """Return the result of a coroutine that the loop runs meanwhile.
+
+        Raises:
+            RuntimeError: the loop has ended.
+        """
+        try:
+            future = asyncio.run_coroutine_threadsafe(coroutine, self.loop)
+        except RuntimeError:
+            coroutine.close()
+            raise
+        return future.result(timeout)
 
     def call(self, function, *arguments, **named):
         async def called():
             return function(*arguments, **named)
 
         return self.run(called())
+
+
+async def _end_all():
+    """Cancel what still waits, so that threads that wait for it go on."""
+    await asyncio.sleep(0)
+    others = asyncio.all_tasks() - {asyncio.current_task()}
+    for task in others:
+        task.cancel()
+    await asyncio.gather(*others, return_exceptions=True)
 
 
 class RecordingHandler:
@@ -62,7 +83,7 @@ class RecordingHandler:
     def disconnected(self, connection):
         self._note(self.left, connection)
 
-    def wait_until(self, condition, timeout=10):
+    def wait_until(self, condition, timeout=PATIENCE_S):
         with self.news:
             assert self.news.wait_for(condition, timeout), "it did not happen"
 
@@ -148,7 +169,7 @@ def at_rest(**changes) -> SimulationState:
 def answer_to(port: int, command: bytes) -> Message:
     """Send the bytes of one COMMAND and return the message that answers it."""
     reader = MessageReader()
-    with socket.create_connection((HOST, port), 10) as peer:
+    with socket.create_connection((HOST, port), 60) as peer:
         peer.sendall(command)
         while True:
             for message in reader.feed(peer.recv(65_536)):

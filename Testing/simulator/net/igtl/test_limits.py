@@ -37,7 +37,7 @@ def ended(peer: socket.socket) -> bool:
 
 
 def test_a_page_in_a_browser_commands_nothing(link_server):
-    with socket.create_connection((HOST, link_server.port), 10) as peer:
+    with socket.create_connection((HOST, link_server.port), 60) as peer:
         peer.sendall(FROM_A_PAGE % len(ABORT) + ABORT)
         assert ended(peer)
     with Client(port=link_server.port) as client:
@@ -47,7 +47,7 @@ def test_a_page_in_a_browser_commands_nothing(link_server):
 
 def test_bytes_now_and_then_do_not_keep_a_half_message_alive(start):
     server = start(PlainServer, half_message_s=0.1)
-    with socket.create_connection((HOST, server.port), 10) as peer:
+    with socket.create_connection((HOST, server.port), 60) as peer:
         peer.sendall(pack(Message("Note", String("x" * 60_000)))[:70])
         peer.settimeout(0.02)
         for _ in range(1000):
@@ -66,7 +66,7 @@ def test_bytes_now_and_then_do_not_keep_a_half_message_alive(start):
 def test_a_message_that_comes_slowly_but_steadily_is_taken(start):
     server = start(PlainServer, half_message_s=0.05, slowest_bytes_per_s=1.0)
     note = pack(Message("Note", String("x" * 1000), timestamp=1))
-    with socket.create_connection((HOST, server.port), 10) as peer:
+    with socket.create_connection((HOST, server.port), 60) as peer:
         for begin in range(0, len(note), 100):
             peer.sendall(note[begin : begin + 100])
             server.thread.run(asyncio.sleep(0.02))
@@ -78,7 +78,7 @@ def test_who_asks_for_echoes_and_does_not_read_them_is_dropped_before_they_pile_
     metadata = {f"key-{number}": "x" * 10_000 for number in range(6)}
     with Client(port=server.port) as good, socket.socket() as peer:
         peer.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-        peer.settimeout(10)
+        peer.settimeout(60)
         peer.connect((HOST, server.port))
         with contextlib.suppress(ConnectionError):
             for number in itertools.count():
@@ -94,7 +94,7 @@ def test_commands_wait_only_up_to_so_many_bytes(start):
     details = {"text": "x" * 30_000}
     scored = {"trialId": "6b8f2f1e-6a60-4c0e-9a37-111111111111", "score": 1, "details": details}
     reader, replies = MessageReader(), []
-    with socket.create_connection((HOST, server.port), 10) as peer:
+    with socket.create_connection((HOST, server.port), 60) as peer:
         for number in range(6):
             peer.sendall(
                 pack(Message("command", Command(number, "TrialScored", json.dumps(scored))))
@@ -110,7 +110,7 @@ def test_commands_wait_only_up_to_so_many_bytes(start):
 @contextlib.contextmanager
 def served_socket(plain_server):
     """Connect a client; the server's socket of that connection."""
-    with socket.create_connection((HOST, plain_server.port), 10):
+    with socket.create_connection((HOST, plain_server.port), 60):
         plain_server.handler.wait_until(lambda: plain_server.handler.connections)
         (connection,) = plain_server.server.clients
         yield connection._transport.get_extra_info("socket")
@@ -157,7 +157,7 @@ def test_a_flood_of_connections_keeps_nobody_from_being_served(start):
         good.send(PROBE)
         good.wait_for("Probe")
         for _ in range(300):
-            with socket.create_connection((HOST, server.port), 10) as peer:
+            with socket.create_connection((HOST, server.port), 60) as peer:
                 peer.send(struct.pack(">H", 1))
         good.send(replace(PROBE, device="Again"))
         assert good.wait_for("Again").content == PROBE.content

@@ -317,7 +317,7 @@ def test_states_are_delivered_in_the_thread_of_the_event_loop(loop_thread):
         done.set()
 
     StateFeed(lambda _state: True, deliver, loop_thread.loop)(StepResult(at_rest()))
-    assert done.wait(10)
+    assert done.wait(60)
     assert threads != [threading.current_thread()]
 
 

@@ -32,7 +32,7 @@ def connect(port: int, receive_buffer: int = 0) -> socket.socket:
     peer = socket.socket()
     if receive_buffer:
         peer.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-    peer.settimeout(10)
+    peer.settimeout(60)
     peer.connect((HOST, port))
     return peer
 
@@ -243,7 +243,7 @@ def test_invalid_host_is_reported_in_one_sentence(link_server):
 def test_server_connects_to_a_listening_slicer_and_comes_back(start, loop_thread: LoopThread):
     server = start(LinkServer, reconnect_s=0.05)
     with socket.create_server((HOST, 0)) as slicer:
-        slicer.settimeout(10)
+        slicer.settimeout(60)
         task = asyncio.run_coroutine_threadsafe(
             server.server.keep_connected_to(HOST, slicer.getsockname()[1]), loop_thread.loop
         )
@@ -261,6 +261,8 @@ def test_slicer_that_does_not_listen_is_reported_once(start, loop_thread: LoopTh
     attempts = server.server.keep_connected_to(HOST, port)
     with caplog.at_level(logging.WARNING, "rastrainer.igtl"):
         task = asyncio.run_coroutine_threadsafe(attempts, loop_thread.loop)
+        while not caplog.records:
+            loop_thread.run(asyncio.sleep(0.01))
         loop_thread.run(asyncio.sleep(0.2))
         task.cancel()
     assert [record.getMessage() for record in caplog.records] == [

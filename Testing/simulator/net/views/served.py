@@ -15,11 +15,10 @@ from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.viewpoint.orbit import CameraPose
 from rastrainer_simulator.viewpoint.view_control import Pictures
-from Testing.simulator.net.igtl.servers import HOST, LoopThread
+from Testing.simulator.net.igtl.servers import HOST, PATIENCE_S, LoopThread
 
 SUBPROTOCOL = "rastrainer.views.1"
 HELLO = {"type": "hello", "kind": "page", "device": "Quest 2", "refreshHz": 72}
-PATIENCE_S = 20
 LOOKED_FROM = CameraPose((0.5, -0.5, 0.4), (0.5, 0.0, 0.25), (0.0, 0.0, 1.0), 30.0)
 
 
@@ -103,7 +102,7 @@ class ServedViews:
             while call not in self.presenter.calls:
                 await asyncio.sleep(0.005)
 
-        self.thread.run(asyncio.wait_for(wait(), PATIENCE_S / 2))
+        self.thread.run(wait())
         return self.presenter.calls
 
     def close(self):
@@ -186,10 +185,7 @@ class ViewClient:
         return self._run(self._socket.receive())
 
     def _run(self, coroutine):
-        async def patient():
-            return await asyncio.wait_for(coroutine, PATIENCE_S)
-
-        return asyncio.run_coroutine_threadsafe(patient(), self._thread.loop).result()
+        return self._thread.run(coroutine)
 
 
 async def _session() -> aiohttp.ClientSession:

@@ -156,7 +156,7 @@ def test_connections_beyond_the_limit_are_closed(serve, connect):
 
 def asking(port: int, path: str) -> socket.socket:
     """Return a connection that asks for a file, and does not read it."""
-    stranger = socket.create_connection((HOST, port), 10)
+    stranger = socket.create_connection((HOST, port), 60)
     stranger.sendall(f"GET {path} HTTP/1.1\r\nHost: {HOST}:{port}\r\n\r\n".encode())
     assert stranger.recv(12) == b"HTTP/1.1 200"
     return stranger
@@ -196,7 +196,7 @@ STRANGE_REQUESTS = [
 
 @pytest.mark.parametrize("request_bytes", STRANGE_REQUESTS)
 def test_what_is_no_request_is_refused_and_not_logged(served, caplog, request_bytes):
-    with socket.create_connection((HOST, served.port), 10) as stranger:
+    with socket.create_connection((HOST, served.port), 60) as stranger:
         stranger.sendall(request_bytes)
         stranger.shutdown(socket.SHUT_WR)
         answer = stranger.recv(100)
@@ -206,6 +206,6 @@ def test_what_is_no_request_is_refused_and_not_logged(served, caplog, request_by
 
 def test_a_connection_that_asks_for_nothing_is_closed(serve):
     served = serve(first_message_s=0.05)
-    with socket.create_connection((HOST, served.port), 10) as stranger:
+    with socket.create_connection((HOST, served.port), 60) as stranger:
         stranger.sendall(b"GET / HTTP/1.1\r\nHost:")
         assert stranger.recv(100) == b""

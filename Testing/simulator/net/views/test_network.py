@@ -40,7 +40,7 @@ def connected(port: int, version: ssl.TLSVersion) -> ssl.SSLSocket:
     # A client of its own default would refuse to speak an old version, and prove nothing.
     context.set_ciphers("ALL:@SECLEVEL=0")
     context.minimum_version = context.maximum_version = version
-    return context.wrap_socket(socket.create_connection((HOST, port), 10))
+    return context.wrap_socket(socket.create_connection((HOST, port), 60))
 
 
 @pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
@@ -61,7 +61,7 @@ def test_tls_older_than_1_2_is_refused(port, certificates, version):
 
 
 def test_plain_http_gets_no_answer_from_the_local_network_s_port(port):
-    with socket.create_connection((HOST, port), 10) as browser:
+    with socket.create_connection((HOST, port), 60) as browser:
         browser.sendall(REQUEST)
         answer = b""
         try:
