@@ -9,6 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.touched_head import touched_head  # noqa: F401
@@ -18,6 +19,16 @@ LONGEST = ("end_to_end", "web", "security")
 """Folders whose tests start processes, browsers and attacks. They are checked first, so that no
 worker waits for one of them in the end."""
 TESTS_PER_FULL_COLLECTION = 100
+
+# Random examples are the same each time, and none depends on how fast the machine is.
+settings.register_profile(
+    "seeded",
+    derandomize=True,
+    deadline=None,
+    max_examples=100,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("seeded")
 
 _tests_done = 0
 

@@ -1,5 +1,7 @@
 """Connected to a real simulator, Slicer renders only while somebody sees the robot move."""
 
+import time
+
 import pytest
 import slicer
 
@@ -36,6 +38,7 @@ class Arm:
     def __init__(self, client):
         self._client = client
         self._direction = 1.0
+        self._moves_until = 0.0
 
     def do(self, name, **arguments):
         reply = self._client.send_command(name, arguments, timeout=60)
@@ -45,6 +48,12 @@ class Arm:
         """Begin to move, up or down, for a while."""
         self.do("Jog", velocityMmS=[0, 0, 20.0 * self._direction], durationS=STROKE_S)
         self._direction = -self._direction
+        self._moves_until = time.monotonic() + STROKE_S
+
+    def keep_moving(self):
+        """Begin to move again once the last move is over."""
+        if time.monotonic() > self._moves_until:
+            self.move()
 
 
 @pytest.fixture
@@ -74,9 +83,13 @@ def show_robot(host):  # noqa: F811
 
 
 def wait_for_renders(host, arm, count=10):  # noqa: F811
-    arm.move()
     before = host.renders
-    host.wait_until(lambda: host.renders >= before + count, "the robot is seen to move")
+
+    def is_seen():
+        arm.keep_moving()
+        return host.renders >= before + count
+
+    host.wait_until(is_seen, "the robot is seen to move")
 
 
 def set_layout(name):

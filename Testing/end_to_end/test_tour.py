@@ -27,9 +27,6 @@ WITHOUT_A_TRIAL = (
     "Start and connect",
     "Create a trainee",
     "Show scenario and robot",
-    "Abort the trial run",
-    "Save a scenario and add it",
-    "Lead through a study",
     "Delete the trainee and stop",
 )
 

@@ -107,11 +107,10 @@ BROKEN = NO_FILE_OF_A_VOLUME | {
 
 
 ONE_OF_EACH_KIND = (
-    "no file",
     "a block",
     *(
         pytest.param(name, marks=pytest.mark.soak)
-        for name in ("a NIfTI file cut short", "DICOM, one slice missing")
+        for name in ("no file", "a NIfTI file cut short", "DICOM, one slice missing")
     ),
 )
 

@@ -18,16 +18,19 @@ from Testing.error_rates.played import COLIN27, WAYS, all_keys, play, seeds, sto
 from Testing.error_rates.registered import common_biases, errors_along_skin, registered_errors
 
 FEW = {
-    "biased aim": 10,
-    "equal hands": 60,
-    "slow hands": 60,
-    "several groups": 25,
-    "target errors": 20,
-    "learning": 40,
-    "propagation": 20,
-    "groups": 40,
-    "recovery": 20,
-    "recovery intervals": 20,
+    "biased aim": 5,
+    "equal hands": 25,
+    "slow hands": 25,
+    "several groups": 10,
+    "target errors": 10,
+    "learning": 20,
+    "propagation": 10,
+    "groups": 20,
+    "recovery": 10,
+    "recovery intervals": 10,
+    "played cohort": 50,
+    "aborted trials": 50,
+    "sequences": 60,
 }
 """Fewer data sets for costly tables."""
 

@@ -30,14 +30,26 @@ def page(place, browser):
     assert page.problems == []
 
 
-def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
+def begin_by_keyboard(place, page):
+    """Begin Task 1 by the keyboard; return the trainee."""
     trainee = place.carried_trainee(PageKeys(page))
     trainee.begin("task-1", page)
     page.wait_for_selector("body[data-scene=task-1]")
-    assert draw_a_while(page).std() > 20.0
     page.wait_for_selector("#control:has-text('You drive: keyboard')")
+    return trainee
+
+
+def test_by_keyboard_a_trial_begins_and_a_touch_is_taken_back(place, page):
+    trainee = begin_by_keyboard(place, page)
+    assert draw_a_while(page).std() > 20.0
     trainee.touch_all(1)
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")
+
+
+@pytest.mark.soak
+def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
+    trainee = begin_by_keyboard(place, page)
+    trainee.touch_all(1)
     trainee.have_touched(15)
     slicer = place.start_slicer()
     trainee.register()

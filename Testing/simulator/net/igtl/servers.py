@@ -31,9 +31,9 @@ class LoopThread:
         return self
 
     def __exit__(self, *_exception):
+        self.run(_end_all())
         self.loop.call_soon_threadsafe(self.loop.stop)
         self._thread.join()
-        self.loop.run_until_complete(_end_all())
         self.loop.close()
 
     def run(self, coroutine, timeout=PATIENCE_S):
@@ -58,7 +58,6 @@ class LoopThread:
 
 async def _end_all():
     """Cancel what still waits, so that threads that wait for it go on."""
-    await asyncio.sleep(0)
     others = asyncio.all_tasks() - {asyncio.current_task()}
     for task in others:
         task.cancel()
