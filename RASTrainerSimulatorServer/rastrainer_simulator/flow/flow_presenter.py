@@ -127,6 +127,11 @@ class FlowPresenter:
         is_replayed = self._flow.playback is not None
         return TraceGuidance() if is_replayed else self._session.places.guidance(now)
 
+    @property
+    def is_tracing_guided(self) -> bool:
+        """Whether a trainee who traces the skin now is shown what is covered, and what is next."""
+        return self._session.places.guidance(self._control_loop.latest).covered_mm > 0.0
+
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control."""
         return self._subscribers.add(listener)

@@ -250,7 +250,9 @@ class SimulatorServer:
             study=self._study,
             scores_alone=self._options.scores_alone,
         )
-        return RunningPresenter(self._control_loop, services, self._options.has_gamepad)
+        running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
+        link.publisher.is_guided = lambda: running.presenter.is_tracing_guided
+        return running
 
     def _start_tutorial(self, trainee: str, mode: str) -> Answer:
         """Open the tutorial if it comes before a trainee's trial run, and a trainee can operate."""

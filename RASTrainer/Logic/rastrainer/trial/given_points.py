@@ -41,8 +41,12 @@ class GivenPoints:
         return cls(record.task, touches, record.method, record.trace_mm)
 
     @classmethod
-    def of_answer(cls, answer: Mapping[str, Any]) -> GivenPoints:
+    def of_answer(
+        cls, answer: Mapping[str, Any], least_traced: int = MIN_TRACE_POINTS
+    ) -> GivenPoints:
         """Return the points in an answer to GetTrial about an open trial.
+
+        Of a trace, `least_traced` points are needed: as many as register it, or fewer to show it.
 
         Raises:
             InputError: they are missing or invalid, or too few for their method.
@@ -61,19 +65,20 @@ class GivenPoints:
         points = [checked_keys(touch, _TOUCH_KEYS, "Each touch of the trial") for touch in told]
         places = np.array([point["positionMm"] for point in points])
         touches = PointList(tuple(point["label"] for point in points), places)
-        return cls(str(answer.get("task", "")), touches, method, _trace_of(answer, method))
+        trace = _trace_of(answer, method, least_traced)
+        return cls(str(answer.get("task", "")), touches, method, trace)
 
 
-def _trace_of(answer: Mapping[str, Any], method: RegistrationMethod) -> np.ndarray:
+def _trace_of(answer: Mapping[str, Any], method: RegistrationMethod, least: int) -> np.ndarray:
     if method not in TRACED_METHODS:
         return np.empty((0, 3))
     trace = accepted(trace_points, answer.get("trace"), "The trace in the answer to GetTrial")
-    if len(trace) < MIN_TRACE_POINTS:
+    if len(trace) < least:
         raise InputError(
-            f"The simulator's answer to GetTrial must hold a trace of {MIN_TRACE_POINTS} points or "
+            f"The simulator's answer to GetTrial must hold a trace of {least} points or "
             f"more, not {len(trace)}."
         )
-    return np.array(trace)[:, :3]
+    return np.array(trace).reshape(-1, 4)[:, :3]
 
 
 _TOUCH_KEYS = {

@@ -12,6 +12,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.registration.trace_guidance import COVERED_MM, TraceGuide
 from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.followed_trace import trace_guide
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
@@ -104,9 +105,6 @@ class TracePlaces:
 
     def _guide_of(self, setup: SimulationSetup) -> TraceGuide:
         if self._guide is None or self._guide[0] is not setup:
-            scenario = setup.scenario
-            to_head = transforms.inverse(scenario.head_to_world)
-            eye = transforms.apply(to_head, scenario.cameras["close-up"].position)
-            mesh = read_head_mesh(scenario.head_mesh)
-            self._guide = setup, TraceGuide(mesh, scenario.target_position, eye)
+            mesh = read_head_mesh(setup.scenario.head_mesh)
+            self._guide = setup, trace_guide(setup.scenario, mesh)
         return self._guide[1]

@@ -58,9 +58,9 @@ def captured_points(training: TrainingState) -> Message:
     return Message(DeviceName.CAPTURED_POINTS, Points(points), metadata)
 
 
-def what_changes(state: SimulationState) -> dict[str, Any]:
+def what_changes(state: SimulationState, is_guided: bool = False) -> dict[str, Any]:
     """Return `SimState` without its number and time; it is sent when this changes."""
-    training = state.training
+    training, trace = state.training, state.training.trace
     return {
         "phase": training.phase.value,
         "trainee": training.trainee,
@@ -75,7 +75,7 @@ def what_changes(state: SimulationState) -> dict[str, Any]:
         "q": [_rounded(angle, 6) for angle in state.q],
         "operator": state.operator,
         "method": training.method.value,
-        "trace": None if training.trace is None else stroke_data(training.trace),
+        "trace": trace and {**stroke_data(trace), "isGuided": is_guided},
         "procedure": None if training.procedure is None else _procedure(state, training.procedure),
     }
 
@@ -176,10 +176,14 @@ class Publisher:
 
     `is_due` may be called in the control loop's thread; everything else belongs to the event
     loop's.
+
+    Attributes:
+        is_guided: tells whether a trainee who traces the skin is shown where to draw next.
     """
 
     def __init__(self, latest: Callable[[], SimulationState]):
         """`latest` returns the newest state, for clients that subscribe between publications."""
+        self.is_guided: Callable[[], bool] = lambda: False
         self._latest = latest
         self._poses: dict[ClientConnection, PoseSubscription] = {}
         self._state = Pacer(Rate.STATE_HZ)
@@ -193,7 +197,7 @@ class Publisher:
         self._poses[connection] = poses
         state = self._latest()
         self._send([connection], captured_points(state.training))
-        changing = what_changes(state)
+        changing = what_changes(state, self.is_guided())
         self._send([connection], sim_state(changing, state, self._next_number()))
         self._next = -math.inf
 
@@ -232,7 +236,7 @@ class Publisher:
             self._send(everyone, captured_points(training))
 
     def _publish_state(self, everyone: Iterable[ClientConnection], state: SimulationState) -> None:
-        changing = what_changes(state)
+        changing = what_changes(state, self.is_guided())
         if changing != self._sent_state:
             self._sent_state = changing
             message = sim_state(changing, state, self._next_number())

@@ -20,6 +20,7 @@ from rastrainer_simulator.net.state_feed import StateFeed
 from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
 from rastrainer_simulator.registration_state import CheckedPoint, FinalRegistration, TouchState
 from rastrainer_simulator.state import StepResult, TrainingState
+from rastrainer_simulator.trace_state import TracedPoint, TraceState
 from Testing.simulator.net.igtl.servers import at_rest
 
 TICK_S = 0.004
@@ -191,6 +192,17 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
         "trace": None,
         "procedure": None,
     }
+
+
+def test_a_trace_tells_how_far_it_is_and_whether_it_is_guided(publisher, receiver):
+    trace = TraceState((TracedPoint((0.0, 0.0, 0.0), 1.0, 1.0),), (0,), is_on=True)
+    traced = replace(RUNNING, trace=trace)
+    publisher.publish(at_rest(sim_time=3.0, training=traced))
+    publisher.is_guided = lambda: True
+    publisher.publish(at_rest(sim_time=4.0, training=traced))
+    told = [json.loads(each.content.text)["trace"] for each in receiver.of("SimState")]
+    expected = {"on": True, "kept": 1, "strokes": 1}
+    assert told == [{**expected, "isGuided": False}, {**expected, "isGuided": True}]
 
 
 def aligning(feed=0.0, phase=Phase.ALIGNING, **others):

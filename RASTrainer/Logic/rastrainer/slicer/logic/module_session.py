@@ -22,6 +22,7 @@ from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.logic.slice_follower import SliceFollower
 from rastrainer.slicer.logic.study_logic import StudyLogic
+from rastrainer.slicer.logic.trace_logic import TraceLogic
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
@@ -87,6 +88,7 @@ class ModuleSession:
         registration: that is looked at.
         plan: of a target.
         procedure: that the trial continues with.
+        traces: shows the trace of the trial on the head.
         procedurePlan: of a procedure, in the scene and in scenarios.
         cohort: trials of the published study, with which CTPS compares.
         studyPath: file of the present study.
@@ -165,6 +167,7 @@ class ModuleSession:
         self.registration = RegistrationLogic(scene, self.work)
         self.plan = PlanLogic(scene, self.link, self.registration)
         self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
+        self.traces = TraceLogic(scene, self.link, self.work)
         self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
         self.task = ""
         self.taskTitle = ""
@@ -173,6 +176,7 @@ class ModuleSession:
         self.scenarioMade = Signal()
         self._trial = ""
         self.training.sceneShown.connect(self.procedure.showPlan)
+        self.training.sceneShown.connect(self.traces.begin)
         self.trials.trialKept.connect(self.study.countTrial)
         self.trials.trialScored.connect(self._takeScored)
         self.aborted.kept.connect(self._takeAborted)
@@ -230,6 +234,7 @@ class ModuleSession:
             self._showTrainees()
         self.study.process()
         self.registration.process()
+        self.traces.process()
         self.replay.process()
         self.images.process()
         followPlacement(self._scene)
@@ -254,6 +259,7 @@ class ModuleSession:
         self.replay.forgetScene()
         self.slices.forgetScene()
         self.registration.forgetScene()
+        self.traces.forgetScene()
         self.training.forgetScene()
 
     def close(self) -> None:
@@ -261,6 +267,7 @@ class ModuleSession:
         self.layout.giveBack()
         self.study.close()
         self.procedure.close()
+        self.traces.close()
         self.training.close()
         self.trials.close()
         self.aborted.close()

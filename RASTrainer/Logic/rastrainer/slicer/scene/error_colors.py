@@ -96,21 +96,27 @@ def colorHead(
     Raises:
         InputError: the registration has too few points.
     """
-    display = model.GetDisplayNode()
-    isColored = display.GetScalarVisibility() and display.GetActiveScalarName() == TRE_SCALARS
     points = slicer.util.arrayFromModelPoints(model).astype(float)
     errors = expected_tre(registration, points, localization)
-    scalars = numpy_to_vtk(errors, deep=True)
-    scalars.SetName(TRE_SCALARS)
+    low, high = float(errors.min()), float(errors.max())
+    colorSkin(model, TRE_SCALARS, errors, colorRange(low, high), "TRE (mm)")
+    return low, high
+
+
+def colorSkin(
+    model: Any, name: str, values: np.ndarray, ends: tuple[float, float], title: str
+) -> None:
+    """Color a head by a value (v,) at each of its vertices, whose colors have these ends."""
+    display = model.GetDisplayNode()
+    scalars = numpy_to_vtk(values, deep=True)
+    scalars.SetName(name)
     model.GetPolyData().GetPointData().AddArray(scalars)
     model.GetPolyData().Modified()
-    low, high = float(errors.min()), float(errors.max())
-    if not isColored:
+    if model.GetAttribute(OPACITY_ATTRIBUTE) is None:
         model.SetAttribute(OPACITY_ATTRIBUTE, str(display.GetOpacity()))
-        display.SetOpacity(1.0)
-    showScalars(model, TRE_SCALARS, colorRange(low, high))
-    showLegend(model, "TRE (mm)", HEAD_RANK)
-    return low, high
+    display.SetOpacity(1.0)
+    showScalars(model, name, ends)
+    showLegend(model, title, HEAD_RANK)
 
 
 def colorRange(low: float, high: float) -> tuple[float, float]:
@@ -119,10 +125,10 @@ def colorRange(low: float, high: float) -> tuple[float, float]:
     return float(bottom), float(max(top, bottom + 0.1))
 
 
-def uncolorHead(model: Any) -> None:
-    """Show the head in its own color again."""
+def uncolorHead(model: Any, name: str = TRE_SCALARS) -> None:
+    """Show the head in its own color again, if it is colored by this value."""
     display = model.GetDisplayNode()
-    if display is not None and display.GetActiveScalarName() == TRE_SCALARS:
+    if display is not None and display.GetActiveScalarName() == name:
         display.SetScalarVisibility(False)
         former = model.GetAttribute(OPACITY_ATTRIBUTE)
         if former:

@@ -44,6 +44,8 @@ class Role:
     PROCEDURE_ERRORS = "procedure errors"
     ROBOT = "robot"
     REPLAY = "replay"
+    TRACED_POINTS = "traced points"
+    NEXT_PLACE = "next place of the trace"
 
 
 def findNode(scene: Any, className: str, role: str) -> Any | None:

@@ -1,0 +1,137 @@
+"""Shows the trace of the trial that is being played, at most once a second."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import CommandName, Phase
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic.training_logic import knownNumber
+from rastrainer.slicer.scene.trace_nodes import forgetTrace, showTrace
+from rastrainer.trial.followed_trace import FollowedTrace, TraceFollower
+from rastrainer.trial.given_points import GivenPoints
+
+PERIOD_S = 1.0
+"""Each time, the whole trace is asked for, and the head is drawn anew."""
+_TRACED_PHASES = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """What the simulator tells of a trace; another one is to be shown."""
+
+    trialId: str
+    kept: int
+    strokes: int
+    isDrawing: bool
+    isGuided: bool
+
+
+class TraceLogic:
+    """Asks for the trace as it grows, and shows it on the head while the trial is open.
+
+    Guidance is shown in the scene where the simulator's setting, or the study, has it shown to the
+    trainee. All of it is by the landmarks: the head's true pose stays unknown.
+    """
+
+    def __init__(
+        self,
+        scene: Any,
+        link: Link,
+        work: BackgroundWork,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._scene = scene
+        self._link = link
+        self._work = work
+        self._clock = clock
+        self._scenario: Scenario | None = None
+        self._follower: TraceFollower | None = None
+        self._wanted: _Wanted | None = None
+        self._shown: _Wanted | None = None
+        self._isAsking = False
+        self._asked = -PERIOD_S
+        link.stateChanged.connect(self._follow)
+        link.opened.connect(self._beginAgain)
+
+    def close(self) -> None:
+        """Stop listening to the link."""
+        self._link.stateChanged.disconnect(self._follow)
+        self._link.opened.disconnect(self._beginAgain)
+
+    def begin(self, scenario: Scenario) -> None:
+        """Show traces on the head of a scenario, which is in the scene now."""
+        self._scenario, self._follower, self._shown = scenario, None, None
+
+    def forgetScene(self) -> None:
+        """Show the trace again: the scene was cleared."""
+        self._scenario = None
+
+    def process(self) -> None:
+        """Ask for the trace if it has changed, and a second has passed."""
+        wanted = self._wanted
+        isDue = self._clock() - self._asked >= PERIOD_S
+        if wanted is None or wanted == self._shown or self._isAsking or not isDue:
+            return
+        if self._scenario is None or not self._link.isOpen:
+            return
+        self._isAsking, self._asked = True, self._clock()
+        self._link.send(
+            CommandName.GET_TRIAL,
+            {"trialId": wanted.trialId},
+            lambda reply: self._take(reply, wanted),
+        )
+
+    def _follow(self, state: Mapping[str, Any]) -> None:
+        told, wasShown = state.get("trace"), self._wanted is not None
+        self._wanted = None
+        isOpen = state.get("phase") in _TRACED_PHASES and not state.get("nextPoint")
+        if isinstance(told, Mapping) and isOpen:
+            self._wanted = _Wanted(
+                str(state.get("trialId", "")),
+                int(knownNumber(told.get("kept")) or 0),
+                int(knownNumber(told.get("strokes")) or 0),
+                told.get("on") is True,
+                told.get("isGuided") is True,
+            )
+        if self._wanted is None and wasShown:
+            self._shown = None
+            forgetTrace(self._scene)
+
+    def _beginAgain(self) -> None:
+        self._isAsking, self._shown = False, None
+
+    def _take(self, reply: Reply, wanted: _Wanted) -> None:
+        scenario = self._scenario
+        if not reply.ok or scenario is None:
+            self._giveUp(wanted)
+            return
+        self._work.do(
+            lambda: self._followed(scenario, reply.data, wanted.isDrawing),
+            lambda trace: self._show(trace, wanted),
+            lambda _error: self._giveUp(wanted),
+        )
+
+    def _followed(
+        self, scenario: Scenario, told: Mapping[str, Any], isDrawing: bool
+    ) -> FollowedTrace:
+        """Return the trace on the head; called in the background."""
+        if self._follower is None:
+            self._follower = TraceFollower(scenario)
+        return self._follower.follow(GivenPoints.of_answer(told, least_traced=0), isDrawing)
+
+    def _show(self, trace: FollowedTrace, wanted: _Wanted) -> None:
+        self._isAsking = False
+        if self._wanted is not None and self._wanted.trialId == wanted.trialId:
+            self._shown = wanted
+            showTrace(self._scene, trace, wanted.isGuided)
+
+    def _giveUp(self, wanted: _Wanted) -> None:
+        """Wait for another state: what cannot be shown is said where it is registered."""
+        self._isAsking, self._shown = False, wanted

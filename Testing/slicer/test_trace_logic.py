@@ -1,0 +1,191 @@
+"""The trace of the trial in Slicer's scene: what is shown, how often, and when it goes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from vtk.util.numpy_support import vtk_to_numpy
+
+from rastrainer import transforms
+from rastrainer.scenario.landmarks import Landmark
+from rastrainer.scenario.scenario import Camera
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.logic.trace_logic import TraceLogic
+from rastrainer.slicer.scene.scene import Role
+from rastrainer.slicer.scene.trace_nodes import DISTANCE_SCALARS, MODEL
+from Testing.slicer.simulator_double import run_logic_until
+from Testing.slicer.training_room import TRIAL, Room
+
+LANDMARKS = {"Nose": (0.0, 90.0, 0.0), "Right": (90.0, 0.0, 0.0), "Top": (0.0, 0.0, 90.0)}
+FRONT = Camera(np.array([500.0, -600.0, 350.0]), np.array([500.0, 0.0, 300.0]), np.eye(3)[2], 30.0)
+
+
+@pytest.fixture
+def marked(scenario):
+    landmarks = tuple(Landmark(name, np.array(place)) for name, place in LANDMARKS.items())
+    return replace(scenario, landmarks=landmarks, cameras={"close-up": FRONT})
+
+
+class Tracing(Room):
+    """A room in which the skin of the ball is traced."""
+
+    def __init__(self, scene, scenario):
+        self.to_world, self.places = scenario.head_to_world, np.zeros((0, 3))
+        super().__init__(scene, scenario)
+        self.work = BackgroundWork()
+        self.traces = TraceLogic(scene, self.link, self.work, lambda: self.now)
+        self.logic.sceneShown.connect(self.traces.begin)
+
+    def answer(self, name, arguments):
+        if name != "GetTrial":
+            return super().answer(name, arguments)
+        trace = transforms.apply(self.to_world, self.places)
+        return {
+            "task": "task-1",
+            "method": "surface",
+            "touches": [
+                {
+                    "label": label,
+                    "positionMm": transforms.apply(self.to_world, np.array(place)).tolist(),
+                }
+                for label, place in LANDMARKS.items()
+            ],
+            "trace": [[*place, float(row)] for row, place in enumerate(trace.tolist())],
+        }
+
+    def draw(self, count, is_guided=True, on=False, **state):
+        """Have the simulator tell of so many points along the ball's front, a second later."""
+        angles = np.radians(np.arange(count, dtype=float))
+        self.places = 90.0 * np.stack([np.sin(angles), np.cos(angles), np.zeros(count)], axis=1)
+        self.now += 1.0
+        told = {"on": on, "kept": count, "strokes": 1, "isGuided": is_guided}
+        self.tell(**{"method": "surface", "trace": told, "nextPoint": None, **state})
+
+    def run_until(self, condition):
+        if not hasattr(self, "traces"):
+            super().run_until(condition)
+            return
+
+        def is_met():
+            self.traces.process()
+            return condition()
+
+        run_logic_until(self.link, self.work, is_met)
+
+    @property
+    def shown(self):
+        """The places of the points that are shown, RAS; None without any."""
+        node = self.node(Role.TRACED_POINTS, MODEL)
+        if node is None or not node.GetPolyData().GetNumberOfPoints():
+            return None
+        return vtk_to_numpy(node.GetPolyData().GetPoints().GetData())
+
+    @property
+    def head(self):
+        return self.node(Role.HEAD_MODEL, MODEL)
+
+    def close(self):
+        self.traces.close()
+        self.work.close()
+        super().close()
+
+
+@pytest.fixture
+def tracing(scene, marked):
+    tracing = Tracing(scene, marked)
+    yield tracing
+    tracing.close()
+
+
+def has_points(tracing, count):
+    return lambda: tracing.shown is not None and len(tracing.shown) == count
+
+
+def test_points_lie_where_the_landmarks_put_them_and_the_skin_is_colored(tracing):
+    tracing.draw(40)
+    tracing.run_until(has_points(tracing, 40))
+    np.testing.assert_allclose(tracing.shown, tracing.places, atol=1e-3)
+    display = tracing.head.GetDisplayNode()
+    assert display.GetActiveScalarName() == DISTANCE_SCALARS
+    assert display.GetScalarRange() == (0.0, 20.0)
+    data = tracing.head.GetPolyData()
+    vertices = vtk_to_numpy(data.GetPoints().GetData())
+    away = vtk_to_numpy(data.GetPointData().GetArray(DISTANCE_SCALARS))
+    expected = np.linalg.norm(vertices[:, None] - tracing.places, axis=2).min(axis=1)
+    np.testing.assert_allclose(away, np.minimum(expected, 20.0), atol=1e-3)
+
+
+def test_the_place_to_draw_next_is_marked_away_from_the_trace(tracing):
+    tracing.draw(40)
+    tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
+    place = np.array(tracing.node(Role.NEXT_PLACE).GetNthControlPointPosition(0))
+    assert np.linalg.norm(tracing.places - place, axis=1).min() > 10.0
+    assert np.linalg.norm(place) == pytest.approx(90.0, abs=0.5)
+
+
+def test_a_trainee_without_guidance_is_shown_the_points_alone(tracing):
+    tracing.draw(40, is_guided=False)
+    tracing.run_until(has_points(tracing, 40))
+    assert tracing.node(Role.NEXT_PLACE) is None
+    assert not tracing.head.GetDisplayNode().GetScalarVisibility()
+
+
+def test_the_trace_is_asked_for_once_a_second_and_only_as_it_grows(tracing):
+    tracing.draw(5)
+    tracing.run_until(has_points(tracing, 5))
+    tracing.now -= 0.5
+    tracing.draw(9)
+    states = []
+    tracing.link.stateChanged.connect(states.append)
+    tracing.tell(method="surface", nextPoint=None, trace={"kept": 9, "strokes": 1})
+    tracing.run_until(lambda: states)
+    assert len(tracing.sent("GetTrial")) == 1
+    tracing.now += 0.5
+    tracing.run_until(has_points(tracing, 9))
+    assert tracing.sent("GetTrial") == 2 * [{"trialId": TRIAL}]
+
+
+def test_an_undone_stroke_goes_from_the_scene(tracing):
+    tracing.draw(40)
+    tracing.run_until(has_points(tracing, 40))
+    tracing.draw(10)
+    tracing.run_until(has_points(tracing, 10))
+
+
+def test_all_of_it_goes_when_the_trial_ends(tracing):
+    opacity = 1.0
+    tracing.draw(40)
+    tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
+    tracing.tell(phase="registered", method="surface", trace={"kept": 40, "strokes": 1})
+    tracing.run_until(lambda: tracing.shown is None)
+    assert tracing.node(Role.TRACED_POINTS, MODEL) is None
+    assert tracing.node(Role.NEXT_PLACE) is None
+    assert not tracing.head.GetDisplayNode().GetScalarVisibility()
+    assert tracing.head.GetDisplayNode().GetOpacity() == opacity
+    assert tracing.head.GetPolyData().GetPointData().GetArray(DISTANCE_SCALARS) is None
+
+
+def test_what_the_simulator_says_wrongly_shows_nothing_and_breaks_nothing(tracing):
+    tracing.draw(40, trace={"kept": "many", "strokes": None, "on": 3})
+    tracing.places = np.full((600, 3), np.nan)
+    tracing.run_until(lambda: tracing.sent("GetTrial") and not tracing.work.isBusy)
+    assert tracing.shown is None
+    tracing.draw(12)
+    tracing.run_until(has_points(tracing, 12))
+
+
+def test_it_is_kept_in_a_saved_scene(headless_scene, marked, tmp_path):
+    tracing = Tracing(headless_scene.scene, marked)
+    tracing.draw(40)
+    tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
+    places = tracing.shown.copy()
+    tracing.close()
+    headless_scene.save(tmp_path / "trace.mrb")
+    headless_scene.load(tmp_path / "trace.mrb")
+    tracing.scene = headless_scene.scene
+    np.testing.assert_allclose(tracing.shown, places, atol=1e-3)
+    assert tracing.node(Role.NEXT_PLACE).GetNumberOfControlPoints() == 1
+    data = tracing.head.GetPolyData().GetPointData()
+    assert data.GetArray(DISTANCE_SCALARS) is not None
