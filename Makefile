@@ -66,6 +66,7 @@ lock: .venv/installed
 	$(COMPILE) --extra test --constraints requirements.lock -o requirements-test.lock
 	$(COMPILE) --extra bench --constraints requirements-test.lock -o requirements-bench.lock
 	$(COMPILE) --extra soak --constraints requirements-test.lock -o requirements-soak.lock
+	$(subst pyproject.toml,requirements-ralph.in,$(COMPILE)) -o requirements-ralph.lock
 	$(COMPILE) --extra supply --constraints requirements.lock -o requirements-supply.lock
 	$(COMPILE) --extra docs --constraints requirements-test.lock -o requirements-docs.lock
 	$(COMPILE) --constraints requirements.lock --excludes tools/simulator-leaves-out.txt -o $(SIMULATOR)/requirements.lock
@@ -97,8 +98,11 @@ $(VENV_PYTHON):
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-bench.lock
 	touch $@
 
-.venv/soak-installed: .venv/test-installed requirements-soak.lock
+# A peer has an environment of its own: it wants other versions of the same packages.
+.venv/soak-installed: .venv/test-installed requirements-soak.lock requirements-ralph.lock
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-soak.lock
+	$(BIN)/python -m venv .venv/ralph
+	.venv/ralph/bin/python -m pip install -q --require-hashes -r requirements-ralph.lock
 	touch $@
 
 .venv/supply-installed: .venv/installed requirements-supply.lock

@@ -18,6 +18,7 @@ SUBCOMMANDS = {
     "pass-mark": "rastrainer_simulator.cli.pass_mark",
     "report": "rastrainer_simulator.cli.report",
     "export": "rastrainer_simulator.cli.export",
+    "send-statements": "rastrainer_simulator.cli.send_statements",
     "delete-trainee": "rastrainer_simulator.cli.delete",
     "scenario": "rastrainer_simulator.cli.scenario",
     "simulator": "rastrainer_simulator.cli.simulator",

@@ -1,0 +1,156 @@
+"""A learning record store that takes xAPI statements over HTTP (IEEE 9274.1.1, xAPI 1.0.3)."""
+
+from __future__ import annotations
+
+import base64
+import http.client
+import ipaddress
+import json
+import ssl
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+from urllib.parse import urlsplit
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import printable_name
+
+XAPI_VERSION = "1.0.3"
+TIMEOUT_S = 20.0
+MAX_ANSWER_BYTES = 1_000_000
+MAX_REASON = 200
+BATCH = 50
+"""Statements in one request: small enough for every store's limit."""
+_STORED, _KNOWN, _DIFFERS = 200, 204, 409
+_BUSY = (408, 429)
+_CLOSED = (401, 403)
+
+
+class StoreAwayError(InputError):
+    """The store does not answer, or asks for patience: the same statements may be sent later."""
+
+
+@dataclass
+class Delivery:
+    """What became of statements, by their UUIDs.
+
+    Attributes:
+        stored: that the store has, from now or from earlier.
+        differing: of which the store has another version, which it keeps.
+        refused: with the store's reason.
+    """
+
+    stored: list[str] = field(default_factory=list)
+    differing: list[str] = field(default_factory=list)
+    refused: dict[str, str] = field(default_factory=dict)
+
+
+class RecordStore:
+    """One store; each request is a connection of its own, and no redirection is followed."""
+
+    def __init__(self, url: str, credentials: str) -> None:
+        """Check the address.
+
+        Args:
+            url: of the xAPI endpoint, such as "https://lrs.example.org/xAPI"; only this computer
+                may be addressed without TLS.
+            credentials: name and password as "name:password".
+
+        Raises:
+            InputError: the address or the credentials cannot be used.
+        """
+        parts = urlsplit(url)
+        try:
+            self._host, self._port = parts.hostname or "", parts.port
+        except ValueError:
+            raise InputError(f"The port in {printable_name(url)} is no number.") from None
+        self._is_safe = parts.scheme == "https"
+        if parts.scheme not in ("https", "http") or not self._host or parts.query or parts.username:
+            raise InputError(
+                f"{printable_name(url)} is no address of a record store; give one such as "
+                "https://lrs.example.org/xAPI, without a name or password in it."
+            )
+        if not self._is_safe and not _is_this_computer(self._host):
+            raise InputError(
+                "Pseudonyms and the password would be sent in the clear: "
+                f"the address must begin with https://, not {printable_name(url)}."
+            )
+        name, colon, password = credentials.partition(":")
+        if not (name and colon and password) or not credentials.isprintable():
+            raise InputError("The credentials must be name:password.")
+        self._path = f"{parts.path.rstrip('/')}/statements"
+        token = base64.b64encode(credentials.encode()).decode()
+        self._headers = {
+            "Authorization": f"Basic {token}",
+            "Content-Type": "application/json",
+            "X-Experience-API-Version": XAPI_VERSION,
+        }
+
+    def deliver(self, statements: Sequence[dict[str, Any]]) -> Delivery:
+        """Send up to `BATCH` statements; one that is refused does not hold up the others.
+
+        Raises:
+            StoreAwayError: the store is not reached; it may have taken some of them.
+            InputError: it refuses the credentials, or is no record store.
+        """
+        delivery = Delivery()
+        self._deliver(statements, delivery)
+        return delivery
+
+    def _deliver(self, statements: Sequence[dict[str, Any]], delivery: Delivery) -> None:
+        status, answer = self._post(statements)
+        ids = [statement["id"] for statement in statements]
+        if status in (_STORED, _KNOWN):
+            delivery.stored += ids
+        elif len(statements) > 1:
+            # A store takes all statements of a request or none: find the one that it refuses.
+            half = len(statements) // 2
+            self._deliver(statements[:half], delivery)
+            self._deliver(statements[half:], delivery)
+        elif status == _DIFFERS:
+            delivery.differing += ids
+        else:
+            delivery.refused[ids[0]] = f"status {status}, {printable_name(answer[:MAX_REASON])}"
+
+    def _post(self, statements: Sequence[dict[str, Any]]) -> tuple[int, str]:
+        connection = self._connection()
+        try:
+            body = json.dumps(list(statements), allow_nan=False).encode()
+            connection.request("POST", self._path, body, self._headers)
+            response = connection.getresponse()
+            answer = response.read(MAX_ANSWER_BYTES).decode("utf-8", "replace")
+        except ssl.SSLCertVerificationError as error:
+            raise InputError(
+                f"The record store cannot be trusted: {error.verify_message}."
+            ) from None
+        except (OSError, http.client.HTTPException) as error:
+            reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+            raise StoreAwayError(f"The record store does not answer: {reason}.") from None
+        finally:
+            connection.close()
+        if response.status in _CLOSED:
+            raise InputError(
+                f"The record store does not accept the credentials (status {response.status})."
+            )
+        if response.status in _BUSY or response.status >= 500:
+            raise StoreAwayError(f"The record store is busy (status {response.status}).")
+        if response.status == 404 or 300 <= response.status < 400:
+            raise InputError(
+                f"There is no record store at this address (status {response.status}); "
+                "give that of its xAPI endpoint, such as https://lrs.example.org/xAPI."
+            )
+        return response.status, answer
+
+    def _connection(self) -> http.client.HTTPConnection:
+        if self._is_safe:
+            return http.client.HTTPSConnection(self._host, self._port, timeout=TIMEOUT_S)
+        return http.client.HTTPConnection(self._host, self._port, timeout=TIMEOUT_S)
+
+
+def _is_this_computer(host: str) -> bool:
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,174 @@
+"""Statements reach a learning record store: each once, none lost while it is away."""
+
+import json
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.export.record_store import BATCH, RecordStore
+from rastrainer.export.xapi import statements
+from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.cli.send_statements import Sender, SentStatements
+from Testing.domain.study.played_study import study_with_trials
+from Testing.simulator.cli.record_store_double import CREDENTIALS, RecordStoreDouble
+
+HOME = "https://lab.example.org"
+COUNT = 2 * BATCH + 7
+
+
+def statement(number, score=80.0):
+    return {
+        "id": f"00000000-0000-4000-8000-{number:012d}",
+        "actor": {"account": {"homePage": HOME, "name": f"T{number:03d}"}},
+        "result": {"score": {"raw": score}},
+    }
+
+
+STATEMENTS = [statement(number) for number in range(COUNT)]
+
+
+@pytest.fixture
+def store():
+    with RecordStoreDouble() as store:
+        yield store
+
+
+@pytest.fixture
+def sender(store, tmp_path):
+    return sender_of(store, tmp_path, STATEMENTS)
+
+
+def sender_of(store, folder, found, pause=None):
+    client = RecordStore(store.url, CREDENTIALS)
+    return Sender(
+        lambda: found, client, SentStatements(folder / "study.db", store.url, HOME), pause
+    )
+
+
+class EndedError(Exception):
+    pass
+
+
+def test_each_statement_is_sent_once_and_a_new_one_later(store, sender, tmp_path):
+    assert sender.send() == 0
+    assert len(store.statements) == COUNT
+    assert store.requests == [BATCH, BATCH, 7]
+    sender.send()
+    assert len(store.requests) == 3
+    sender_of(store, tmp_path, [*STATEMENTS, statement(COUNT)]).send()
+    assert store.requests[3:] == [1]
+    assert len(store.statements) == COUNT + 1
+
+
+def test_nothing_is_lost_or_doubled_while_the_store_is_away(store, tmp_path, capsys):
+    store.planned = [503, 429, 500]
+    store.crashes = 2
+    pauses = []
+
+    def pause(seconds):
+        pauses.append(seconds)
+        if len(store.statements) == COUNT and not store.crashes and seconds == 60.0:
+            raise EndedError
+
+    with pytest.raises(EndedError):
+        sender_of(store, tmp_path, STATEMENTS, pause).watch(60.0)
+    assert list(store.statements.values()) == STATEMENTS
+    assert pauses == [2.0, 4.0, 8.0, 16.0, 32.0, 60.0]
+    assert capsys.readouterr().out.count("Nothing is lost") == 5
+
+
+def test_a_store_that_nobody_runs_is_named_and_everything_is_sent_later(tmp_path):
+    with RecordStoreDouble() as gone:
+        port = gone.server_address[1]
+    client = RecordStore(gone.url, CREDENTIALS)
+    sender = Sender(lambda: STATEMENTS, client, SentStatements(tmp_path / "s.db", gone.url, HOME))
+    with pytest.raises(InputError, match="does not answer: Connection refused"):
+        sender.send()
+    with RecordStoreDouble(port) as back:
+        sender.send()
+        assert len(back.statements) == COUNT
+
+
+def test_a_statement_that_the_store_has_otherwise_or_refuses_holds_up_no_other(
+    store, sender, capsys
+):
+    store.statements[STATEMENTS[3]["id"]] = statement(3, score=10.0)
+    store.refused = {STATEMENTS[60]["id"]}
+    assert sender.send() == 1
+    assert len(store.statements) == COUNT - 1
+    assert store.statements[STATEMENTS[3]["id"]]["result"]["score"]["raw"] == 10.0
+    said = capsys.readouterr().out
+    assert f"{STATEMENTS[3]['id']}: the store has another version" in said
+    assert f"{STATEMENTS[60]['id']}: refused by the store (status 400" in said
+    requests = len(store.requests)
+    sender.send()
+    assert len(store.requests) == requests
+
+
+def test_a_crash_before_the_note_sends_again_what_the_store_recognizes(store, sender, tmp_path):
+    sender.send()
+    (tmp_path / "study.db.xapi-sent.json").unlink()
+    sender_of(store, tmp_path, STATEMENTS).send()
+    assert list(store.statements.values()) == STATEMENTS
+
+
+@pytest.mark.parametrize(("status", "words"), [(401, "credentials"), (302, "no record store")])
+def test_wrong_credentials_and_redirections_end_it_with_a_sentence(store, sender, status, words):
+    store.planned = [status]
+    with pytest.raises(InputError, match=words):
+        sender.send()
+    assert store.statements == {}
+
+
+@pytest.mark.parametrize(
+    ("url", "words"),
+    [
+        ("http://lrs.example.org/xAPI", "in the clear"),
+        ("ftp://lrs.example.org", "no address of a record store"),
+        ("https://lab:secret@lrs.example.org/xAPI", "no address of a record store"),
+        ("https://lrs.example.org:x/xAPI", "no number"),
+        ("lrs.example.org", "no address of a record store"),
+    ],
+)
+def test_an_address_that_would_reveal_something_is_refused(url, words):
+    with pytest.raises(InputError, match=words):
+        RecordStore(url, CREDENTIALS)
+
+
+@pytest.mark.parametrize("credentials", ["", "lab", ":secret", "lab:", "lab:se\ncret"])
+def test_credentials_are_name_and_password(credentials):
+    with pytest.raises(InputError, match="name:password"):
+        RecordStore("https://lrs.example.org/xAPI", credentials)
+
+
+def test_the_command_sends_a_study_and_says_what_is_missing(store, tmp_path, capsys):
+    stored_study = tmp_path / "study.db"
+    study_with_trials(stored_study)
+    expected = {each["id"] for each in statements(read_study_data(stored_study), HOME)}
+    secret = tmp_path / "credentials"
+    secret.write_text(CREDENTIALS + "\n")
+    secret.chmod(0o644)
+    words = ["send-statements", str(stored_study), "--store", store.url]
+    given = [*words, "--home-page", HOME, "--credentials", str(secret)]
+    assert main(given) == 2
+    assert "Others can read" in capsys.readouterr().err
+    secret.chmod(0o600)
+    assert main(given) == 0
+    assert set(store.statements) == expected
+    sent = json.loads((stored_study.parent / f"{stored_study.name}.xapi-sent.json").read_text())
+    assert sorted(*sent.values()) == sorted(store.statements)
+    assert main([*words, "--home-page", "https://rastrainer.invalid"]) == 2
+    assert "no address of a lab's system" in capsys.readouterr().err
+    assert main([*words, "--home-page", HOME]) == 2
+    assert "RASTRAINER_XAPI_CREDENTIALS" in capsys.readouterr().err
+    store.planned = [503]
+    (stored_study.parent / f"{stored_study.name}.xapi-sent.json").unlink()
+    assert main(given) == 1
+    assert "run the command again" in capsys.readouterr().err
+
+
+def test_a_note_of_what_was_sent_that_is_damaged_is_named(tmp_path):
+    (tmp_path / "study.db.xapi-sent.json").write_text('{"x": [1]}')
+    with pytest.raises(InputError, match="does not hold lists of UUIDs"):
+        SentStatements(tmp_path / "study.db", "https://lrs.example.org/xAPI", HOME)
