@@ -14,10 +14,10 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.export.record_store import RecordStore, StoreAwayError
 from rastrainer.export.xapi import statements
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
+from rastrainer_simulator.net.record_store import RecordStore, StoreAwayError
 
 # Ralph has an environment of its own, which `make soak` makes.
 pytestmark = pytest.mark.soak

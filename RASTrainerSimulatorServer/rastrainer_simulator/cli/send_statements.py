@@ -12,12 +12,12 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
-from rastrainer.export.record_store import BATCH, Delivery, RecordStore, StoreAwayError
 from rastrainer.export.xapi import statements
 from rastrainer.files.reading import printable_name, read_json, read_text
 from rastrainer.files.writing import write_json
 from rastrainer.number_text import counted
 from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.net.record_store import BATCH, Delivery, RecordStore, StoreAwayError
 
 CREDENTIALS_VARIABLE = "RASTRAINER_XAPI_CREDENTIALS"
 FIRST_RETRY_S, LAST_RETRY_S = 2.0, 300.0

@@ -5,11 +5,11 @@ import json
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.export.record_store import BATCH, RecordStore
 from rastrainer.export.xapi import statements
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
+from rastrainer_simulator.net.record_store import BATCH, RecordStore
 from Testing.domain.study.played_study import study_with_trials
 from Testing.simulator.cli.record_store_double import CREDENTIALS, RecordStoreDouble
 
