@@ -89,6 +89,7 @@ def test_cancel_ends_the_process_of_the_head_too(ct, temporary, monkeypatch):
     assert not list(temporary.iterdir())
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends a process without asking it")
 def test_a_build_that_is_terminated_leaves_nothing(ct, tmp_path, temporary):
     words = ["scenario", "build", str(ct), "-o", str(tmp_path / "made")]

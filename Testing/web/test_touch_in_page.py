@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
+from Testing.simulator.flow.conftest import put_back
+from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import open_page
 
 RED = 0xFF0D0D
@@ -26,15 +29,19 @@ DRAW = """
 """
 
 
-@pytest.fixture
-def draw(browser, served):
+@pytest.fixture(scope="module")
+def draw(browser, shared, loop_thread, tmp_path_factory):
     """Return a function that draws a state with some changes and returns what is seen of it."""
-    page = open_page(browser, served.url, served.code, draws=False)
-    served.tell(Screen(status=("Task 1",)))
-    page.wait_for_selector("#status:has-text('Task 1')")
-    yield lambda **changes: page.evaluate(DRAW, changes)
-    assert page.problems == []
-    page.context.close()
+    put_back(shared)
+    with ControlLoop(shared, tmp_path_factory.mktemp("records")) as loop:
+        served = ServedViews(loop_thread, loop)
+        page = open_page(browser, served.url, served.code, draws=False)
+        served.tell(Screen(status=("Task 1",)))
+        page.wait_for_selector("#status:has-text('Task 1')")
+        yield lambda **changes: page.evaluate(DRAW, changes)
+        assert page.problems == []
+        page.context.close()
+        served.close()
 
 
 def test_tip_ring_and_frame_are_red_only_where_a_touch_goes_wrong(draw):
