@@ -56,6 +56,7 @@ class WatchingView:
     Attributes:
         state, screen, scene: the latest.
         holder: who has control, by the latest message.
+        trace: the latest news of a trace.
         pairing: code and addresses by which others are paired; None before.
         events: all, in order.
     """
@@ -63,6 +64,7 @@ class WatchingView:
     def __init__(self, client: ViewClient):
         self.state: dict | None = None
         self.scene: dict | None = None
+        self.trace: dict = {"next": None}
         self.screen = Screen()
         self.holder = ""
         self.pairing: tuple[str, str] | None = None
@@ -94,6 +96,8 @@ class WatchingView:
                     self.pairing = message["code"], ", ".join(message["addresses"])
                 elif message["type"] == "event":
                     self.events.append(message)
+                elif message["type"] == "trace":
+                    self.trace = message
                 elif message["type"] in ("state", "scene"):
                     setattr(self, message["type"], message)
                     with self._has_state:

@@ -140,7 +140,9 @@ class Overlay:
         width, height = self._slots["status"].sprite.size
         if self._paint("legend", screen.coverage, strips.legend, brush, aside):
             self._place("legend", margin, margin + height + brush.px(theme.STEP))
-            height += self._slots["legend"].sprite.size[1] + brush.px(theme.STEP)
+            wide, high = self._slots["legend"].sprite.size
+            if wide > aside + margin:
+                width, height = wide, height + high + brush.px(theme.STEP)
         if screen.status and width > aside + margin:
             # Wider than the room beside the messages: they come below it.
             top += height + brush.px(1.5 * theme.STEP)

@@ -57,7 +57,7 @@ def test_guidance_paints_what_is_covered_and_shows_where_to_draw_next(trainee, c
     trainee.until(lambda: trainee.presenter.screen.coverage, "the legend")
     assert trainee.presenter.screen.coverage == "Within 10 mm of traced points"
     assert trainee.presenter.screen.has_arrow
-    trainee.until(lambda: ("Next place: " in facts(trainee)) is (choice == "words"), "the words")
+    trainee.until(lambda: ("Next: " in facts(trainee)) is (choice == "words"), "the words")
 
 
 def test_after_a_stroke_elsewhere_another_place_is_next(trainee):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import nearest_vertices
+from rastrainer.head.surface_queries import POINTS_AT_ONCE, nearest_vertices
 from rastrainer.protocol import MAX_TRACE_POINTS
 from rastrainer.registration.surface_error import DAB, NextPlace, knowledge_so_far, next_best_place
 
@@ -73,9 +73,16 @@ def nearest_traced_mm(
     `known_mm` has the distances to the points before these, (v,) float; infinite without any.
     """
     found = np.full(len(vertices), np.inf) if known_mm is None else known_mm
-    for place in places:
-        away = vertices - place
-        found = np.minimum(found, np.sqrt(np.einsum("ij,ij->i", away, away)))
+    # From a middle, so that little is lost where squares are subtracted.
+    middle = vertices.mean(axis=0)
+    from_middle, places = vertices - middle, places - middle
+    squares = np.einsum("ij,ij->i", from_middle, from_middle)
+    for start in range(0, len(places), POINTS_AT_ONCE):
+        some = places[start : start + POINTS_AT_ONCE]
+        # |v − p|² = |v|² + (|p|² − 2 v·p): one product of matrices for all.
+        rest = np.einsum("ij,ij->i", some, some) - 2.0 * from_middle @ some.T
+        away = np.sqrt(np.maximum(squares + rest.min(axis=1), 0.0))
+        found = np.minimum(found, away)
     return found
 
 

@@ -77,9 +77,10 @@ class TracePlaces:
     def guidance(self, state: SimulationState) -> TraceGuidance:
         """Return how a trainee is guided in a state."""
         training = state.training
-        if self._trial is None or training.trial_id != self._trial[0] or training.trace is None:
+        is_traced = training.trace is not None and training.next_point is None
+        if self._trial is None or training.trial_id != self._trial[0] or not is_traced:
             return TraceGuidance()
-        return TraceGuidance(COVERED_MM, self._place if training.next_point is None else None)
+        return TraceGuidance(COVERED_MM, self._place)
 
     def in_world(self) -> Vector | None:
         """Return the next place in World, m; None where there is none."""

@@ -721,7 +721,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "panel.deg": "{value:.1f}°",
         "status.left": "{time} left",
         "status.point": "Point {point}",
-        "status.next place": "Next place",
+        "status.next place": "Next",
         "status.near": "{name}: less than {distance} mm away",
         "status.toward": "{name}: {distance} mm {direction}",
         "way.left": "left",

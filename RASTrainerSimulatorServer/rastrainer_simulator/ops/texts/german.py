@@ -842,7 +842,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "panel.deg": "{value:.1f}°",
         "status.left": "noch {time}",
         "status.point": "Punkt {point}",
-        "status.next place": "Nächste Stelle",
+        "status.next place": "Weiter",
         "status.near": "{name}: weniger als {distance} mm entfernt",
         "status.toward": "{name}: {distance} mm {direction}",
         "way.left": "links",

@@ -80,7 +80,7 @@ def _showNext(scene: Any, place: np.ndarray | None) -> None:
         removeNode(scene, MARKUPS, Role.NEXT_PLACE)
         return
     node = findOrAddNode(scene, MARKUPS, Role.NEXT_PLACE, _("Draw here next"))
-    setPoints(node, (_("Draw here next"),), place[None])
+    setPoints(node, (_("Next"),), place[None])
     node.SetLocked(True)
     display = node.GetDisplayNode()
     display.SetSelectedColor(NEXT_COLOR)

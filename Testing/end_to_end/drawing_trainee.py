@@ -1,0 +1,122 @@
+"""A trainee who touches landmarks, and draws over the skin where the ring leads, by any hands."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from rastrainer.transforms import MM_PER_M
+from Testing.end_to_end.stream_trainee import LEAST_FINE_PUSH, LIFT_M, SINK_M, StreamTrainee
+from Testing.simulator.landmarked import LANDMARKS
+
+CENTER_M = np.array([0.001, -0.012, 0.016])
+"""Of the head, RAS."""
+COARSE = LANDMARKS[:3]
+SEEN_OFF_MM = 0.3
+"""So far above the skin, the tip is seen to have left it."""
+TURN_BACK_M = 0.006
+STROKE_POINTS = 12
+TRACING = "to parts that face different ways"
+"""What is read while a stroke is on."""
+
+
+class DrawingTrainee(StreamTrainee):
+    """Knows the landmarks of the head by sight, and of the trace what all views are told."""
+
+    @property
+    def touched(self) -> int:
+        """How many landmarks are touched, as the screen says."""
+        said = " ".join(self.view.screen.status)
+        found = re.search(r"(\d+) of 3 points", said)
+        if found is None:
+            return len(COARSE) if "points traced" in said else 0
+        return int(found[1])
+
+    @property
+    def traced(self) -> int:
+        """How many points are traced, as the screen says."""
+        found = re.search(r"(\d+) of 30–500 points", " ".join(self.view.screen.status))
+        return int(found[1]) if found else 0
+
+    @property
+    def is_drawing(self) -> bool:
+        """Whether a stroke is on, as the screen says."""
+        return TRACING in self.view.screen.instruction.text
+
+    def place_of(self, label: str) -> np.ndarray:
+        """Return where a landmark is, (3,) float, World, m."""
+        (place,) = [each.position for each in LANDMARKS if each.name == label]
+        return self._in_world(place / MM_PER_M)
+
+    @property
+    def head_center(self) -> np.ndarray:
+        """(3,) float, World, m."""
+        return self._in_world(CENTER_M)
+
+    def touch_landmarks(self) -> None:
+        """Touch the landmarks that begin a registration by surface."""
+        for landmark in COARSE:
+            self.until(
+                lambda name=landmark.name: name in self.view.screen.instruction.text, landmark.name
+            )
+            self.approach(landmark.name, 0.02)
+            self.press_on(landmark.name)
+
+    def draw_until(self, count: int) -> list[dict]:
+        """Draw strokes where the ring is until so many points are traced; return the rings."""
+        rings = []
+        while self.traced < count:
+            self.until(lambda: self.view.trace["next"] is not None, "a ring")
+            rings.append(self.view.trace["next"])
+            self._draw_at(rings[-1])
+        return rings
+
+    def _draw_at(self, ring: dict) -> None:
+        head = self.view.pose("head")[:3, :3]
+        place = self._in_world(np.array(ring["positionMm"]) / MM_PER_M)
+        outward = head @ np.array(ring["normal"])
+        self._go_above(place)
+        self.steer_to(place + LIFT_M * outward, 0.008)
+        self.steer_to(place + 0.006 * outward, 0.004)
+        self.sink_onto_skin(place - SINK_M * outward)
+        self.hands.push(0.0, 0.0, 0.0, False)
+        self.until_still()
+        self.press("touch", lambda: self.is_drawing, "a stroke")
+        self._draw_about(place, outward)
+        self.hands.push(0.0, 0.0, 0.0, False)
+        self.press("touch", lambda: not self.is_drawing, "the end of a stroke")
+        self.steer_to(place + LIFT_M * outward, 0.01)
+
+    def _go_above(self, place: np.ndarray) -> None:
+        """Carry the tip over the head to a place, on a way that stays off the skin."""
+        center = self.head_center
+        start, end = self.tip - center, place - center
+        height = LIFT_M + max(np.linalg.norm(start), np.linalg.norm(end))
+        for share in np.linspace(0.0, 1.0, 6):
+            between = (1.0 - share) * start / np.linalg.norm(start) + share * end / np.linalg.norm(
+                end
+            )
+            self.steer_to(center + height * between / np.linalg.norm(between), 0.02)
+
+    def _draw_about(self, place: np.ndarray, outward: np.ndarray) -> None:
+        """Draw to and fro across a place, on the skin by what is seen of the height."""
+        along = np.cross(outward, (0.0, 0.0, 1.0))
+        along /= np.linalg.norm(along)
+        wanted, give_up = self.traced + STROKE_POINTS, self.view.state["time"] + 30.0
+        while self.traced < wanted and self.view.state["time"] < give_up:
+            away = self.tip - place
+            if np.linalg.norm(away) > TURN_BACK_M and away @ along > 0.0:
+                along = -along
+            heading = along.copy()
+            if self.view.state["touch"] == "too deep":
+                heading = heading + 0.5 * outward
+            elif self.view.state["clearanceMm"] > SEEN_OFF_MM:
+                heading = heading - outward
+            pushed = LEAST_FINE_PUSH * (self._stick_axes() @ heading) / np.linalg.norm(heading)
+            self.hands.push(*pushed.tolist(), True)
+            self.view.next_state()
+
+    def _in_world(self, place: np.ndarray) -> np.ndarray:
+        head = self.view.pose("head")
+        return head[:3, :3] @ place + head[:3, 3]

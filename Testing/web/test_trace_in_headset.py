@@ -1,0 +1,96 @@
+"""A registration by surface from the landmarks to the result by the controllers of a headset alone.
+
+The trainee draws where the ring is. The simulator registers the trace and scores it itself.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.protocol import MIN_TRACE_POINTS, PROTOCOL_VERSION
+from Testing.end_to_end.drawing_trainee import DrawingTrainee
+from Testing.simulator.landmarked import write_landmarked
+from Testing.web.chromium import enter_headset, open_page
+from Testing.web.hands import Controllers
+from Testing.web.place import WITHOUT_GRAPHICS, Place, Trainee
+from Testing.web.test_whole_flow import SLOW, XR
+
+# A headset is drawn twice, by a machine without a graphics processor: many minutes.
+pytestmark = pytest.mark.soak
+
+POINTS = 70
+DRAWN = """() => {
+  const { marks, ring } = page.trace;
+  return [marks.count, ring.visible, page.stage.model.skin.vertexColors];
+}"""
+
+
+class HeadsetDrawer(DrawingTrainee, Trainee):
+    """Draws by what the headset shows, and waits for rare pictures as a trainee does."""
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory, browser) -> dict:
+    """Touch the landmarks, draw, and register; return what came of it."""
+    folder = tmp_path_factory.mktemp("drawn")
+    scenario = write_landmarked(folder / "scenario")
+    options = ("--scenario", str(scenario), "--speed", SLOW)
+    with Place(folder, *options, limits=WITHOUT_GRAPHICS, guidance="arrow") as place:
+        # No picture is looked at: the boards are drawn, and an empty scene.
+        url, code = place.simulator.url, place.simulator.code
+        page = open_page(browser, url, code, "metaQuest2", draws=False)
+        enter_headset(page)
+        drawer = HeadsetDrawer(place.view, Controllers(page))
+        start(place)
+        drawer.until(lambda: drawer.menu is None, "the trial")
+        drawer.touch_landmarks()
+        seen = {"rings": drawer.draw_until(POINTS), "shown": page.evaluate(DRAWN)}
+        drawer.press("menu", lambda: drawer.menu is not None, "the menu")
+        drawer.until_menu("trial")
+        drawer.choose("register")
+        drawer.until_menu("result")
+        seen["operators"] = {entry["operator"] for entry in place.entries("input")} - {""}
+        seen["traced"] = place.entries("trace")
+        (registered,), (scored,) = place.entries("registration"), place.entries("scored")
+        seen["registered"], seen["scored"] = registered["arguments"], scored["arguments"]
+        seen["guided"] = [entry["guidance"] for entry in place.entries("guidance")]
+        seen["problems"] = page.problems
+    return seen
+
+
+def start(place: Place) -> None:
+    """Have a trial by surface begun, as Slicer does, which then leaves."""
+    with Client(port=place.simulator.port) as client:
+        hello = {"protocolVersion": PROTOCOL_VERSION, "client": "starter"}
+        assert client.send_command("Hello", hello, timeout=20).ok
+        begin = {"task": "task-1", "trainee": "P7", "method": "surface", "mode": "hmd"}
+        reply = client.send_command("StartTask", begin, timeout=20)
+        assert reply.ok, reply.error
+
+
+def test_the_trace_is_drawn_by_the_controllers_alone(drawn):
+    assert drawn["operators"] == {XR}
+    assert len(drawn["traced"]) >= POINTS > MIN_TRACE_POINTS
+    assert drawn["problems"] == []
+
+
+def test_the_headset_shows_the_points_the_paint_and_the_ring(drawn):
+    count, has_ring, is_painted = drawn["shown"]
+    assert 0 < count <= len(drawn["traced"])
+    assert has_ring
+    assert is_painted
+    assert drawn["guided"] == ["arrow"]
+
+
+def test_each_ring_leads_to_another_place(drawn):
+    places = np.array([ring["positionMm"] for ring in drawn["rings"]])
+    assert len(places) >= POINTS // 20
+    assert np.linalg.norm(np.diff(places, axis=0), axis=1).min() > 10.0
+
+
+def test_the_simulator_registers_the_trace_and_scores_it(drawn):
+    assert drawn["registered"]["freMm"] < 1.0
+    assert drawn["scored"]["details"]["scoreVersion"] == "3-surface"
+    assert drawn["registered"]["expectedTreMm"] < 3.0
