@@ -20,7 +20,7 @@ from rastrainer_simulator.desktop.connection import ServerConnection
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox
 from rastrainer_simulator.desktop.keyboard import OperatorKeys, without_late_repeats
-from rastrainer_simulator.desktop.mouse_sticks import LEFT_BUTTON, MouseSticks
+from rastrainer_simulator.desktop.mouse import LEFT_BUTTON, MouseSticks, ViewMouse
 from rastrainer_simulator.desktop.performance import (
     SLOWEST_FRAME_S,
     SOFTWARE_SIZE,
@@ -36,7 +36,6 @@ from rastrainer_simulator.desktop.screenshot import (
     write_picture,
 )
 from rastrainer_simulator.desktop.sounds import Sounds
-from rastrainer_simulator.desktop.view_mouse import ViewMouse
 from rastrainer_simulator.net.views.messages import FRAMES, ITEM
 
 POLL_S = 0.004

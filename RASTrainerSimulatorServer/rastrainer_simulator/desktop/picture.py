@@ -17,7 +17,7 @@ from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.error_arrows import ErrorArrows
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
-from rastrainer_simulator.desktop.mouse_sticks import Push
+from rastrainer_simulator.desktop.mouse import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.bulls_eye import bulls_eye
 from rastrainer_simulator.desktop.panels.depth_gauge import depth_gauge
