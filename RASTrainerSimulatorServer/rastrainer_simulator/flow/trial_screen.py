@@ -28,6 +28,7 @@ from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, TouchStage
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, distance
+from rastrainer_simulator.viewpoint.orbit import orbit_to
 
 TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""
@@ -116,7 +117,7 @@ class TrialScreen(ArmScreen):
         if control is ControlName.CAMERA:
             self._change_camera()
         elif control is ControlName.BEST_VIEW:
-            session.view.want_best()
+            self._want_best_view()
         elif control is ControlName.UNDO:
             session.do(CommandName.UNDO)
         elif control is ControlName.TOUCH and session.training.is_tracing:
@@ -129,6 +130,17 @@ class TrialScreen(ArmScreen):
         elif control in (ControlName.MENU, ControlName.PAUSE):
             self._has_requested_menu = True
             self.open_menu()
+
+    def _want_best_view(self) -> None:
+        """Look at the next point, or where the skin is traced at the place to draw next."""
+        session = self._session
+        if not session.training.is_tracing:
+            session.view.want_best()
+            return
+        camera = session.scenario.cameras[session.state.camera]
+        eye, place = session.places.eye(camera), session.places.in_world()
+        if eye is not None and place is not None:
+            session.view.control.go(orbit_to(camera, eye, place))
 
     def take_menu_request(self) -> bool:
         """Return whether the trainee has requested the menu since this was last asked."""

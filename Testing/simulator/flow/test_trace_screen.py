@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase
@@ -72,6 +73,25 @@ def test_after_a_stroke_elsewhere_another_place_is_next(trainee):
     trainee.hands.push(0.0, 0.0, 0.0, fine=False)
     trainee.tap("touch")
     trainee.until(lambda: guidance(trainee).next_place != first, "another place")
+
+
+def test_the_best_view_is_that_of_the_place_to_draw_next(trainee):
+    prefer(trainee, "arrow")
+    landmarks_touched(trainee)
+    trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
+    place = guidance(trainee).next_place
+    head = trainee.state.head_to_world
+    at = head[:3, :3] @ np.array(place.position) / 1000.0 + head[:3, 3]
+    outward = head[:3, :3] @ np.array(place.normal)
+    trainee.tap("best_view")
+
+    def is_seen():
+        seen = trainee.presenter.pictures(trainee.state).main
+        line = np.array(seen.position) - at
+        is_looked_at = np.allclose(seen.focal_point, at, atol=0.002)
+        return is_looked_at and line @ outward > 0.5 * np.linalg.norm(line)
+
+    trainee.until(is_seen, "the view of the place")
 
 
 def test_without_guidance_nothing_but_the_trace_is_shown(trainee):

@@ -11,6 +11,7 @@ from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.registration.trace_guidance import COVERED_MM, TraceGuide
+from rastrainer.scenario.scenario import Camera
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.followed_trace import trace_guide
 from rastrainer_simulator.core.setup import SimulationSetup
@@ -19,10 +20,12 @@ from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.trace_state import TraceState
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import Vector, add, scale, subtract, unit, vector
 
 LOOK_S = 0.25
 """Between two searches; one takes about 10 ms."""
+EYE_M = 0.45
+"""From the next place, where it is looked at."""
 
 _log = logging.getLogger(__name__)
 
@@ -88,6 +91,19 @@ class TracePlaces:
             return None
         place = self._trial[2].in_world(np.array(self._place.position))
         return vector((place / MM_PER_M).tolist())
+
+    def eye(self, camera: Camera) -> Vector | None:
+        """Return from where the next place is seen well, World, m; None where there is none.
+
+        It is between the skin's normal, along which the tool hides the tip, and the camera.
+        """
+        place = self.in_world()
+        if self._trial is None or self._place is None or place is None:
+            return None
+        outward = self._trial[2].head_to_world[:3, :3] @ np.array(self._place.normal)
+        line = subtract(vector(camera.position.tolist()), place)
+        between = unit(add(vector(outward.tolist()), unit(line)))
+        return add(place, scale(between, EYE_M))
 
     def _find(self, setup: SimulationSetup, truth: Truth, trace: TraceState) -> SkinPlace | None:
         """Return the next place; called in the thread."""
