@@ -51,7 +51,7 @@ def test_what_was_traced_is_marked_painted_and_taken_back(page):
     drawn = page.evaluate(DRAWN)
     assert drawn["marks"] == 7
     assert drawn["painted"] > 20
-    assert drawn["ring"] == pytest.approx([0.00095, 0.08639, -0.03669], abs=1e-6)
+    assert drawn["ring"] == pytest.approx([0.00095, 0.08789, -0.03669], abs=1e-6)
     page.evaluate(told(7, [[10.0, 84.0, -30.0]], GUIDED))
     wait_for(page, "page.trace.marks.count === 8")
     assert page.evaluate(DRAWN)["painted"] > drawn["painted"]

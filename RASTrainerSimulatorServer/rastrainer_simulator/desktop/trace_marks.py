@@ -15,7 +15,7 @@ from rastrainer_simulator.scene.surfaces import surface
 MARK_M = 0.0011
 RING_M, RIM_M = (0.0052, 0.0075), (0.0075, 0.0088)
 """Inner and outer radius of the ring, and of its dark rim."""
-LIFT_M = 0.0015
+LIFT_M = 0.003
 """So far above the skin the ring lies: it is flat, and the skin is not."""
 _SIDES = 40
 _CORNERS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)

@@ -23,7 +23,7 @@ const MARK = 0.0011;
 /** Of the ring, and of its dark rim; and so far above the skin it lies, as it is flat. m. */
 const RING = [0.0052, 0.0075] as const;
 const RIM = [0.0075, 0.0088] as const;
-const LIFT = 0.0015;
+const LIFT = 0.003;
 const SIDES = 40;
 /** Up to this share of the covered distance the paint is full; from there on it fades. */
 const FULL_SHARE = 0.5;
