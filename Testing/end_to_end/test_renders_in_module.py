@@ -23,17 +23,6 @@ def simulator(tmp_path_factory):
         yield simulator
 
 
-@pytest.fixture
-def arm(simulator):
-    """The arm in a trial, moved by another client of the simulator."""
-    with Client(port=simulator.port) as client:
-        arm = Arm(client)
-        arm.do("Hello", protocolVersion=PROTOCOL_VERSION, client="player")
-        arm.do("StartTask", task="task-1", trainee="T-001")
-        yield arm
-        arm.do("Abort")
-
-
 class Arm:
     def __init__(self, client):
         self._client = client
@@ -64,6 +53,19 @@ def connected(host, module_widget, simulator):  # noqa: F811
     host.wait_until(lambda: link.status.state is LinkState.CONNECTED, "it connects")
     come_to_rest(host)
     return host
+
+
+@pytest.fixture
+def arm(connected, simulator):
+    """The arm in a trial that the module knows of, moved by another client of the simulator."""
+    with Client(port=simulator.port) as client:
+        arm = Arm(client)
+        arm.do("Hello", protocolVersion=PROTOCOL_VERSION, client="player")
+        arm.do("StartTask", task="task-1", trainee="T-001")
+        connected.wait_until(lambda: "running" in connected.text("phaseText"), "the trial runs")
+        come_to_rest(connected)
+        yield arm
+        arm.do("Abort")
 
 
 def renders_in_a_while(host):  # noqa: F811
@@ -107,7 +109,6 @@ def test_with_the_robot_shown_and_at_rest_nothing_is_rendered(connected):
 
 
 def test_while_the_arm_moves_and_the_robot_is_not_shown_nothing_is_rendered(connected, arm):
-    come_to_rest(connected)
     arm.move()
     assert renders_in_a_while(connected) == 0
 
