@@ -38,11 +38,12 @@ def planning():
 
 @pytest.fixture
 def copy(tmp_path):
-    """A copy of the default scenario with its DBS alone, without images."""
+    """A copy of the default scenario with its trial run and its DBS alone, without images."""
     folder = tmp_path / "copy"
     shutil.copytree(FOLDER, folder, ignore=shutil.ignore_patterns("volume.nrrd"))
     values = json.loads((folder / "scenario.json").read_text(encoding="utf-8"))
     del values["volume"]
+    values["tasks"] = values["tasks"][:1]
     values["procedures"] = [each for each in values["procedures"] if each["name"] == "dbs"]
     return write(folder, values)
 
