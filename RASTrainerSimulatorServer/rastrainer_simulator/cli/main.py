@@ -13,6 +13,7 @@ from rastrainer.errors import RASTrainerError
 # By module, so that `rastrainer register` does not wait for the robot to be imported.
 SUBCOMMANDS = {
     "register": "rastrainer_simulator.cli.register",
+    "compare-methods": "rastrainer_simulator.cli.compare_methods",
     "score": "rastrainer_simulator.cli.score",
     "measure": "rastrainer_simulator.cli.measure",
     "pass-mark": "rastrainer_simulator.cli.pass_mark",

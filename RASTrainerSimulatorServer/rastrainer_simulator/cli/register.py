@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from rastrainer.registration.localization_error import (
 from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
 from rastrainer_simulator.cli.shared import text_table
+from rastrainer_simulator.cli.surface_registration import match_files, match_json, match_text
 
 FRE_NOTE = (
     "FRE is the error at the fiducials; it does not predict the error at a target in a single case."
@@ -64,7 +66,8 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="register moving points to fixed points",
         description=(
             "Register two files of points: CSV with the header label,x,y,z (mm), or Slicer's "
-            ".mrk.json. Points are paired by label, or by order where the labels are left out."
+            ".mrk.json. Points are paired by label, or by order where the labels are left out. "
+            "With --surface they are landmarks, and a trace over the skin is matched to a head."
         ),
     )
     parser.add_argument("moving", metavar="MOVING", help="the points to be mapped")
@@ -94,6 +97,14 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "ratios matter, and the size of the errors is estimated from the residuals"
         ),
     )
+    parser.add_argument(
+        "--surface",
+        metavar="TRACE",
+        help="points drawn over the skin, in the frame of MOVING: CSV, .mrk.json or .ply",
+    )
+    parser.add_argument(
+        "--head", type=Path, metavar="HEAD.ply", help="the head's mesh for --surface, RAS mm"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.set_defaults(run=run)
 
@@ -104,6 +115,11 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         InputError: a file cannot be used, or the points cannot be registered.
     """
+    if arguments.surface is not None:
+        found = match_files(arguments)
+        text = json.dumps(match_json(*found), allow_nan=False, indent=1)
+        print(text if arguments.json else match_text(*found))
+        return 0
     labels, moving, fixed = pair(read_points(arguments.moving), read_points(arguments.fixed))
     fle_mm, weights = _weighting(arguments, labels)
     registration = register(moving, fixed, arguments.type, labels, weights)

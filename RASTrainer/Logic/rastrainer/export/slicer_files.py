@@ -9,6 +9,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.export.tidy_csv import csv_text
 from rastrainer.files.markups import write_line, write_markups
+from rastrainer.files.point_cloud import write_point_cloud
 from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.registration.fits import RIGID
@@ -22,7 +23,8 @@ def write_slicer_files(trial: StoredTrial, folder: Path) -> list[Path]:
 
     `touched-world.mrk.json` has the touches in the robot's frame, `touched-ras.mrk.json` the same
     after rigid registration, `WorldToRas.tfm` the registration, `residuals.csv` its residuals;
-    `traced-world.mrk.json` and `traced-ras.mrk.json` have the points of a trace. Each
+    `traced-world.mrk.json` and `traced-ras.mrk.json` have the points of a trace, the files `.ply`
+    beside them the same as point clouds. Each
     trajectory of a procedure, counted from 1, has the line `trajectory-1-planned.mrk.json` and,
     where the truth is known, `trajectory-1-shown.mrk.json`, where the plan as it was shown truly
     lay in the head, and `trajectory-1-placed.mrk.json` from the guide's tip to the instrument's,
@@ -64,7 +66,9 @@ def _write_trace(trial: StoredTrial, folder: Path, matrix: np.ndarray | None) ->
     for frame, places in frames.items():
         path = folder / f"traced-{frame}.mrk.json"
         write_markups(path, PointList((), places))
-        written.append(path)
+        cloud = folder / f"traced-{frame}.ply"
+        write_point_cloud(cloud, places, "World" if frame == "world" else "RAS")
+        written += [path, cloud]
     return written
 
 

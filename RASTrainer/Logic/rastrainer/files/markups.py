@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.files.point_cloud import read_point_cloud
 from rastrainer.files.point_list import COORDINATE_LIMIT_MM, PointList
 from rastrainer.files.reading import number_in, read_json, read_rows
 from rastrainer.files.writing import write_text
@@ -135,15 +136,18 @@ def _control_point(row: int, item: Any) -> tuple[str, tuple[float, ...]]:
 
 
 def read_points(path: str | os.PathLike[str]) -> PointList:
-    """Return the points of a file in mm; a name ending in `.json` means markups.
+    """Return the points of a file in mm; a name in `.json` means markups, in `.ply` a point cloud.
 
-    Markups are in RAS; a CSV file is taken as it is, its column `label` is optional.
+    Markups are in RAS; a CSV file is taken as it is, its column `label` is optional. A point cloud
+    is taken as it is, too, and has no labels.
 
     Raises:
         InputError: the file cannot be used.
     """
     if os.fspath(path).lower().endswith(".json"):
         return read_markups(path)
+    if os.fspath(path).lower().endswith(".ply"):
+        return _cloud(path)
     rows = read_rows(path, ("x", "y", "z"), optional=("label",))
     limit = COORDINATE_LIMIT_MM
     points = [
@@ -152,6 +156,14 @@ def read_points(path: str | os.PathLike[str]) -> PointList:
     ]
     try:
         return PointList(tuple(cells.get("label", "") for _, cells in rows), np.array(points))
+    except InputError as error:
+        raise InputError(f"The file {path} cannot be used: {error}") from None
+
+
+def _cloud(path: str | os.PathLike[str]) -> PointList:
+    points = read_point_cloud(path)
+    try:
+        return PointList((), points)
     except InputError as error:
         raise InputError(f"The file {path} cannot be used: {error}") from None
 

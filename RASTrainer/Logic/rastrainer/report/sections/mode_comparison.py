@@ -83,9 +83,11 @@ class Series:
     values: tuple[tuple[float, ...], ...]
 
 
-def grouped_bars(heading: str, groups: Sequence[str], series: Sequence[Series]) -> str:
+def grouped_bars(
+    heading: str, groups: Sequence[str], series: Sequence[Series], by: str = "task and mode"
+) -> str:
     """Return the chart; bars are means, whiskers one standard deviation (n − 1)."""
-    sheet = Sheet(WIDTH, HEIGHT, f"{heading} by task and mode")
+    sheet = Sheet(WIDTH, HEIGHT, f"{heading} by {by}")
     sheet.text(LEFT - 34, 16, heading, 12.5, INK, weight="600")
     legend(sheet, LEFT, 34, [(one.name, one.color) for one in series])
     everything = [value for one in series for values in one.values for value in values]

@@ -1,0 +1,232 @@
+"""`rastrainer compare-methods [STUDY]`: the same trials registered by every method."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.export.tidy_csv import csv_text
+from rastrainer.files.writing import make_empty_folder, write_text
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.number_text import fixed
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.registration.published_noise import PUBLISHED_NOISE
+from rastrainer.report.sections.mode_comparison import Series, grouped_bars
+from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer.trial.given_points import GivenPoints
+from rastrainer.trial.method_comparison import (
+    MethodResult,
+    mean_of,
+    points_of_trial,
+    register_by,
+    targets_of,
+)
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.cli.shared import text_table
+
+Found = Mapping[RegistrationMethod, Sequence[tuple[str, MethodResult]]]
+"""By method, the trials' names and their results."""
+HEADER = (
+    *("Method", "trials", "residual (mm)", "expected TRE (mm)", "interval (mm)"),
+    *("true TRE (mm)", "interval holds it"),
+)
+NOTE = (
+    "Residuals and errors are root mean squares over trials and targets, ends of intervals medians."
+    " Residuals of different methods are of different points: they do not tell which is better."
+)
+COLORS = {"expected TRE": "#0b6fa4", "true TRE": "#d1661b"}
+MOST_TRIALS = 10_000
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the command to a command line; `arguments.run(arguments)` runs it."""
+    parser = subparsers.add_parser(
+        "compare-methods",
+        help="register the same trials by every method and compare residual, expected and true TRE",
+        description=(
+            "Without STUDY, trials are simulated on the scenario, with the noise of "
+            "docs/registration-methods.md. With it, its played trials are registered by every "
+            "method that their points allow."
+        ),
+    )
+    parser.add_argument("study", type=Path, nargs="?", metavar="STUDY", help="a study's database")
+    parser.add_argument("--scenario", type=Path, metavar="DIR", help="default: Colin27")
+    parser.add_argument("--task", help="of simulated trials; default: the scenario's last one")
+    parser.add_argument("--trials", type=int, default=20, help="simulated; default: %(default)s")
+    parser.add_argument("--seed", type=int, default=0, help="of the first; default: %(default)s")
+    parser.add_argument(
+        "--skin-shift",
+        type=float,
+        default=0.0,
+        metavar="MM",
+        help="between imaging and operation, RMS; default: none",
+    )
+    parser.add_argument(
+        "--indentation", type=float, default=0.0, metavar="MM", help="of the skin under the tip"
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="DIR", help="write CSV, JSON, text and a picture"
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the comparison and return the exit status.
+
+    Raises:
+        InputError: study, scenario or an option cannot be used, or no trial can be registered.
+    """
+    folder = arguments.scenario or asset_path("scenarios", "colin27")
+    scenario = load_scenario(folder)
+    notes: list[str] = [NOTE]
+    if arguments.study is None:
+        found = _simulated(arguments, scenario, notes)
+    else:
+        found = _played(arguments.study, scenario, notes)
+    if not any(found.values()):
+        raise InputError(f"No trial in {arguments.study} can be registered on {scenario.name}.")
+    text = "\n".join([comparison_text(found), "", *notes])
+    values = {"scenario": scenario.name, **comparison_json(found), "notes": notes}
+    if arguments.output is not None:
+        make_empty_folder(arguments.output)
+        as_json = json.dumps(values, allow_nan=False, indent=1)
+        write_text(arguments.output / "methods.txt", text + "\n")
+        write_text(arguments.output / "methods.json", as_json + "\n")
+        write_text(arguments.output / "methods.csv", comparison_csv(found))
+        write_text(arguments.output / "methods.svg", picture(found))
+    print(json.dumps(values, allow_nan=False, indent=1) if arguments.json else text)
+    return 0
+
+
+def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[str]) -> Found:
+    # Only here: a study is compared without the virtual trials.
+    from rastrainer_simulator.virtual.method_trials import METHODS, MethodStudy
+
+    if not 1 <= arguments.trials <= MOST_TRIALS:
+        raise InputError(f"--trials must be 1 to {MOST_TRIALS}, not {arguments.trials}.")
+    if arguments.seed < 0:
+        raise InputError(f"--seed must not be negative, as {arguments.seed} is.")
+    task = arguments.task or scenario.tasks[-1].name
+    scenario.task(task)
+    study = MethodStudy(scenario, task, arguments.skin_shift, arguments.indentation)
+    possible = study.possible()
+    left_out = [method.value for method in METHODS if method not in possible]
+    if left_out:
+        notes.append(
+            f"The scenario has {len(scenario.landmarks)} landmarks, too few for "
+            f"{', '.join(left_out)}: add them to its scenario.json."
+        )
+    notes.append(
+        f"Simulated: skin shift {arguments.skin_shift:g} mm RMS, indentation "
+        f"{arguments.indentation:g} mm; error of a point, mm: "
+        + ", ".join(f"{method.value} {PUBLISHED_NOISE[method].point_mm:g}" for method in possible)
+        + "."
+    )
+    seeds = range(arguments.seed, arguments.seed + arguments.trials)
+    return {m: [(str(seed), study.trial(m, seed)) for seed in seeds] for m in possible}
+
+
+def _played(path: Path, scenario: Scenario, notes: list[str]) -> Found:
+    mesh, targets = read_head_mesh(scenario.head_mesh), targets_of(scenario)
+    found: dict[RegistrationMethod, list[tuple[str, MethodResult]]] = {}
+    others = 0
+    with Study.open_for_reading(path) as study:
+        names = [one.pseudonym for kept in (False, True) for one in study.trainees(archived=kept)]
+        trials = [trial for name in names for trial in study.history(name)]
+    for trial in trials:
+        if trial.record.scenario != scenario.name:
+            others += 1
+            continue
+        pose = None if trial.truth is None else trial.truth.matrix
+        for points in points_of_trial(GivenPoints.of_record(trial.record), scenario):
+            result = register_by(points, mesh, targets, pose)
+            found.setdefault(points.method, []).append((trial.record.trial_id, result))
+    if others:
+        notes.append(
+            f"Left out: {others} trials of other scenarios than {scenario.name}; give theirs with "
+            "--scenario."
+        )
+    return found
+
+
+def comparison_text(found: Found) -> str:
+    """Return the table for people."""
+    rows = []
+    for method, trials in found.items():
+        results = [result for _, result in trials]
+        residual, expected, true, held = mean_of(results)
+        low, high = _interval(results)
+        rows.append(
+            [
+                *(method.value, str(len(results)), fixed(residual, 2), fixed(expected, 2)),
+                f"{fixed(low, 2)} to {fixed(high, 2)}",
+                "unknown" if true is None else fixed(true, 2),
+                "–" if held is None else f"{fixed(100 * held, 0)} %",
+            ]
+        )
+    return text_table(HEADER, rows)
+
+
+def comparison_json(found: Found) -> dict[str, Any]:
+    """Return the same as a JSON object; unknown values are None."""
+    methods = {}
+    for method, trials in found.items():
+        results = [result for _, result in trials]
+        residual, expected, true, held = mean_of(results)
+        methods[method.value] = {
+            "trials": len(results),
+            "residual_mm": residual,
+            "expected_tre_mm": expected,
+            "interval_mm": list(_interval(results)),
+            "true_tre_mm": true,
+            "interval_holds_share": held,
+            "warned_trials": sum(bool(result.warnings) for result in results),
+        }
+    return {"methods": methods}
+
+
+def comparison_csv(found: Found) -> str:
+    """Return one row for each trial, method and target."""
+    header = (
+        *("trial", "method", "target", "points", "residual_mm", "expected_tre_mm"),
+        *("interval_low_mm", "interval_high_mm", "true_tre_mm", "warnings"),
+    )
+    rows = []
+    for method, trials in found.items():
+        for name, result in trials:
+            true = [""] * len(result.errors) if result.true_mm is None else result.true_mm.tolist()
+            codes = " ".join(warning.code for warning in result.warnings)
+            for number, error in enumerate(result.errors):
+                numbers = [result.residual_mm, error.expected_mm, *error.interval_mm, true[number]]
+                first = [name, method.value, number + 1, result.points]
+                rows.append([*first, *numbers, codes])
+    return csv_text(header, rows)
+
+
+def picture(found: Found) -> str:
+    """Return expected and true TRE by method as SVG, as the report draws modes by task."""
+    expected, true = [], []
+    for trials in found.values():
+        results = [result for _, result in trials]
+        expected.append(tuple(e.expected_mm for one in results for e in one.errors))
+        known = [one.true_mm for one in results if one.true_mm is not None]
+        true.append(tuple(float(value) for of_trial in known for value in of_trial))
+    series = [
+        Series(name, color, tuple(values))
+        for (name, color), values in zip(COLORS.items(), (expected, true), strict=True)
+    ]
+    names = [method.value for method in found]
+    return grouped_bars("Target registration error (mm)", names, series, "method")
+
+
+def _interval(results: Sequence[MethodResult]) -> tuple[float, float]:
+    ends = np.median([e.interval_mm for one in results for e in one.errors], axis=0)
+    return float(ends[0]), float(ends[1])

@@ -1,0 +1,213 @@
+"""Trials registered by every method, and a trace registered to a head, as a user runs them."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.files.markups import read_points, write_markups
+from rastrainer.files.point_cloud import read_point_cloud, write_point_cloud
+from rastrainer.files.point_list import PointList
+from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.virtual.method_trials import MethodStudy
+from Testing.domain.trial.trial_records import make_record
+from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, write_landmarked
+
+
+@pytest.fixture(scope="module")
+def landmarked(tmp_path_factory):
+    return write_landmarked(tmp_path_factory.mktemp("head") / "landmarked")
+
+
+@pytest.fixture(scope="module")
+def traced(landmarked):
+    """Landmarks and trace of a trial, in World, and the true pose World→RAS."""
+    scenario = load_scenario(landmarked)
+    head, pose = read_head_mesh(scenario.head_mesh), scenario.perturbed_head_to_world(3)
+    trace = np.concatenate([on_skin(head, corners, 3.0) for corners in OVER_THE_FACE])
+    fixed = np.array([landmark.position for landmark in LANDMARKS])
+    missed = fixed + np.random.default_rng(2).normal(0.0, 1.5, fixed.shape)
+    moving = transforms.apply(pose, missed)
+    return moving, fixed, transforms.apply(pose, trace), pose
+
+
+@pytest.fixture
+def files(traced, tmp_path):
+    moving, fixed, trace, _ = traced
+    labels = tuple(landmark.name for landmark in LANDMARKS)
+    for name, points in (("moving", moving), ("fixed", fixed)):
+        write_markups(tmp_path / f"{name}.mrk.json", PointList(labels, points))
+    write_point_cloud(tmp_path / "trace.ply", trace, "World")
+    return tmp_path
+
+
+def matched(files, landmarked, *words, trace="trace.ply", head=None):
+    return main(
+        [
+            *("register", str(files / "moving.mrk.json"), str(files / "fixed.mrk.json")),
+            *("--surface", str(files / trace), "--head", str(head or landmarked / "head.ply")),
+            *words,
+        ]
+    )
+
+
+def test_a_scenario_is_compared_by_every_method_with_text_csv_json_and_a_picture(
+    landmarked, tmp_path, capsys
+):
+    words = ["--trials", "1", "--skin-shift", "2", "--seed", "4", "-o", str(tmp_path / "out")]
+    assert main(["compare-methods", "--scenario", str(landmarked), *words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    names = ["bone-screws", "fiducials", "landmarks", "surface", "landmarks-surface", "scan"]
+    assert list(told["methods"]) == names
+    rows = list(csv.DictReader((tmp_path / "out" / "methods.csv").open()))
+    assert [row["method"] for row in rows] == names
+    assert {row["trial"] for row in rows} == {"4"}
+    for row in rows:
+        assert float(row["interval_low_mm"]) < float(row["expected_tre_mm"])
+        assert float(row["true_tre_mm"]) > 0.0
+    drawn = (tmp_path / "out" / "methods.svg").read_text()
+    assert all(name in drawn for name in names)
+    text = (tmp_path / "out" / "methods.txt").read_text()
+    assert "skin shift 2 mm RMS" in text
+    assert "they do not tell which is better" in text
+
+
+def test_the_same_seed_is_the_same_trial_and_screws_do_not_move_with_the_skin(landmarked):
+    scenario = load_scenario(landmarked)
+    still, moved = (MethodStudy(scenario, "task-1", shift) for shift in (0.0, 2.0))
+    screws, markers = RegistrationMethod.BONE_SCREWS, RegistrationMethod.FIDUCIALS
+    again = MethodStudy(scenario, "task-1", 2.0).trial(markers, 5)
+    assert np.array_equal(again.matrix, moved.trial(markers, 5).matrix)
+    assert not np.allclose(again.matrix, still.trial(markers, 5).matrix)
+    assert np.array_equal(still.trial(screws, 5).matrix, moved.trial(screws, 5).matrix)
+
+
+def test_a_study_is_registered_by_every_method_that_its_trials_allow(
+    landmarked, traced, tmp_path, capsys
+):
+    moving, _, trace, pose = traced
+    points = [
+        {
+            "label": landmark.name,
+            "positionMm": place,
+            "simTime": 5.0 + time,
+            "utc": "2024-05-17T09:30:00Z",
+        }
+        for time, (landmark, place) in enumerate(zip(LANDMARKS, moving.tolist(), strict=True))
+    ]
+    drawn = [[*place, 20.0] for place in trace.tolist()]
+    record = make_record(points=points, method="landmarks-surface", trace=drawn)
+    with Study.open(tmp_path / "study.db") as study:
+        study.add_trial(record)
+        study.set_truth(record["trialId"], 1.0, pose.ravel().tolist())
+    words = ["compare-methods", str(tmp_path / "study.db"), "--scenario", str(landmarked)]
+    assert main([*words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["methods"]
+    assert list(told) == ["landmarks", "surface", "landmarks-surface"]
+    assert told["landmarks-surface"]["true_tre_mm"] < 0.2 < told["landmarks"]["true_tre_mm"]
+    assert told["surface"]["expected_tre_mm"] < told["landmarks"]["expected_tre_mm"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--trials", "0"], "--trials must be 1 to"),
+        (["--skin-shift", "30"], "skin shift must be 0 to 20 mm"),
+        (["--indentation", "-1"], "indentation must be 0 to 20 mm"),
+        (["--seed", "-2"], "must not be negative"),
+        (["--task", "task-9"], "has no such task"),
+    ],
+)
+def test_an_option_that_cannot_be_used_gets_a_sentence(landmarked, capsys, words, said):
+    assert main(["compare-methods", "--scenario", str(landmarked), *words]) == 2
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("form", ["trace.ply", "trace.csv", "trace.mrk.json"])
+def test_a_traced_surface_is_registered_from_any_file(files, landmarked, traced, capsys, form):
+    points = read_points(files / "trace.ply").points
+    rows = "\n".join(",".join(map(repr, row)) for row in points.tolist())
+    (files / "trace.csv").write_text(f"x,y,z\n{rows}\n")
+    write_markups(files / "trace.mrk.json", PointList((), points))
+    assert matched(files, landmarked, "--json", trace=form) == 0
+    told = json.loads(capsys.readouterr().out)
+    off = transforms.apply(np.array(told["matrix"]) @ traced[3], np.zeros(3))
+    assert np.linalg.norm(off) < 0.2
+    assert told["rms_mm"] < 0.05
+    low, high = told["expected_tre"]["interval_mm"]
+    assert low < told["expected_tre"]["expected_mm"] < high
+
+
+def test_a_match_is_told_with_units_and_that_its_residual_is_not_its_error(
+    files, landmarked, capsys
+):
+    assert matched(files, landmarked) == 0
+    told = capsys.readouterr().out
+    assert "mm expected at" in told
+    assert "does not mean a small error" in told
+
+
+def few(trace):
+    return trace[:10]
+
+
+def far(trace):
+    return trace + np.array([300.0, 0.0, 0.0])
+
+
+def in_one_place(trace):
+    return trace[0] + np.random.default_rng(0).normal(0.0, 1.0, trace.shape)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (few, "needs 30 to"),
+        (far, "mm off the head"),
+        (in_one_place, "stays in one place"),
+    ],
+)
+def test_a_trace_that_cannot_be_matched_gets_one_sentence(
+    files, landmarked, traced, capsys, spoil, said
+):
+    write_point_cloud(files / "trace.ply", spoil(traced[2]), "World")
+    assert matched(files, landmarked) == 2
+    told = capsys.readouterr().err
+    assert said in told
+    assert told.count("\n") == 1
+
+
+def test_an_open_or_foreign_mesh_gets_one_sentence(files, landmarked, capsys):
+    head = read_head_mesh(landmarked / "head.ply")
+    write_head_mesh(files / "open.ply", HeadMesh(head.vertices, head.triangles[1:]))
+    assert matched(files, landmarked, head=files / "open.ply") == 2
+    assert "holes" in capsys.readouterr().err
+    assert matched(files, landmarked, head=files / "trace.ply") == 2
+    assert "in RAS" in capsys.readouterr().err
+
+
+def test_a_surface_match_takes_no_weights_and_needs_a_head(files, landmarked, capsys):
+    assert matched(files, landmarked, "--type", "affine") == 2
+    assert "leave out --type" in capsys.readouterr().err
+    words = [str(files / f"{name}.mrk.json") for name in ("moving", "fixed")]
+    assert main(["register", *words, "--surface", str(files / "trace.ply")]) == 2
+    assert "--head" in capsys.readouterr().err
+
+
+def test_a_point_cloud_is_read_as_text_too_and_a_broken_one_is_refused(tmp_path):
+    path = tmp_path / "cloud.ply"
+    head = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+    head += "property uchar red\nproperty float z\nend_header\n"
+    path.write_text(head + "1 2 9 3\n4 5 9 6\n")
+    assert read_point_cloud(path).tolist() == [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
+    for broken in (head + "1 2 9 3\n", "ply\nend_header\n", head.replace("vertex", "face"), "x"):
+        path.write_text(broken)
+        with pytest.raises(InputError, match="must be a PLY file"):
+            read_point_cloud(path)
