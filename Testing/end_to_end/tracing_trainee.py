@@ -17,6 +17,8 @@ from Testing.simulator.landmarked import on_skin
 ABOVE_MM, LANDED_MM, PASSED_MM = 30.0, 0.6, 1.5
 SINK_MM, GLIDE_MM = 0.3, 0.15
 """How far below the skin the tip is sent to land, and above it to glide: neither is pressing."""
+LEANS = ((0.0, 0.0, -0.4), (0.0, 0.0, -0.8), (0.0, 0.0, 0.0), (0.0, 0.4, -0.4), (0.0, -0.4, -0.4))
+"""What is added to the direction into the skin, one after the other."""
 SPEED_MM_S = 60
 TIMEOUT_S = 60
 
@@ -33,6 +35,7 @@ class TracingTrainee:
         self._scenario, self._seed = scenario, seed
         self._head = read_head_mesh(scenario.head_mesh)
         self._to_world = scenario.perturbed_head_to_world(seed)
+        self._lean = np.array(LEANS[0])
 
     def start(self, method: str) -> str:
         """Start a trial and touch its landmarks; return its ID."""
@@ -69,26 +72,44 @@ class TracingTrainee:
         return json.loads(found.content.text)
 
     def _land(self, place) -> None:
-        self._go(place, ABOVE_MM, 400)
-        self._go(place, -SINK_MM, 300, LANDED_MM)
+        """Lower the tip onto a place; where the tool meets the skin beside it, lean it anew."""
+        for lean in LEANS:
+            self._lean = np.array(lean)
+            self._go(place, ABOVE_MM, 400)
+            goal = self._send(place, -SINK_MM, 300)
+            self.state(lambda state, goal=goal: self._off(goal) < LANDED_MM or _is_held(state))
+            if self._off(goal) < LANDED_MM:
+                return
+            self._lift(place)
+        raise AssertionError(f"the tip never landed at {place}")
 
     def _lift(self, place) -> None:
         self._go(place, ABOVE_MM, 400)
 
-    def _go(self, place, above_mm: float, speed_mm_s: float, near_mm: float = PASSED_MM) -> None:
-        """Move the tip above a place of the head, RAS, or so far below it that it touches."""
+    def _go(self, place, above_mm: float, speed_mm_s: float) -> None:
+        """Move the tip above a place of the head, RAS, until it is nearly there."""
+        goal = self._send(place, above_mm, speed_mm_s)
+        self.player.wait_for("ToolTipToWorld", lambda _tip: self._off(goal) < PASSED_MM, TIMEOUT_S)
+
+    def _send(self, place, above_mm: float, speed_mm_s: float) -> np.ndarray:
+        """Send the tip above a place of the head, or below it; return where to, World, mm."""
         normal = outward_normal(self._head, place)
         goal = transforms.apply(self._to_world, place + above_mm * normal)
-        inward = -(self._to_world[:3, :3] @ normal)
-        direction = inward + np.array([0.0, 0.0, -0.4])
+        direction = self._lean - self._to_world[:3, :3] @ normal
         self.player.do(
             "MoveTipTo",
             positionMm=goal.tolist(),
             direction=(direction / np.linalg.norm(direction)).tolist(),
             speedMmS=speed_mm_s,
         )
-        self.player.wait_for(
-            "ToolTipToWorld",
-            lambda tip: np.linalg.norm(np.array(tip.content.matrix)[:3, 3] - goal) < near_mm,
-            TIMEOUT_S,
-        )
+        return goal
+
+    def _off(self, goal: np.ndarray) -> float:
+        """Return how far the tip is from a place in World, mm."""
+        tip = np.array(self.player.latest["ToolTipToWorld"].content.matrix)[:3, 3]
+        return float(np.linalg.norm(tip - goal))
+
+
+def _is_held(state: dict) -> bool:
+    """Whether the skin holds the tool off where it is sent to."""
+    return (state["depthMm"] or 0.0) > SINK_MM + 0.2
