@@ -19,6 +19,7 @@ from Testing.error_rates.registered import common_biases, errors_along_skin, reg
 
 FEW = {
     "biased aim": 5,
+    "methods": 2,
     "equal hands": 25,
     "slow hands": 25,
     "several groups": 10,

@@ -1,0 +1,41 @@
+"""The order of the methods with skin that shifts, and that stored trials are what is played."""
+
+import pytest
+
+from rastrainer.registration.methods import RegistrationMethod
+from Testing.error_rates.method_errors import CHUNK, keys, play, stored
+
+
+def true_mm(method, shift_mm):
+    own = [one for one in stored() if (one.method, one.shift_mm) == (method.value, shift_mm)]
+    return (sum(one.true2 for one in own) / sum(one.trials for one in own)) ** 0.5
+
+
+def test_with_skin_that_shifts_screws_beat_markers_and_markers_landmarks_and_surface():
+    screws, markers, landmarks, surface = (
+        true_mm(method, 2.0)
+        for method in (
+            RegistrationMethod.BONE_SCREWS,
+            RegistrationMethod.FIDUCIALS,
+            RegistrationMethod.LANDMARKS,
+            RegistrationMethod.SURFACE,
+        )
+    )
+    assert screws < markers < landmarks
+    assert markers < surface
+
+
+def test_each_chunk_is_stored_once_and_is_one_that_is_to_be_played():
+    known = [one.key for one in stored()]
+    assert len(known) == len(set(known))
+    assert set(known) <= {(method.value, shift, chunk) for method, shift, chunk in keys(2000)}
+    assert {one.trials for one in stored()} == {CHUNK}
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("method", RegistrationMethod)
+def test_a_stored_chunk_is_played_again(method):
+    (kept,) = [one for one in stored() if one.key == (method.value, 2.0, 0)]
+    again = play(method, 2.0, 0)
+    assert abs(again.held - kept.held) <= 1
+    assert again.true2 == pytest.approx(kept.true2, rel=0.02)
