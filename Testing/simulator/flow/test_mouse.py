@@ -9,40 +9,8 @@ import pytest
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.session.progress import DoneTasks
 from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.net.views.presenter import Hello
+from Testing.simulator.flow.mouse import VIEW, Mouse
 from Testing.simulator.flow.trainee import Trainee
-
-VIEW = 1
-
-
-class Mouse:
-    """What a view sends of a mouse: clicks on what can be clicked, and dragged sticks."""
-
-    def __init__(self, trainee: Trainee, kind: str):
-        self._trainee = trainee
-        trainee.presenter.view_joined(VIEW, Hello(kind))
-
-    def tap(self, control: str) -> None:
-        """Click on the hint of a control."""
-        self.click(f"press {control}")
-
-    def click(self, item: str) -> None:
-        """Click on a hint or an item of the menu, which must be there."""
-        screen = self._trainee.presenter.screen
-        shown = [hint.item for hint in screen.hints]
-        shown += [] if screen.menu is None else [each.name for each in screen.menu.items]
-        assert item in shown
-        self._trainee.presenter.on_item(VIEW, item)
-        self._trainee.step(2)
-
-    def push(self, right: float, forward: float, up: float, fine: bool) -> None:
-        """Drag the sticks; slow motion is switched by a click."""
-        presenter = self._trainee.presenter
-        assert presenter.screen.has_sticks
-        if fine != presenter._session.screen_sticks.is_slow:
-            presenter.on_sticks(VIEW, (0.0, 0.0, 0.0), (0.0, 0.0), False, 0.0)
-            self.click("press fine")
-        presenter.on_sticks(VIEW, (right, forward, up), (0.0, 0.0), False, 0.0)
 
 
 @pytest.fixture(params=["desktop", "page"])

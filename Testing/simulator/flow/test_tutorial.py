@@ -18,45 +18,12 @@ from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 from rastrainer_simulator.state import TOUCH_ERRORS
+from Testing.simulator.flow.learner import FlowLearner
 from Testing.tutorial_player import TutorialPlayer
 
 FIRST = "The tutorial comes first, with the device that you use now: it takes two minutes."
 STUDY_RUN = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0)
 LEARNED = TutorialOutcome("P07", "keyboard", "desktop", 112.0, 2.3, (1.2, 0.8, 0.6))
-
-
-class FlowLearner:
-    """A trainee of the flow, at the tutorial."""
-
-    def __init__(self, trainee):
-        self.trainee = trainee
-        self.hands, self.until = trainee.hands, trainee.until
-
-    @property
-    def screen(self):
-        return self.trainee.presenter.screen
-
-    def turn_view(self):
-        self.hands.hold("view_right", True)
-        self.trainee.step(60)
-        self.hands.hold("view_right", False)
-        self.trainee.step()
-
-    def lower(self):
-        self.trainee.lower_onto(*self._next())
-
-    def touch_next(self):
-        self.trainee.touch(*self._next())
-
-    def resume(self):
-        self.trainee.choose("resume")
-        self.trainee.until_menu(None)
-
-    def _next(self):
-        practice = self.trainee.presenter._session.tutorial.practice
-        truth = practice.truth
-        point = truth.in_world(truth.fiducials[practice.state.next_point]) / MM_PER_M
-        return point, truth.in_world(truth.target) / MM_PER_M
 
 
 def session_of(trainee):

@@ -10,6 +10,7 @@ import numpy as np
 from rastrainer.protocol import Phase
 from rastrainer_simulator.net.views.screen import Tone
 from Testing.simulator.flow.trainee import STEP_S, Trainee
+from Testing.simulator.virtual.places_of_points import PlacesOfPoints, outward, surface_at
 from Testing.simulator.virtual.trained_pad import TrainedPad
 
 READ_STEPS = 6
@@ -22,29 +23,30 @@ WAYS = {
     "up": (0.0, 0.0, 1.0),
     "down": (0.0, 0.0, -1.0),
 }
-UP = np.array(WAYS["up"])
-GAIN_PER_S, LEAST_M_S = 2.0, 0.006
-"""How fast a point is approached that the words tell."""
-ASIDE_M_S, ASIDE_READS = 0.03, 3
-GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))
-LOWERED_MM = 30.0
-"""Farther than this beside the point the tip is not lowered."""
-BETTER_READS = 25
-"""So often the words are followed on the skin for a nearer place, before Touch is pressed."""
-DOWN_M_S, EASE_M_S, OFF_M_S, CARRY_M_S, CENTER_M_S = 0.06, 0.01, 0.08, 0.1, 0.015
-FIRST_M, SPACING_M, WIDEST_M = 0.012, 0.011, 0.09
-"""Radii of the spiral, and its places' distances: a touch counts within 10 mm of the point."""
-SUNK_M, LIFT_M = 0.045, 0.012
-"""How far the tip is lowered before it must be beside the head, and how far it is lifted."""
-CENTER_READS, CARRY_READS, EASE_READS = 80, 100, 12
+READ_S = READ_STEPS * STEP_S
+CARRY_M_S, SLIDE_M_S, CENTER_M_S, LOWER_M_S, EASE_M_S = 0.1, 0.08, 0.03, 0.06, 0.01
+NEARBY_M, ABOVE_M = 0.04, 0.025
+"""Up to so far the tip is led along the skin; farther, it is carried so high above it."""
+INWARD = 0.05
+"""Share of the speed along the skin with which the tip is held on it."""
+STEEPER, FORGET = 0.12, 0.97
+"""So much steeper it takes the skin to be; and how much of that it keeps from read to read."""
+SUNK_M = 0.03
+"""So far below where the skin should be, the tip is beside the head."""
+PRESSED_M = 0.012
+"""Touch is pressed so often along the skin: a refusal tells which point is there, or none."""
+STUCK_READS, CENTER_READS = 50, 80
 
 
 class ReadingTrainee:
-    """Touches the fiducials of the trial that runs by what it reads: "Point 9: 15 mm back, down".
+    """Touches the fiducials of the trial that runs by what it reads.
 
-    Where that is not told, it lowers the tip at places on a spiral around its last touch, and turns
-    back where it reads that it is off the path. Where it reads "On the skin", it goes to the middle
-    of the places where that is said, and presses Touch. It keeps count of its own movements.
+    It knows how large a head is and about where this one is, which ways the sticks move the tip,
+    and how it has moved since the start. It keeps the places that agree with all that it has read:
+    distances and directions where they are told, "off the path", and "on the skin away from the
+    point". It leads the tip along the skin to the nearest of them, back onto the skin where it has
+    left it, and presses Touch on the way to read which point is there; it remembers that. Where it
+    reads "On the skin", it goes to the middle of the places where that is said, and touches.
 
     Args:
         trainee: at the presenter, with a `TrainedPad`.
@@ -55,24 +57,23 @@ class ReadingTrainee:
         self._trainee = trainee
         self._pad = pad
         self._limit_s = 0.0
-        self._moved = np.zeros(3)
-        self._radius, self._angle, self._turn = FIRST_M, 0.0, 1.0
-        self._is_off = False
-        self._has_met_head = False
+        self._at = np.array(trainee.tip)
+        """Where the tip should be by its movements: World, m. The arm always starts there."""
+        self._pressed_at = self._at
+        self._tilt = np.zeros(3)
+        self._lowered = 0
+        self._places = PlacesOfPoints()
 
     def play(self, limit_s: float) -> None:
         """Go on until all points are touched, or until the trial has lasted so long."""
         self._limit_s = limit_s
         while self._goes_on:
-            told = self._told()
-            if told is not None:
-                self._follow(*told)
-            elif self._is_on_skin:
+            if self._is_on_skin:
                 self._center()
                 if self._is_on_skin:
                     self._press()
             else:
-                self._search()
+                self._approach(self._places.nearest(self._at))
         self._pad.stop()
 
     @property
@@ -89,136 +90,155 @@ class ReadingTrainee:
         return self._instruction.startswith("On the skin")
 
     @property
-    def _is_refused(self) -> bool:
-        """Whether the last touch was: that is read until the next, also on the skin."""
-        text = self._instruction
-        return text.startswith(("Too far", "Wrong point")) or "above the skin" in text
-
-    @property
     def _warnings(self) -> str:
         """What is wrong with where the arm is; "" where nothing is."""
         warnings = self._trainee.presenter.screen.warnings
         return " ".join(warning.text for warning in warnings if warning.tone is not Tone.PLAIN)
 
-    def _told(self) -> tuple[float, tuple[str, ...]] | None:
-        """Return how far the next point is, mm, and which ways; None where that is not told."""
-        for text in self._trainee.presenter.screen.status:
-            found = re.match(r"Point \d+: ([\d.]+) mm (.*)", text)
-            if found is not None:
-                return float(found[1]), tuple(found[2].split(", "))
-        return None
+    @property
+    def _is_away_from_point(self) -> bool:
+        return self._warnings.startswith("The tip is on the skin away")
+
+    @property
+    def _is_pressing(self) -> bool:
+        return self._warnings.startswith("Pressing")
+
+    @property
+    def _is_touching(self) -> bool:
+        """Whether the words tell that the tip is on the skin."""
+        return self._is_on_skin or self._is_away_from_point or self._is_pressing
 
     def _move(self, velocity: np.ndarray) -> None:
-        """Move for a moment: (3,) float, m/s."""
+        """Move for a moment, (3,) float, m/s, and take note of what is read then."""
         self._pad.move(velocity)
         self._trainee.step(READ_STEPS)
-        self._moved += velocity * READ_STEPS * STEP_S
+        self._at = np.array(self._trainee.tip)
+        if self._is_away_from_point:
+            self._places.is_not_at(self._at)
+        if "off the path" in self._instruction:
+            self._places.is_off_path(self._at)
+        elif not self._instruction.startswith(("On", "Too", "Wrong")):
+            self._places.is_on_path(self._at)
+        self._read_status()
 
-    def _follow(self, away_mm: float, ways: tuple[str, ...]) -> None:
-        """Go the ways that are told; on the skin press Touch where no nearer place is told."""
-        # Where the words end, the search begins.
-        self._moved[:] = 0.0
-        self._radius = FIRST_M
-        reads = 0
-        while self._is_on_skin and away_mm > 0.0 and reads < BETTER_READS:
-            self._move(CENTER_M_S * _way(ways))
-            away_mm, ways = self._told() or (0.0, ())
-            reads += 1
-        if self._is_on_skin or (self._is_refused and not self._warnings and away_mm == 0.0):
-            self._press()
-        elif self._warnings:
-            self._step_aside(ways)
+    def _read_status(self) -> None:
+        for text in self._trainee.presenter.screen.status:
+            told = re.match(r"Point \d+: (less than )?([\d.]+) mm (.*)", text)
+            if told is not None and told[1]:
+                self._places.is_within(self._at, float(told[2]) / 1000.0)
+            elif told is not None:
+                way = np.sum([WAYS[word] for word in told[3].split(", ")], axis=0)
+                self._places.is_away(self._at, float(told[2]) / 1000.0, way)
+
+    def _approach(self, place: np.ndarray) -> None:
+        """Bring the tip nearer to a place on the skin, until something else is to be done."""
+        above = place + ABOVE_M * outward(place)
+        if min(np.linalg.norm(goal - self._at) for goal in (place, above)) > NEARBY_M:
+            self._carry(place, above)
         else:
-            level = _level(ways)
-            if away_mm > LOWERED_MM and level:
-                ways = tuple(way for way in ways if way != "down")
-            self._move(max(LEAST_M_S, GAIN_PER_S * away_mm / 1000.0) * _way(ways))
+            self._slide(place)
 
-    def _step_aside(self, ways: tuple[str, ...]) -> None:
-        """Lift the tip off what it touches, and go aside: as is told, or any way."""
-        self._angle += GOLDEN_ANGLE
-        any_way = np.array([math.cos(self._angle), math.sin(self._angle), 0.0])
-        level = _level(ways)
-        for velocity in (OFF_M_S * UP, ASIDE_M_S * (_way(level) if level else any_way)):
-            for _ in range(ASIDE_READS):
-                self._move(velocity)
+    def _carry(self, place: np.ndarray, goal: np.ndarray) -> None:
+        """Carry the tip around the head to above a place, while the point may be there."""
+        for _ in range(STUCK_READS):
+            if not self._goes_on or self._is_on_skin or not self._places.may_be_at(place):
+                return
+            if np.linalg.norm(goal - self._at) < NEARBY_M:
+                return
+            out = outward(self._at)
+            height = float((self._at - surface_at(self._at)) @ out)
+            along = goal - self._at
+            along -= (along @ out) * out
+            rise = 0.0 if self._warnings else np.clip(2.0 * (ABOVE_M - height), -0.06, 0.06)
+            if self._warnings:
+                rise = CARRY_M_S
+            self._move(CARRY_M_S * _unit(along) + rise * out)
 
-    def _to_skin(self) -> np.ndarray:
-        """Return a velocity, (3,) m/s, that brings the tip back onto the skin."""
-        warnings = self._warnings
-        if self._is_on_skin or warnings.startswith("The tip is on the skin"):
-            return 0.0 * UP
-        return CENTER_M_S * UP if warnings else -CENTER_M_S * UP
+    def _slide(self, place: np.ndarray) -> None:
+        """Lead the tip along the skin to a place, while the point may be there."""
+        for _ in range(STUCK_READS):
+            if not self._goes_on or self._is_on_skin or not self._places.may_be_at(place):
+                return
+            if (surface_at(self._at) - self._at) @ outward(self._at) > SUNK_M:
+                break
+            self._along_skin(place - self._at, SLIDE_M_S)
+            self._ask()
+        # It does not get there, or beside the head: back above the skin, and to another place.
+        self._places.cannot_reach(place)
+        while self._goes_on and (surface_at(self._at) - self._at) @ outward(self._at) > 0.0:
+            self._move(CARRY_M_S * outward(self._at))
 
-    def _search(self) -> None:
-        """Lower the tip onto the skin at the next place of the spiral, and lift it again.
+    def _along_skin(self, to: np.ndarray, fastest: float) -> None:
+        """Move along the skin for a moment, (3,) float, m; where the tip is not on it, onto it.
 
-        Where it reads there that it is off the path, it turns back.
+        Where it reads that it presses or is off the skin, it takes the skin to be tilted.
         """
-        self._angle += self._turn * SPACING_M / self._radius
-        self._radius += SPACING_M**2 / (2.0 * math.pi * self._radius)
-        if self._radius > WIDEST_M:
-            self._radius = FIRST_M
-        self._carry(self._radius * np.array([math.cos(self._angle), math.sin(self._angle)]))
-        is_off = "off the path" in self._instruction
-        if is_off and not self._is_off:
-            self._turn *= -1.0
-            self._radius += SPACING_M
-        self._is_off = is_off
-        if not is_off:
-            self._peck()
+        out = _unit(outward(self._at) + self._tilt)
+        along = to - (to @ out) * out
+        ahead = _unit(along)
+        self._tilt = FORGET * self._tilt
+        speed = min(fastest, float(np.linalg.norm(along)) / READ_S)
+        if self._is_pressing:
+            self._tilt = self._tilt - STEEPER * ahead
+            self._move(0.3 * speed * ahead + EASE_M_S * out)
+        elif self._is_touching or self._places.is_silent_at(self._at):
+            self._lowered = 0
+            self._move(speed * (ahead - INWARD * out))
+        elif self._warnings:
+            # The shaft or the arm: off the skin, and on.
+            for _ in range(4):
+                self._move(0.08 * out + 0.05 * ahead)
+        else:
+            if self._lowered == 1:
+                self._tilt = self._tilt + STEEPER * ahead
+            self._lowered += 1
+            lower = -min(LOWER_M_S, 0.01 * 1.5**self._lowered) * out
+            self._move(lower + (0.3 * speed * ahead if self._lowered < 4 else 0.0))
 
-    def _carry(self, place: np.ndarray) -> None:
-        """Carry the tip over a place, (2,) float, m, as its movements are counted."""
-        for _ in range(CARRY_READS):
-            away = np.array([*(place - self._moved[:2]), 0.0])
-            distance = float(np.linalg.norm(away))
-            if not self._goes_on or distance < 0.002:
-                break
-            speed = min(CARRY_M_S, distance / (READ_STEPS * STEP_S))
-            self._move(OFF_M_S * UP if self._warnings else speed * _unit(away))
-
-    def _peck(self) -> None:
-        """Lower the tip until a warning says what it touches; lift it unless a touch counts."""
-        top = self._moved[2]
-        while self._goes_on and not self._warnings and not self._is_on_skin:
-            if top - self._moved[2] > SUNK_M and self._has_met_head:
-                break
-            self._move(-DOWN_M_S * UP)
-        for _ in range(EASE_READS):
-            if not self._warnings.startswith("Pressing"):
-                break
-            self._move(EASE_M_S * UP)
-        if self._is_refused and self._has_met_head and not self._warnings:
-            self._press()
-        if self._is_on_skin:
+    def _ask(self) -> None:
+        """Press Touch where the tip is, to read which point is there; now and then only."""
+        is_near = np.linalg.norm(self._at - self._pressed_at) < PRESSED_M
+        if is_near or not self._is_away_from_point or not self._places.needs_answers:
             return
-        is_met = bool(self._warnings)
-        self._has_met_head |= is_met
-        height = LIFT_M if is_met else top - self._moved[2]
-        for _ in range(math.ceil(height / (OFF_M_S * READ_STEPS * STEP_S))):
-            self._move(OFF_M_S * UP)
+        self._pressed_at = self._at
+        self._move(np.zeros(3))
+        if self._goes_on and self._is_away_from_point:
+            self._press()
 
     def _center(self) -> None:
         """Go to the middle of where the touch counts, along one way and then across it."""
-        for way in (np.array(WAYS["right"]), np.array(WAYS["forward"])):
-            self._cross(way)
-            reads = self._cross(-way)
-            self._cross(way, reads // 2)
+        out = outward(self._at)
+        first = _unit(np.cross(out, (0.0, 1.0, 0.0)))
+        for way in (first, np.cross(out, first)):
+            there = self._along_where_it_counts(way)
+            back = self._along_where_it_counts(-way)
+            if there and back:
+                self._creep_to((there[-1] + back[-1]) / 2.0)
 
-    def _cross(self, way: np.ndarray, most: int = CENTER_READS) -> int:
-        """Go one way over where a touch counts; return how often it read that it does."""
-        reads = 0
+    def _along_where_it_counts(self, way: np.ndarray) -> list[np.ndarray]:
+        """Go one way along the skin, over and past where a touch counts; return the places."""
+        places: list[np.ndarray] = []
         for _ in range(CENTER_READS):
-            is_past = reads > 0 and self._warnings.startswith("The tip is on the skin")
-            if not self._goes_on or is_past or reads >= most:
+            if self._is_on_skin:
+                places.append(self._at)
+            elif not self._goes_on or (places and self._is_away_from_point):
                 break
-            reads += self._is_on_skin
-            self._move(CENTER_M_S * way + self._to_skin())
-        return reads
+            self._along_skin(way, CENTER_M_S)
+        return places
+
+    def _creep_to(self, place: np.ndarray) -> None:
+        """Go to a place on the skin, until it reads there that a touch counts."""
+        for _ in range(CENTER_READS):
+            out = outward(place)
+            along = place - self._at
+            along -= (along @ out) * out
+            is_there = np.linalg.norm(along) < 0.0007
+            if not self._goes_on or (is_there and self._is_on_skin):
+                break
+            self._along_skin(0.0 * along if is_there else along, CENTER_M_S)
 
     def _press(self) -> None:
-        """Press Touch; where the touch counts, lift the tip and search anew from there."""
+        """Press Touch and read the answer; where the touch counts, search anew from there."""
         trainee = self._trainee
         self._pad.stop()
 
@@ -229,20 +249,14 @@ class ReadingTrainee:
         before = answers()
         trainee.tap("touch")
         trainee.until(lambda: answers() != before, "an answer")
+        other = re.match(r"Wrong point: that is point (\d+), ([\d.]+) mm", self._instruction)
         if answers()[0] > before[0]:
-            self._moved[:] = 0.0
-            self._radius = FIRST_M
-            for _ in range(5):
-                self._move(OFF_M_S * UP)
-
-
-def _level(ways: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(way for way in ways if way not in ("up", "down"))
-
-
-def _way(ways: tuple[str, ...]) -> np.ndarray:
-    return _unit(np.sum([WAYS[way] for way in ways], axis=0))
+            self._places.has_touched(self._at, trainee.state.training.next_point or "")
+        elif other is not None:
+            self._places.is_of(self._at, other[1], float(other[2]) / 1000.0)
+        elif self._instruction.startswith("Too far"):
+            self._places.is_empty(self._at)
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
-    return vector / max(1e-9, float(np.linalg.norm(vector)))
+    return vector / max(1e-9, math.sqrt(float(vector @ vector)))
