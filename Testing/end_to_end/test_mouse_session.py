@@ -1,4 +1,4 @@
-"""The window by the mouse alone: the ID, the trial run, the sticks, Touch and the menu."""
+"""The window by the mouse alone: the ID, the tutorial, a whole trial, menus and the result."""
 
 from __future__ import annotations
 
@@ -9,14 +9,19 @@ from itertools import islice
 import pytest
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
+from rastrainer.journal.journal_file import read_journal
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.stick import stick_boxes
 from rastrainer_simulator.desktop.picture import own_facts
+from rastrainer_simulator.flow.tutorial.steps import TutorialStep
+from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import PRESS
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee
+from Testing.end_to_end.view_learner import ViewLearner
 from Testing.end_to_end.virtual_display import VirtualMouse
 from Testing.end_to_end.window_process import wait_until
+from Testing.tutorial_player import TutorialPlayer
 
 # A window that the processor draws wants the machine for itself.
 pytestmark = pytest.mark.soak
@@ -25,6 +30,7 @@ SIZE = (960, 540)
 SPEED = "0.4"
 """Simulated seconds in a second: a stick is let go of in time, however late a picture is."""
 GRID_PX, HINTS_PX = 10, 100
+RIGHT_BUTTON = 3
 
 
 class WindowMouse:
@@ -43,6 +49,13 @@ class WindowMouse:
         self._move(*found[0])
         self._mouse.hold(True)
         self._mouse.hold(False)
+
+    def turn_view(self, across_px: int) -> None:
+        """Drag with the right button, from the middle of the picture."""
+        self._move(SIZE[0] / 2, SIZE[1] / 2)
+        self._mouse.hold(True, RIGHT_BUTTON)
+        self._move(SIZE[0] / 2 + across_px, SIZE[1] / 2)
+        self._mouse.hold(False, RIGHT_BUTTON)
 
     def tap(self, control: str) -> None:
         self.push(0.0, 0.0, 0.0)
@@ -109,20 +122,67 @@ class ClickingInWindow(StreamTrainee):
         self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
 
 
+class MouseLearner(ViewLearner):
+    """Drags with the right button, until the view has turned."""
+
+    def turn_view(self):
+        before = self.screen.status
+        self.hands.turn_view(150)
+        self.until(lambda: self.screen.status != before, "a turn of the view")
+
+
+def enter_id(trainee):
+    """Click from the start menu to that of the tasks, with the ID P7."""
+    trainee.until_menu("start")
+    for item in ("train", "skip", "next", "clicked", "row 1", "P", "row 3", "7", "done"):
+        trainee.choose(item)
+    assert trainee.value("trainee") == "P7"
+
+
+def begin(lab, window, trainee, item):
+    """Click on a task or the tutorial, and have the sticks shown once the window shows it."""
+    trainee.choose(item)
+    trainee.until(lambda: lab.view.scene["task"] == "trial-run", "the scene")
+    # Until the window has loaded the scene, it shows the menu before.
+    window.wait_for_tick(lab.view.state["tick"])
+    if not lab.view.screen.has_sticks:
+        trainee.hands.click("press sticks")
+        trainee.until(lambda: lab.view.screen.has_sticks, "the sticks")
+
+
+def test_the_mouse_alone_does_the_tutorial_touches_a_whole_trial_and_reads_its_result(tmp_path):
+    rules = {"order": "fixed", "tutorial": "required"}
+    with Lab(tmp_path, "--speed", SPEED, "--seed", "8", "--no-gamepad", **rules) as lab:
+        window = lab.open_window("window", "--size", "{}x{}".format(*SIZE), "--quality", "low")
+        mouse = WindowMouse(lab)
+        trainee = ClickingInWindow(lab.view, mouse)
+        enter_id(trainee)
+        begin(lab, window, trainee, "tutorial")
+        player = TutorialPlayer(MouseLearner(trainee), SourceKind.MOUSE)
+        player.play()
+        assert TutorialStep.GUIDED in dict(player.read)
+        trainee.until_menu("tutorial-done")
+        begin(lab, window, trainee, "trial-run")
+        for number in range(1, 16):
+            trainee.touch(str(number))
+        trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")
+        trainee.choose("register")
+        trainee.until_menu("result")
+        assert trainee.menu.facts[0].label == "Score"
+        journals = [read_journal(path) for path in lab.records.glob("*.journal")]
+        (journal,) = journals
+        assert len(list(journal.of_kind("touch"))) == 15
+        assert {entry["operator"] for entry in journal.of_kind("input")} <= {"mouse", ""}
+        mouse.close()
+
+
 def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the_menu(tmp_path):
     with Lab(tmp_path, "--speed", SPEED, "--seed", "8", "--no-gamepad") as lab:
         window = lab.open_window("window", "--size", "{}x{}".format(*SIZE), "--quality", "low")
         mouse = WindowMouse(lab)
         trainee = ClickingInWindow(lab.view, mouse)
-        trainee.until_menu("start")
-        for item in ("train", "skip", "next", "clicked", "row 1", "P", "row 3", "7", "done"):
-            trainee.choose(item)
-        assert trainee.value("trainee") == "P7"
-        trainee.begin_task("trial-run")
-        # Until the window has loaded the scene, it shows the menu before.
-        window.wait_for_tick(lab.view.state["tick"])
-        mouse.click("press sticks")
-        trainee.until(lambda: lab.view.screen.has_sticks, "the sticks")
+        enter_id(trainee)
+        begin(lab, window, trainee, "trial-run")
         start = trainee.tip.copy()
         mouse.push(0.0, 0.0, 1.0)
         trainee.until(lambda: trainee.tip[2] > start[2] + 0.01, "a move up")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 
 import pytest
@@ -14,7 +13,7 @@ from playwright.sync_api import Page
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
 from Testing.end_to_end.stream_trainee import StreamTrainee
-from Testing.end_to_end.window_process import wait_until
+from Testing.end_to_end.view_learner import ViewLearner
 from Testing.tutorial_player import TutorialPlayer
 from Testing.web.chromium import SMALL, enter_headset, open_page
 from Testing.web.hands import Controllers
@@ -24,39 +23,12 @@ from Testing.web.tapping_trainee import PHONE, TappingTrainee
 REQUIRED = {"order": "fixed", "tutorial": "required"}
 
 
-class WebLearner:
-    """Somebody at a view of the simulator, at the tutorial."""
+class WebLearner(ViewLearner):
+    """Somebody at the page."""
 
     def __init__(self, trainee, page):
-        self.trainee, self.page = trainee, page
-        self.hands, self.until = trainee.hands, trainee.until
-
-    @property
-    def screen(self):
-        return self.trainee.view.screen
-
-    def lower(self):
-        label = self.trainee.view.state["next"]
-        while self.trainee.view.state["touch"] != "on skin":
-            self.trainee.approach(label, 0.02)
-            self.trainee.lower_onto(label)
-
-    def touch_next(self):
-        trainee, label = self.trainee, self.trainee.view.state["next"]
-
-        def is_done():
-            return trainee.view.state["next"] != label
-
-        while not is_done():
-            trainee.approach(label, 0.02)
-            if trainee.lower_onto(label):
-                trainee.hands.tap("touch")
-                with suppress(AssertionError):
-                    wait_until(is_done, f"touch {label}", trainee.again_s)
-
-    def resume(self):
-        self.trainee.choose("resume")
-        self.trainee.until_menu(None)
+        super().__init__(trainee)
+        self.page = page
 
 
 class PhoneLearner(WebLearner):

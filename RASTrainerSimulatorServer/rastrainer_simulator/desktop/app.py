@@ -142,7 +142,9 @@ class DesktopWindow:
             await self._inbox.wait(POLL_S)
             return
         self._frames.due()
-        self._picture.draw()
+        if self._picture.draw():
+            # They were made while the picture before was still to be seen.
+            pygame.event.clear(pygame.MOUSEBUTTONDOWN)
         self._frames.shown()
         self._log_frame(log)
         self._lower_quality_if_slow(time.monotonic() - begin)
@@ -196,7 +198,7 @@ class DesktopWindow:
     def _click(self, place: tuple[int, int]) -> None:
         now = time.monotonic()
         self._picture.pointer.move(place, now)
-        name = self._picture.item_at_pointer(now)
+        name = self._picture.item_to_choose(now)
         if name:
             self._connection.send(ITEM, name=name)
 

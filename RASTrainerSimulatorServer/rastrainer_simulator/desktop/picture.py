@@ -111,6 +111,7 @@ class Picture:
         self._cleared: tuple[ShownScene | None, bool] = (None, False)
         self._pulse_step = 0
         self._must_draw = True
+        self._drawn_menu = ""
         self.pointer = Pointer()
         self.pushes: tuple[Push, Push] = ((0.0, 0.0), (0.0, 0.0))
 
@@ -124,6 +125,20 @@ class Picture:
     def item_at_pointer(self, now: float) -> str:
         """Return the name of the menu's item under the mouse."""
         return self._overlay.item_at(*self.pointer.place(now))
+
+    def item_to_choose(self, now: float) -> str:
+        """Return the item that a click at the mouse chooses.
+
+        That is none while the menu that is drawn has been left, or another one has opened since:
+        the click was meant for what was seen.
+        """
+        return "" if self._drawn_menu != self._menu else self.item_at_pointer(now)
+
+    @property
+    def _menu(self) -> str:
+        """The name of the menu that the simulator has open; "" without one."""
+        screen = self._inbox.screen
+        return "" if screen is None or screen.menu is None else screen.menu.name
 
     def redraw(self) -> None:
         """Draw at the next occasion, whatever has changed."""
@@ -146,10 +161,12 @@ class Picture:
             self._must_draw = True
         return self._must_draw or self.viewports.is_moving(now)
 
-    def draw(self) -> None:
-        """Draw it."""
+    def draw(self) -> bool:
+        """Draw it; return whether it shows another menu than before, or none any more."""
         self._must_draw = False
         self._window.render_window.Render()
+        before, self._drawn_menu = self._drawn_menu, self._menu
+        return self._drawn_menu != before
 
     def set_quality(self, quality: Quality) -> None:
         """Draw better, or faster."""

@@ -12,7 +12,7 @@ from rastrainer_simulator.desktop.glb_parts import read_parts
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.panels.stick import stick_boxes
 from rastrainer_simulator.desktop.performance import Quality, first_quality
-from rastrainer_simulator.desktop.picture import Picture
+from rastrainer_simulator.desktop.picture import Picture, Pointer
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
 from rastrainer_simulator.net.views.screen import Hint, Screen
 from rastrainer_simulator.scene import nodes
@@ -191,6 +191,28 @@ def test_a_hint_that_can_be_clicked_is_found_under_the_mouse(show, picture):
     assert overlay.item_at((left + right) / 2, height) == "back"
     show()
     assert overlay.item_at((left + right) / 2, height) == ""
+
+
+def test_a_click_before_the_next_menu_is_drawn_chooses_nothing_of_the_menu_before(
+    show, picture, monkeypatch
+):
+    show(Screen(menu=MENU))
+    overlay, inbox = picture._overlay, picture._inbox
+    monkeypatch.setattr(picture, "pointer", Pointer())
+    grid = [(x, y) for y in range(0, SIZE[1], 10) for x in range(0, SIZE[0], 10)]
+    place = next(place for place in grid if overlay.item_at(*place))
+    picture.pointer.move(place, 0.0)
+    item = picture.item_to_choose(0.0)
+    assert item == overlay.item_at(*place)
+    inbox.screen = SCREEN
+    assert picture.item_at_pointer(0.0) == item
+    assert picture.item_to_choose(0.0) == ""
+    inbox.screen = Screen(menu=replace(MENU, name="another"))
+    assert picture.item_to_choose(0.0) == ""
+    assert picture.is_due(1e6)
+    assert picture.draw()
+    assert picture.item_to_choose(0.0) == item
+    assert not picture.draw()
 
 
 def test_the_sticks_that_a_mouse_drags_are_drawn_as_they_stand_in_the_window_that_has_control(

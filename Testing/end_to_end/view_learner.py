@@ -1,0 +1,43 @@
+"""Somebody at a view of the simulator, at the tutorial."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+from Testing.end_to_end.stream_trainee import StreamTrainee
+from Testing.end_to_end.window_process import wait_until
+
+
+class ViewLearner:
+    """Does what `TutorialPlayer` asks for, but for turning the view."""
+
+    def __init__(self, trainee: StreamTrainee):
+        self.trainee = trainee
+        self.hands, self.until = trainee.hands, trainee.until
+
+    @property
+    def screen(self):
+        return self.trainee.view.screen
+
+    def lower(self):
+        label = self.trainee.view.state["next"]
+        while self.trainee.view.state["touch"] != "on skin":
+            self.trainee.approach(label, 0.02)
+            self.trainee.lower_onto(label)
+
+    def touch_next(self):
+        trainee, label = self.trainee, self.trainee.view.state["next"]
+
+        def is_done():
+            return trainee.view.state["next"] != label
+
+        while not is_done():
+            trainee.approach(label, 0.02)
+            if trainee.lower_onto(label):
+                trainee.hands.tap("touch")
+                with suppress(AssertionError):
+                    wait_until(is_done, f"touch {label}", trainee.again_s)
+
+    def resume(self):
+        self.trainee.choose("resume")
+        self.trainee.until_menu(None)
