@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 
+import numpy as np
 import pytest
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
@@ -115,15 +118,62 @@ class WindowMouse:
 class ClickingInWindow(StreamTrainee):
     """Goes through the menus by clicks."""
 
+    # A click before the window has drawn what is clicked chooses nothing.
+    again_s = 10.0
+
     def choose(self, item: str) -> None:
         """Click on an item, which leads to another menu."""
         before = self.menu.name
-        self.hands.click(item)
-        self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
+        self._until_clicked(item, lambda: not self.menu or self.menu.name != before)
+
+    def show_sticks(self) -> None:
+        """Have the sticks shown, and wait until the window has them."""
+        if not self.view.screen.has_sticks:
+            self._until_clicked("press sticks", lambda: self.view.screen.has_sticks)
+
+    def _until_clicked(self, item: str, is_done: Callable[[], bool]) -> None:
+        while not is_done():
+            self.hands.click(item)
+            with suppress(AssertionError):
+                wait_until(is_done, f"after {item}", self.again_s)
+
+
+class LearningHands:
+    """Acts again where the window, which draws late, has not been ready for it."""
+
+    def __init__(self, trainee: ClickingInWindow):
+        self._trainee, self._mouse = trainee, trainee.hands
+        self.turn_view = self._mouse.turn_view
+
+    def tap(self, control: str) -> None:
+        """Click on the hint of a control until the screen changes."""
+        view = self._trainee.view
+        self._mouse.push(0.0, 0.0, 0.0)
+        before = view.screen.status, view.screen.menu, view.screen.instruction
+        is_done = lambda: (view.screen.status, view.screen.menu, view.screen.instruction) != before  # noqa: E731
+        self._trainee._until_clicked(f"press {control}", is_done)
+
+    def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
+        """Drag a stick, and seize it again until the arm has moved."""
+        self._mouse.push(right, forward, up, fine)
+        if not (right or forward or up):
+            return
+        start = self._trainee.tip.copy()
+        has_moved = lambda: float(np.linalg.norm(self._trainee.tip - start)) > 0.001  # noqa: E731
+        while not has_moved():
+            with suppress(AssertionError):
+                wait_until(has_moved, "a move", self._trainee.again_s)
+                return
+            self._mouse.push(0.0, 0.0, 0.0)
+            self._mouse.push(right, forward, up, fine)
 
 
 class MouseLearner(ViewLearner):
     """Drags with the right button, until the view has turned."""
+
+    def __init__(self, trainee: ClickingInWindow):
+        super().__init__(trainee)
+        self.hands = LearningHands(trainee)
 
     def turn_view(self):
         before = self.screen.status
@@ -145,9 +195,7 @@ def begin(lab, window, trainee, item):
     trainee.until(lambda: lab.view.scene["task"] == "trial-run", "the scene")
     # Until the window has loaded the scene, it shows the menu before.
     window.wait_for_tick(lab.view.state["tick"])
-    if not lab.view.screen.has_sticks:
-        trainee.hands.click("press sticks")
-        trainee.until(lambda: lab.view.screen.has_sticks, "the sticks")
+    trainee.show_sticks()
 
 
 def test_the_mouse_alone_does_the_tutorial_touches_a_whole_trial_and_reads_its_result(tmp_path):

@@ -10,7 +10,7 @@ import pytest
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
 from Testing.simulator.flow.every_page import every_screen
 from Testing.web.chromium import accessibility_checker, open_page
 from Testing.web.hands import PageKeys
@@ -93,9 +93,9 @@ def page(place, browser):
     page.context.close()
 
 
-def checked_page(browser, url: str, code: str):
+def checked_page(browser, url: str, code: str, has_touch: bool = False):
     """Open the page with axe-core in it."""
-    page = open_page(browser, url, code, draws=False)
+    page = open_page(browser, url, code, draws=False, has_touch=has_touch)
     page.evaluate(accessibility_checker())
     return page
 
@@ -129,6 +129,46 @@ def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_
         page.wait_for_selector(f"body[data-menu='{menu}']", state="attached")
         found += complaints(page, name, sizes)
     presenter.close()
+    page.context.close()
+    assert found == []
+
+
+AT_WORK = {
+    "en": Screen(
+        status=("Task 4", "12 of 15 points", "2:31", "Point 13: 120 mm right, back"),
+        instruction=ScreenMessage("P07, point 12 is recorded. Now touch point 13.", Tone.GOOD),
+        warnings=(
+            ScreenMessage("The tip is on the skin away from the point: lift it.", Tone.ERROR),
+            ScreenMessage("The head is in the arm's way: approach from another side.", Tone.ERROR),
+        ),
+    ),
+    "de": Screen(
+        language="de",
+        status=("Aufgabe 4", "12 von 15 Punkten", "2:31", "Punkt 13: 120 mm rechts, hinten"),
+        instruction=ScreenMessage("P07, Punkt 12 ist erfasst. Berühre jetzt Punkt 13.", Tone.GOOD),
+        warnings=(
+            ScreenMessage("Die Spitze liegt neben dem Punkt auf der Haut: Heb sie ab.", Tone.ERROR),
+            ScreenMessage("Der Kopf ist dem Arm im Weg: Komm von einer anderen Seite.", Tone.ERROR),
+        ),
+    ),
+}
+AT_A_GUIDE = """(procedure) => {
+  page.touch.takeState({ ...page.state, procedure });
+  page.overlay.showInset("Along the skin");
+}"""
+
+
+@pytest.mark.parametrize("language", AT_WORK)
+def test_what_a_thumb_works_with_overlaps_nothing_at_any_size(browser, served, language):
+    page = checked_page(browser, served.url, served.code, has_touch=True)
+    screen = AT_WORK[language]
+    served.tell(screen)
+    page.wait_for_selector(f"#instruction:has-text('{screen.instruction.text}')")
+    page.wait_for_selector("#touch-controls")
+    page.evaluate("page.takeState = () => undefined")
+    page.evaluate(AT_A_GUIDE, {"tool": "guide", "aim": {}})
+    page.wait_for_selector("#touch-controls [data-toggle=tilt]")
+    found = complaints(page, "at work", ("phone", "laptop at 200 %"))
     page.context.close()
     assert found == []
 

@@ -178,6 +178,7 @@ export class Page {
     this.poses.put(state.time, state.poses, now);
     this.ghost.put(state.time, state.ghost, now);
     this.state = state;
+    this.touch.takeState(state);
     this.isDue = true;
   }
 

@@ -2,7 +2,7 @@
 
 import type { Connection } from "./connection";
 import { byId, element } from "./elements";
-import type { ControlNews, Screen } from "./messages";
+import type { ControlNews, Screen, StateNews } from "./messages";
 import { say } from "./texts";
 import { TouchStick } from "./touch_stick";
 
@@ -14,7 +14,9 @@ export class TouchControls {
   private readonly parent = byId("touch-controls");
   private readonly left = new TouchStick(() => this.tell());
   private readonly right = new TouchStick(() => this.tell());
-  private readonly fine = element("button", "");
+  private readonly fine = this.toggle();
+  /** Has the right stick tilt the guide in place of lifting and lowering it. */
+  private readonly tilt = this.toggle();
   private readonly buttons = new Map<TouchControl, HTMLButtonElement>();
   private isUsed = matchMedia("(pointer: coarse)").matches;
   private isWorking = false;
@@ -26,13 +28,9 @@ export class TouchControls {
     const row = element("div", "");
     for (const control of CONTROLS) this.buttons.set(control, this.button(control));
     const touch = this.buttons.get("touch")!;
-    row.append(...[...this.buttons.values()].filter((button) => button !== touch), this.fine);
-    this.fine.type = "button";
-    this.fine.onclick = () => {
-      this.fine.setAttribute("aria-pressed", String(!this.isFine));
-      this.tell();
-    };
-    this.fine.setAttribute("aria-pressed", "false");
+    row.append(...[...this.buttons.values()].filter((button) => button !== touch), this.fine, this.tilt);
+    this.tilt.dataset.toggle = "tilt";
+    this.tilt.hidden = true;
     this.parent.append(row, this.left.place, touch, this.right.place);
     window.addEventListener("pointerdown", (event) => {
       if (event.pointerType === "touch") this.use();
@@ -51,9 +49,19 @@ export class TouchControls {
     if (!this.isWorking) this.release();
     for (const [control, button] of this.buttons) button.textContent = say(`touch.${control}`);
     this.fine.textContent = say("touch.fine");
+    this.tilt.textContent = say("touch.tilt");
     this.left.label(say("touch.left"));
-    this.right.label(say("touch.right"));
+    this.labelRight();
     this.place();
+  }
+
+  /** Offer to tilt the guide where one is aligned. */
+  takeState({ procedure }: StateNews): void {
+    const isOffered = procedure?.aim != null;
+    if (isOffered !== this.tilt.hidden) return;
+    this.tilt.hidden = !isOffered;
+    if (!isOffered) this.tilt.setAttribute("aria-pressed", "false");
+    this.labelRight();
   }
 
   takeControl(control: ControlNews): void {
@@ -66,8 +74,21 @@ export class TouchControls {
     this.right.release();
   }
 
-  private get isFine(): boolean {
-    return this.fine.getAttribute("aria-pressed") === "true";
+  /** Return a button that is switched on and off. */
+  private toggle(): HTMLButtonElement {
+    const button = element("button", "");
+    button.type = "button";
+    button.onclick = () => {
+      button.setAttribute("aria-pressed", String(!isOn(button)));
+      this.labelRight();
+      this.tell();
+    };
+    button.setAttribute("aria-pressed", "false");
+    return button;
+  }
+
+  private labelRight(): void {
+    this.right.label(say(isOn(this.tilt) ? "touch.tilting" : "touch.right"));
   }
 
   /** Say that a touch screen is used, before what was touched is sent. */
@@ -99,8 +120,13 @@ export class TouchControls {
   }
 
   private tell(): void {
-    const translation = [this.left.x, this.left.y, this.right.y];
-    const fine = this.isFine && this.isHolding;
-    this.connection.send("sticks", { translation, rotation: [this.right.x, 0], fine, yawDeg: 0 });
+    const [up, tilt] = isOn(this.tilt) ? [0, this.right.y] : [this.right.y, 0];
+    const translation = [this.left.x, this.left.y, up];
+    const fine = isOn(this.fine) && this.isHolding;
+    this.connection.send("sticks", { translation, rotation: [this.right.x, tilt], fine, yawDeg: 0 });
   }
+}
+
+function isOn(button: HTMLButtonElement): boolean {
+  return button.getAttribute("aria-pressed") === "true";
 }

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+from scipy.stats import t
 
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
@@ -33,6 +35,7 @@ from Testing.without_tutorial import leave_tutorial_out
 
 LIMIT_S = 300.0
 """A trial ends here: the trial run lasts five minutes, and no model has longer for a task."""
+POINTS = 15
 MODELS = ("looks", "reads")
 
 
@@ -51,9 +54,9 @@ class Outcome:
     error_mm: float
 
     def is_worse_than(self, other: Outcome) -> bool:
-        """Return whether fewer points were touched, or as many less accurately."""
-        is_as_many = self.touches == other.touches
-        return self.error_mm > other.error_mm if is_as_many else self.touches < other.touches
+        """Return whether fewer points were touched, or as many later and less accurately."""
+        is_late = self.time_s > other.time_s and self.error_mm > other.error_mm
+        return is_late if self.touches == other.touches else self.touches < other.touches
 
 
 def play(
@@ -121,13 +124,30 @@ def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Ite
             running.close()
 
 
+def mean_and_interval(values: Sequence[float]) -> str:
+    """Return the mean and the half width of its 95 % interval by Student's t; "–" of none."""
+    known = np.array(values)[np.isfinite(values)]
+    if len(known) < 2:
+        return "–" if len(known) == 0 else f"{known[0]:.2f}"
+    half = t.ppf(0.975, len(known) - 1) * known.std(ddof=1) / math.sqrt(len(known))
+    return f"{known.mean():.2f} ± {half:.2f}"
+
+
 def main(*arguments: str) -> None:
-    """Print a line for each trial: `python -m Testing.simulator.virtual.played_models SEED…`."""
+    """Play all tasks with the seeds that are given, and print a line for each trial and task."""
     setup = load_setup()
-    for seed in map(int, arguments):
-        for task in setup.scenario.tasks:
-            for model in MODELS:
-                print(seed, task.name, model, play(setup, model, task.name, seed), flush=True)
+    for task in setup.scenario.tasks:
+        for model in MODELS:
+            outcomes = []
+            for seed in map(int, arguments):
+                outcomes.append(play(setup, model, task.name, seed))
+                print(seed, task.name, model, outcomes[-1], flush=True)
+            finished = sum(outcome.touches == POINTS for outcome in outcomes)
+            each = (
+                mean_and_interval([getattr(outcome, name) for outcome in outcomes])
+                for name in ("touches", "time_s", "error_mm")
+            )
+            print(task.name, model, f"{finished} of {len(outcomes)} finished", *each, sep=" | ")
 
 
 if __name__ == "__main__":
