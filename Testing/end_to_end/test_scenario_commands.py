@@ -7,12 +7,16 @@ import signal
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 
 import pytest
 
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.package import pack
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.read_png import read_png
@@ -61,6 +65,20 @@ def test_the_check_reports_each_problem_and_its_status_says_so(ball, tmp_path, c
     assert any("off the skin" in line for line in told)
     assert main(["scenario", "check", str(tmp_path / "none")]) == 2
     assert "none does not exist" in capsys.readouterr().err
+
+
+def test_the_check_names_the_fiducials_that_no_view_shows(tmp_path, monkeypatch, capsys):
+    scenario = load_scenario(asset_path("scenarios", "colin27"))
+    with new_folder(tmp_path / "head") as made:
+        one = replace(scenario, tasks=scenario.tasks[1:2], procedures=())
+        write_scenario(made, one, read_head_mesh(scenario.head_mesh))
+        (made / "preview.png").write_bytes(png())
+    monkeypatch.setattr("rastrainer_simulator.viewpoint.best_view.WIDEST_DEG", 0.0)
+    assert main(["scenario", "check", str(tmp_path / "head")]) == 1
+    told = capsys.readouterr().out.splitlines()
+    unseen = [line for line in told if "cannot be seen within 60° of the skin's normal" in line]
+    assert len(unseen) == 1, told
+    assert unseen[0].startswith("Task 1: fiducials 1, 2, 3,")
 
 
 def test_a_package_is_unpacked_into_the_library_once(ball, tmp_path, monkeypatch, capsys):
