@@ -186,6 +186,9 @@ class PageMouse:
             self._page.wait_for_function(_SLOW_IS, arg="on" if fine else "off")
         sticks = self._page.query_selector_all("#touch-controls .stick")
         box = sticks[0 if wanted == "first" else 1].bounding_box()
+        if box is None:
+            # A menu has opened.
+            return
         radius = box["width"] / 2
         middle = box["x"] + radius, box["y"] + radius
         if self._dragged is None:

@@ -106,7 +106,8 @@ def test_by_the_mouse_alone_the_tutorial_is_done_and_a_whole_trial_touched_and_s
     tmp_path, browser
 ):
     rules = {"order": "fixed", "tutorial": "required"}
-    with Place(tmp_path, "--speed", SLOW, limits=WITHOUT_GRAPHICS, **rules) as place:
+    limits = {**WITHOUT_GRAPHICS, "lost_s": 600}
+    with Place(tmp_path, "--speed", SLOW, limits=limits, **rules) as place:
         simulator = place.simulator
         page = open_page(browser, simulator.url, simulator.code, size=SIZE, draws=False)
         trainee = ClickingTrainee(place.view, PageMouse(page))

@@ -192,7 +192,7 @@ class ReadingTrainee:
             if self._lowered == 1:
                 self._tilt = self._tilt + STEEPER * ahead
             self._lowered += 1
-            lower = -min(LOWER_M_S, 0.01 * 1.5**self._lowered) * out
+            lower = -min(LOWER_M_S, 0.01 * 1.5 ** min(self._lowered, 5)) * out
             self._move(lower + (0.3 * speed * ahead if self._lowered < 4 else 0.0))
 
     def _ask(self) -> None:
