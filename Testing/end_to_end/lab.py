@@ -22,8 +22,8 @@ from Testing.simulator.net.views.served import ViewClient
 
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 TIMEOUT_S = 600
-PATIENT = {"views": {"silent_s": 10, "lost_s": TIMEOUT_S}}
-"""A machine that is too busy to draw neither lets go of what is held nor pauses the trial."""
+PATIENT = {"views": {"lost_s": TIMEOUT_S}}
+"""A machine that is too busy to draw does not pause the trial."""
 VIEWS = "RASTrainer simulator serves views on "
 
 
@@ -38,9 +38,8 @@ class Lab:
         view: one that watches.
     """
 
-    def __init__(self, folder: Path, *arguments: str, **preferences: str):
+    def __init__(self, folder: Path, *arguments: str):
         self._folder = folder
-        self._preferences = {"order": "any", **preferences}
         self.records = folder / "records"
         self.key = secrets.token_urlsafe(32)
         with ExitStack() as stack:
@@ -58,7 +57,7 @@ class Lab:
         config = self._folder / "records-config"
         config.mkdir(parents=True)
         (config / LIMITS_FILE).write_text(json.dumps(PATIENT))
-        (config / "preferences.json").write_text(json.dumps(self._preferences))
+        (config / "preferences.json").write_text('{"order": "any"}')
         os.environ["RASTRAINER_VIEW_KEY"] = self.key
         try:
             return SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)

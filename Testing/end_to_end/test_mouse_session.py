@@ -1,30 +1,22 @@
-"""The window by the mouse alone: the ID, the tutorial, a whole trial, menus and the result."""
+"""The window by the mouse alone: the ID, the trial run, the sticks, Touch and the menu."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 
-import numpy as np
 import pytest
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from rastrainer.journal.journal_file import read_journal
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.stick import stick_boxes
 from rastrainer_simulator.desktop.picture import own_facts
-from rastrainer_simulator.flow.tutorial.steps import TutorialStep
-from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import PRESS
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee
-from Testing.end_to_end.view_learner import ViewLearner
 from Testing.end_to_end.virtual_display import VirtualMouse
 from Testing.end_to_end.window_process import wait_until
-from Testing.tutorial_player import TutorialPlayer
 
 # A window that the processor draws wants the machine for itself.
 pytestmark = pytest.mark.soak
@@ -33,7 +25,6 @@ SIZE = (960, 540)
 SPEED = "0.4"
 """Simulated seconds in a second: a stick is let go of in time, however late a picture is."""
 GRID_PX, HINTS_PX = 10, 100
-RIGHT_BUTTON = 3
 
 
 class WindowMouse:
@@ -52,13 +43,6 @@ class WindowMouse:
         self._move(*found[0])
         self._mouse.hold(True)
         self._mouse.hold(False)
-
-    def turn_view(self, across_px: int) -> None:
-        """Drag with the right button, from the middle of the picture."""
-        self._move(SIZE[0] / 2, SIZE[1] / 2)
-        self._mouse.hold(True, RIGHT_BUTTON)
-        self._move(SIZE[0] / 2 + across_px, SIZE[1] / 2)
-        self._mouse.hold(False, RIGHT_BUTTON)
 
     def tap(self, control: str) -> None:
         self.push(0.0, 0.0, 0.0)
@@ -118,110 +102,11 @@ class WindowMouse:
 class ClickingInWindow(StreamTrainee):
     """Goes through the menus by clicks."""
 
-    # A click before the window has drawn what is clicked chooses nothing.
-    again_s = 10.0
-
     def choose(self, item: str) -> None:
         """Click on an item, which leads to another menu."""
         before = self.menu.name
-        self._until_clicked(item, lambda: not self.menu or self.menu.name != before)
-
-    def show_sticks(self) -> None:
-        """Have the sticks shown, and wait until the window has them."""
-        if not self.view.screen.has_sticks:
-            self._until_clicked("press sticks", lambda: self.view.screen.has_sticks)
-
-    def _until_clicked(self, item: str, is_done: Callable[[], bool]) -> None:
-        while not is_done():
-            self.hands.click(item)
-            with suppress(AssertionError):
-                wait_until(is_done, f"after {item}", self.again_s)
-
-
-class LearningHands:
-    """Acts again where the window, which draws late, has not been ready for it."""
-
-    def __init__(self, trainee: ClickingInWindow):
-        self._trainee, self._mouse = trainee, trainee.hands
-        self.turn_view = self._mouse.turn_view
-
-    def tap(self, control: str) -> None:
-        """Click on the hint of a control until the screen changes."""
-        view = self._trainee.view
-        self._mouse.push(0.0, 0.0, 0.0)
-        before = view.screen.status, view.screen.menu, view.screen.instruction
-        is_done = lambda: (view.screen.status, view.screen.menu, view.screen.instruction) != before  # noqa: E731
-        self._trainee._until_clicked(f"press {control}", is_done)
-
-    def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
-        """Drag a stick, and seize it again until the arm has moved."""
-        self._mouse.push(right, forward, up, fine)
-        if not (right or forward or up):
-            return
-        start = self._trainee.tip.copy()
-        has_moved = lambda: float(np.linalg.norm(self._trainee.tip - start)) > 0.001  # noqa: E731
-        while not has_moved():
-            with suppress(AssertionError):
-                wait_until(has_moved, "a move", self._trainee.again_s)
-                return
-            self._mouse.push(0.0, 0.0, 0.0)
-            self._mouse.push(right, forward, up, fine)
-
-
-class MouseLearner(ViewLearner):
-    """Drags with the right button, until the view has turned."""
-
-    def __init__(self, trainee: ClickingInWindow):
-        super().__init__(trainee)
-        self.hands = LearningHands(trainee)
-
-    def turn_view(self):
-        before = self.screen.status
-        self.hands.turn_view(150)
-        self.until(lambda: self.screen.status != before, "a turn of the view")
-
-
-def enter_id(trainee):
-    """Click from the start menu to that of the tasks, with the ID P7."""
-    trainee.until_menu("start")
-    for item in ("train", "skip", "next", "clicked", "row 1", "P", "row 3", "7", "done"):
-        trainee.choose(item)
-    assert trainee.value("trainee") == "P7"
-
-
-def begin(lab, window, trainee, item):
-    """Click on a task or the tutorial, and have the sticks shown once the window shows it."""
-    trainee.choose(item)
-    trainee.until(lambda: lab.view.scene["task"] == "trial-run", "the scene")
-    # Until the window has loaded the scene, it shows the menu before.
-    window.wait_for_tick(lab.view.state["tick"])
-    trainee.show_sticks()
-
-
-def test_the_mouse_alone_does_the_tutorial_touches_a_whole_trial_and_reads_its_result(tmp_path):
-    rules = {"order": "fixed", "tutorial": "required"}
-    with Lab(tmp_path, "--speed", SPEED, "--seed", "8", "--no-gamepad", **rules) as lab:
-        window = lab.open_window("window", "--size", "{}x{}".format(*SIZE), "--quality", "low")
-        mouse = WindowMouse(lab)
-        trainee = ClickingInWindow(lab.view, mouse)
-        enter_id(trainee)
-        begin(lab, window, trainee, "tutorial")
-        player = TutorialPlayer(MouseLearner(trainee), SourceKind.MOUSE)
-        player.play()
-        assert TutorialStep.GUIDED in dict(player.read)
-        trainee.until_menu("tutorial-done")
-        begin(lab, window, trainee, "trial-run")
-        for number in range(1, 16):
-            trainee.touch(str(number))
-        trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")
-        trainee.choose("register")
-        trainee.until_menu("result")
-        assert trainee.menu.facts[0].label == "Score"
-        journals = [read_journal(path) for path in lab.records.glob("*.journal")]
-        (journal,) = journals
-        assert len(list(journal.of_kind("touch"))) == 15
-        assert {entry["operator"] for entry in journal.of_kind("input")} <= {"mouse", ""}
-        mouse.close()
+        self.hands.click(item)
+        self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
 
 
 def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the_menu(tmp_path):
@@ -229,8 +114,15 @@ def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the
         window = lab.open_window("window", "--size", "{}x{}".format(*SIZE), "--quality", "low")
         mouse = WindowMouse(lab)
         trainee = ClickingInWindow(lab.view, mouse)
-        enter_id(trainee)
-        begin(lab, window, trainee, "trial-run")
+        trainee.until_menu("start")
+        for item in ("train", "skip", "next", "clicked", "row 1", "P", "row 3", "7", "done"):
+            trainee.choose(item)
+        assert trainee.value("trainee") == "P7"
+        trainee.begin_task("trial-run")
+        # Until the window has loaded the scene, it shows the menu before.
+        window.wait_for_tick(lab.view.state["tick"])
+        mouse.click("press sticks")
+        trainee.until(lambda: lab.view.screen.has_sticks, "the sticks")
         start = trainee.tip.copy()
         mouse.push(0.0, 0.0, 1.0)
         trainee.until(lambda: trainee.tip[2] > start[2] + 0.01, "a move up")

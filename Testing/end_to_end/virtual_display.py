@@ -76,16 +76,16 @@ class _Device:
 
 
 class VirtualMouse(_Device):
-    """Moves the pointer, and presses its buttons: 1 is the left one, 3 the right one."""
+    """Moves the pointer, and presses its left button."""
 
     def move(self, x: int, y: int) -> None:
         """Put the pointer at a pixel of the display."""
         self._test.XTestFakeMotionEvent(self._display, -1, x, y, 0)
         self._x.XFlush(self._display)
 
-    def hold(self, is_down: bool, button: int = 1) -> None:
-        """Press a button, or let it go."""
-        self._test.XTestFakeButtonEvent(self._display, button, int(is_down), 0)
+    def hold(self, is_down: bool) -> None:
+        """Press the left button, or let it go."""
+        self._test.XTestFakeButtonEvent(self._display, 1, int(is_down), 0)
         self._x.XFlush(self._display)
 
     def window_corner(self, width: int) -> tuple[int, int]:

@@ -1,14 +1,10 @@
-"""The page by the mouse alone: the ID, the tutorial, a whole trial, undo, menus, the result."""
+"""The page by the mouse alone: the ID, the trial run, the sticks, touches, undo, menus."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from rastrainer_simulator.flow.tutorial.steps import TutorialStep
-from rastrainer_simulator.input.inputs import SourceKind
-from Testing.end_to_end.view_learner import ViewLearner
-from Testing.tutorial_player import TutorialPlayer
 from Testing.web.chromium import open_page
 from Testing.web.hands import PageMouse
 from Testing.web.place import WITHOUT_GRAPHICS, CarriedTrainee, Place, Trainee
@@ -94,38 +90,11 @@ def test_a_mouse_enters_an_id_drives_the_arm_touches_takes_back_and_opens_the_me
     assert np.isfinite(trainee.tip).all()
 
 
-class MouseLearner(ViewLearner):
-    """Drags with the right button."""
-
-    def turn_view(self):
-        self.hands.turn_view(200)
-
-
 @pytest.mark.soak
-def test_by_the_mouse_alone_the_tutorial_is_done_and_a_whole_trial_touched_and_scored(
-    tmp_path, browser
-):
-    rules = {"order": "fixed", "tutorial": "required"}
-    limits = {**WITHOUT_GRAPHICS, "lost_s": 600}
-    with Place(tmp_path, "--speed", SLOW, limits=limits, **rules) as place:
-        simulator = place.simulator
-        page = open_page(browser, simulator.url, simulator.code, size=SIZE, draws=False)
-        trainee = ClickingTrainee(place.view, PageMouse(page))
-        for item in ("train", "skip", "next"):
-            trainee.choose(item)
-        trainee.click_id()
-        trainee.choose("tutorial")
-        trainee.until(lambda: place.view.scene["task"] == "trial-run", "the scene")
-        trainee.hands.click("press sticks")
-        player = TutorialPlayer(MouseLearner(trainee), SourceKind.MOUSE)
-        player.play()
-        assert TutorialStep.GUIDED in dict(player.read)
-        trainee.until_menu("tutorial-done")
-        trainee.begin_task("trial-run")
-        trainee.touch_all()
-        trainee.register()
-        trainee.until_menu("result")
-        assert trainee.menu.facts[0].label == "Score"
-        assert len(place.entries("touch")) == 15
-        assert {entry["operator"] for entry in place.entries("input")} <= {"mouse", ""}
-        assert page.problems == []
+def test_the_first_touches_of_the_trial_run_are_steered_by_the_mouse(place, page):
+    trainee = ClickingTrainee(place.view, PageMouse(page))
+    trainee.begin_trial_run()
+    for label in ("1", "2"):
+        trainee.touch(label)
+    assert trainee.touched == 2
+    assert {entry["operator"] for entry in place.entries("input")} <= {"mouse", ""}

@@ -39,6 +39,7 @@ class PlacesOfPoints:
     """The places where the next point may be; all are (3,) float, World, m.
 
     Attributes:
+        all: (n, 3) float, of the whole head.
         needs_answers: whether refusals of touches tell more than they hide: after one, it is not
             read whether the tip is off the path.
     """
@@ -50,9 +51,9 @@ class PlacesOfPoints:
         level = np.sqrt(1.0 - z**2)
         directions = np.column_stack((level * np.cos(turn), level * np.sin(turn), z))
         places = CENTER + HALF_AXES * directions
-        self._places = places[places[:, 2] > CENTER[2] + LOWEST_M]
-        self._is_open = np.ones(len(self._places), bool)
-        self._is_empty = np.zeros(len(self._places), bool)
+        self.all = places[places[:, 2] > CENTER[2] + LOWEST_M]
+        self._is_open = np.ones(len(self.all), bool)
+        self._is_empty = np.zeros(len(self.all), bool)
         self._known: dict[str, tuple[float, np.ndarray]] = {}
         self._last: np.ndarray | None = None
         self._was_off = False
@@ -67,12 +68,12 @@ class PlacesOfPoints:
             self._known.pop(self._label, None)
             if not self._is_open.any():
                 self._is_empty[:], self._is_open[:] = False, True
-        away = np.linalg.norm(self._places - at, axis=1)
-        return self._places[int(np.argmin(np.where(self._is_open, away, np.inf)))]
+        away = np.linalg.norm(self.all - at, axis=1)
+        return self.all[int(np.argmin(np.where(self._is_open, away, np.inf)))]
 
     def may_be_at(self, place: np.ndarray) -> bool:
         """Return whether the point may be at one of the places."""
-        return bool(self._is_open[np.argmin(np.linalg.norm(self._places - place, axis=1))])
+        return bool(self._is_open[np.argmin(np.linalg.norm(self.all - place, axis=1))])
 
     def is_silent_at(self, at: np.ndarray) -> bool:
         """Return whether nothing is said on the skin there: the last touch was."""
@@ -111,7 +112,7 @@ class PlacesOfPoints:
 
     def is_away(self, at: np.ndarray, told_m: float, way: np.ndarray) -> None:
         """The point is about that far away, in about that direction."""
-        is_ahead = (self._places - at) @ way > -UNSURE_M
+        is_ahead = (self.all - at) @ way > -UNSURE_M
         self._keep((np.abs(self._away(at) - told_m) < 0.0025 + UNSURE_M) & is_ahead)
 
     def is_off_path(self, at: np.ndarray) -> None:
@@ -128,7 +129,7 @@ class PlacesOfPoints:
             self._keep(self._beside(at) < most + UNSURE_M)
 
     def _away(self, at: np.ndarray) -> np.ndarray:
-        return np.linalg.norm(self._places - at, axis=1)
+        return np.linalg.norm(self.all - at, axis=1)
 
     def _keep(self, agrees: np.ndarray) -> None:
         self._is_open &= agrees
@@ -137,7 +138,7 @@ class PlacesOfPoints:
         """Return how far a tip is beside the path to each place, (n,) float, m."""
         assert self._last is not None, "there is no path to the first point"
         first, here = _unit(self._last - CENTER), _unit(at - CENTER)
-        ends = (self._places - CENTER) / np.linalg.norm(self._places - CENTER, axis=1)[:, None]
+        ends = (self.all - CENTER) / np.linalg.norm(self.all - CENTER, axis=1)[:, None]
         poles = np.cross(first, ends)
         poles /= np.maximum(1e-9, np.linalg.norm(poles, axis=1))[:, None]
         is_between = (np.cross(poles, first) @ here >= 0.0) & (np.cross(ends, poles) @ here >= 0.0)

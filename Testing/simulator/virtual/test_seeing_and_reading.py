@@ -2,19 +2,52 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from Testing.simulator.virtual.places_of_points import CENTER, PlacesOfPoints, surface_at
 from Testing.simulator.virtual.played_models import MODELS, play
 
 TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
 SEEDS = (11, 12, 13)
 
 
-def test_who_only_reads_finds_the_points_of_the_trial_run_but_worse_than_who_only_looks(setup):
-    looks, reads = (play(setup, model, "trial-run", 12, 16.0) for model in MODELS)
-    # It is a fair competitor: it knows where its tip is, and does not drift off the head.
-    assert 0 < reads.touches < looks.touches
+def test_who_only_looks_touches_exactly_in_the_trial_run(setup):
+    looks = play(setup, "looks", "trial-run", 11, 10.0)
+    assert looks.touches > 0
     assert looks.error_mm < 1.0
+
+
+def test_distances_and_directions_leave_the_point_alone_to_who_reads():
+    places, point = PlacesOfPoints(), surface_at(CENTER + np.array([0.03, -0.06, 0.06]))
+    for start in ((0.0, -0.2, 0.1), (0.15, -0.1, 0.1), (0.0, -0.05, 0.2)):
+        at = CENTER + np.array(start)
+        places.is_away(at, float(np.linalg.norm(point - at)), np.sign(point - at))
+    left = [place for place in places.all if places.may_be_at(place)]
+    assert 0 < len(left) < 0.05 * len(places.all)
+    assert min(np.linalg.norm(place - point) for place in left) < 0.006
+
+
+def test_who_reads_searches_on_from_place_to_place_and_comes_back_to_none():
+    places, at, seen = PlacesOfPoints(), CENTER + np.array([0.0, 0.0, 0.1]), []
+    for _ in range(100):
+        at = places.nearest(at)
+        seen.append(at)
+        places.is_not_at(at)
+    assert len(np.unique(np.array(seen), axis=0)) == len(seen)
+    steps = np.linalg.norm(np.diff(seen, axis=0), axis=1)
+    assert np.median(steps) < 0.02
+
+
+def test_who_reads_that_the_tip_is_off_the_path_looks_elsewhere():
+    places = PlacesOfPoints()
+    last = surface_at(CENTER + np.array([0.0, -0.1, 0.05]))
+    places.has_touched(last, "2")
+    beside = surface_at(CENTER + np.array([0.08, -0.02, 0.04]))
+    assert places.may_be_at(beside)
+    places.is_off_path(beside)
+    assert not places.may_be_at(beside)
+    assert places.may_be_at(surface_at(CENTER + np.array([-0.08, -0.02, 0.04])))
 
 
 @pytest.mark.soak
