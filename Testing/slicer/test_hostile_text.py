@@ -3,6 +3,7 @@
 import json
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -208,7 +209,9 @@ def test_a_scenario_with_a_long_title(open_module, tmp_path):
     host.answer("Save the scenario", str(tmp_path / "copy.zip"))
     host.press("exportScenarioButton")
     assert host.minimum_width() <= DOCK_WIDTH
-    host.widget.logic.session.chooseTask("task-1", HOSTILE)
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    task = replace(colin.task("task-1"), title=HOSTILE)
+    host.widget.logic.session.chooseTask(task, colin)
     assert host.text("startTaskButton").startswith("Start <b>bold</b>")
     assert len(host.text("startTaskButton")) < 80
     assert host.minimum_width() <= DOCK_WIDTH

@@ -2,6 +2,7 @@
 
 import json
 import uuid
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -72,6 +73,32 @@ def test_a_procedure_is_started_beside_the_task(surgery):
     host.wait_until(lambda: sent(simulator, "StartTask"), "the task is started")
     assert sent(simulator, "StartTask")[0]["procedure"] == "seeg"
     assert host.text("procedureStateText").startswith("No trial with a procedure is open")
+
+
+def test_the_way_of_registering_is_chosen_beside_the_task(surgery):
+    host, simulator = surgery
+    assert host.find("methodComboBox").currentText == "Fiducials"
+    for method in ("Trace over the skin", "Fiducials"):
+        count = len(sent(simulator, "StartTask"))
+        host.choose("methodComboBox", method)
+        host.press("startTaskButton")
+        host.wait_until(
+            lambda count=count: len(sent(simulator, "StartTask")) > count, "the task is started"
+        )
+    traced, touched = sent(simulator, "StartTask")
+    assert traced["method"] == "surface"
+    assert "method" not in touched
+
+
+def test_a_head_without_landmarks_offers_its_fiducials_alone(surgery):
+    host, _simulator = surgery
+    session = host.widget.logic.session
+    head = replace(session.scenario.find("colin27"), landmarks=())
+    host.choose("methodComboBox", "Landmarks of the face")
+    session.chooseTask(head.task("task-1"), head)
+    box = host.find("methodComboBox")
+    assert (box.count, box.enabled, box.currentText) == (1, False, "Fiducials")
+    assert "has no landmarks" in box.toolTip
 
 
 def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):

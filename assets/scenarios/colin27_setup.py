@@ -19,6 +19,17 @@ CLOSE_UP_MM = np.array([480.0, -600.0, 440.0])
 WINDOW, LEVEL = 188.0, 94.0
 """Of the volume's values, as make_colin27.py determines them."""
 
+LANDMARKS = {
+    "Nasion": (1.0, 84.4, -40.0),
+    "Left tragus": (-86.9, -22.8, -56.3),
+    "Right outer canthus": (52.6, 62.0, -42.1),
+    "Right inner canthus": (13.6, 72.8, -41.1),
+    "Left inner canthus": (-14.5, 70.4, -42.5),
+}
+"""RAS, mm, found by eye on pictures of the mesh. Those that the robot reaches in every pose of a
+trial, the three that a trace begins with first; the right tragus and the left outer canthus are out
+of its reach in some poses, and the tip of the nose is not in the images."""
+
 NOTICE = (
     "Copyright (C) 1993–2009 Louis Collins, McConnell Brain Imaging Centre, Montreal Neurological "
     "Institute, McGill University. Permission to use, copy, modify, and distribute this software "
@@ -58,6 +69,9 @@ def scenario_json(center_ras: np.ndarray, tasks: list[dict[str, Any]]) -> dict[s
             "tiltDeg": PERTURBATION.tilt_deg,
         },
         "tasks": tasks,
+        "landmarks": [
+            {"name": name, "positionRas": list(place)} for name, place in LANDMARKS.items()
+        ],
         "cameras": {
             "close-up": _camera(CLOSE_UP_MM, [480.0, 0.0, 225.0], 30.0),
             "far": _camera(np.array([240.0, -2050.0, 1050.0]), [240.0, 0.0, 430.0], 32.0),

@@ -203,8 +203,7 @@ class ScenarioPanel:
     def _chooseTask(self, _index: int = 0) -> None:
         scenario = self._logic.find(chosenData(self._ui.scenarioComboBox))
         task = scenario.task(chosenData(self._ui.taskComboBox))
-        procedures = tuple((each.name, each.title) for each in scenario.procedures)
-        self._session.chooseTask(task.name, task.title, procedures)
+        self._session.chooseTask(task, scenario)
         self._showMessage(
             _("{count} fiducials, complexity {complexity:.2f}; target: {target}.").format(
                 count=len(task.labels), complexity=task.complexity, target=scenario.target_name

@@ -24,6 +24,7 @@ from rastrainer.panels.widgets import (
     setUsable,
 )
 from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN, Mode, Phase, Proximity
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.training_logic import TrialStatus
@@ -46,6 +47,12 @@ PHASES = {
     Phase.INSERTING.value: _("the instrument is being inserted"),
     Phase.REGISTERED.value: _("registered, being scored"),
     Phase.SCORED.value: _("the trial is scored"),
+}
+METHODS = {
+    RegistrationMethod.FIDUCIALS.value: _("Fiducials"),
+    RegistrationMethod.LANDMARKS.value: _("Landmarks of the face"),
+    RegistrationMethod.SURFACE.value: _("Trace over the skin"),
+    RegistrationMethod.LANDMARKS_SURFACE.value: _("Landmarks, then a trace"),
 }
 _PAUSABLE = (Phase.RUNNING, *PROCEDURE_PHASES)
 NEARNESS = {
@@ -79,13 +86,13 @@ class TrainingPanel:
             (session.trials.problemFound, self._showMessage),
             (session.aborted.problemFound, self._showMessage),
             (session.trainees.changed, self.showState),
-            (session.taskChosen, self._showProcedures),
+            (session.taskChosen, self._showChoices),
             (session.link.statusChanged, self.showState),
         )
         for signal, slot in self._listening:
             signal.connect(slot)
         self._showMessage("")
-        self._showProcedures()
+        self._showChoices()
         self._moveSlices()
         self.showState()
 
@@ -99,8 +106,11 @@ class TrainingPanel:
         self._start(TRIAL_RUN)
 
     def startTask(self) -> None:
-        """Start the chosen task, which continues with the chosen procedure."""
-        self._start(self._session.task, chosenData(self._ui.procedureComboBox))
+        """Start the chosen task, by the chosen method and with the chosen procedure."""
+        ui = self._ui
+        procedure, method = (chosenData(box) for box in (ui.procedureComboBox, ui.methodComboBox))
+        fiducials = RegistrationMethod.FIDUCIALS.value
+        self._start(self._session.task, procedure, "" if method == fiducials else method)
 
     def pause(self) -> None:
         """Pause the trial."""
@@ -122,8 +132,21 @@ class TrainingPanel:
             if slicer.util.confirmYesNoDisplay(toolTip(question), _("Abort the trial")):
                 self._logic.abort(trial.trialId)
 
-    def _showProcedures(self) -> None:
-        """Offer the procedures of the chosen scenario; another scenario begins with none."""
+    def _showChoices(self) -> None:
+        """Offer what the chosen scenario has; another scenario begins with fiducials alone."""
+        box, methods = self._ui.methodComboBox, self._session.methods
+        method = chosenData(box)
+        fillComboBox(
+            box,
+            [(METHODS[each], each) for each in methods],
+            method if method in methods else methods[0],
+        )
+        setUsable(
+            box,
+            len(methods) > 1,
+            _("What the trainee touches, and how the head is registered. In a study: fiducials."),
+            _("The chosen scenario has no landmarks: only its fiducials can be touched."),
+        )
         entries = [(_("none: only touches"), "")]
         entries += [(title, name) for name, title in self._session.procedures]
         chosen = chosenData(self._ui.procedureComboBox)
@@ -165,11 +188,11 @@ class TrainingPanel:
         text = _("Shown to the trainee: {sentence}").format(sentence=progress.instruction)
         setSentence(ui.instructionText, text if progress.instruction else "")
 
-    def _start(self, task: str, procedure: str = "") -> None:
+    def _start(self, task: str, procedure: str = "", method: str = "") -> None:
         with slicer.util.tryWithErrorDisplay(_("The trial was not started.")):
             mode = chosenData(self._ui.modeComboBox)
             isTutorialFirst = self._ui.tutorialCheckBox.checked
-            self._session.study.startTrial(task, mode, isTutorialFirst, procedure)
+            self._session.study.startTrial(task, mode, isTutorialFirst, procedure, method)
 
     def _isPaused(self) -> bool:
         return self._logic.progress.phase == Phase.PAUSED.value

@@ -40,6 +40,12 @@ def method_of(name: str | None) -> RegistrationMethod:
     raise InputError(f"No trial is registered by such a method; there are {names}.")
 
 
+def playable_methods(scenario: Scenario) -> tuple[RegistrationMethod, ...]:
+    """Return the methods by which a trial of a scenario can be played, fiducials first."""
+    has_landmarks = len(scenario.landmarks) >= COARSE_LANDMARKS
+    return PLAYED_METHODS if has_landmarks else PLAYED_METHODS[:1]
+
+
 def task_by_method(scenario: Scenario, task_name: str, method: RegistrationMethod) -> Task:
     """Return a task with the points that a method has touched in place of its fiducials.
 

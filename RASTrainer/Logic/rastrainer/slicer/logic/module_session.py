@@ -8,6 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.protocol import Phase
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.scenario.method_task import playable_methods
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.scenario.tasks import Task
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
@@ -95,6 +99,7 @@ class ModuleSession:
         task: name of the chosen task.
         taskTitle: what people read.
         procedures: names and titles of the procedures of the chosen scenario.
+        methods: names of the ways in which a trial of that scenario can be registered.
         isSeen: returns whether someone may be looking at the module, at the 3D view, or (where
             asked to count them) at the slice views; the module's widget sets it.
         taskChosen: emits nothing, whenever another task is chosen.
@@ -128,6 +133,7 @@ class ModuleSession:
         self._lockWait = LockWait.interactive()
         cache = ScenarioCache.below(places.assets / "scenarios", places.library)
         self.procedures: tuple[tuple[str, str], ...] = ()
+        self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
         self.cohort = read_trials(places.assets.joinpath(*PUBLISHED_STUDY))
         self.work = BackgroundWork()
         self.link = Link(scene, findKit, callSoon=callSoon)
@@ -210,11 +216,11 @@ class ModuleSession:
         self.aborted.forgetWaiting()
         self.trainees.reopen()
 
-    def chooseTask(
-        self, name: str, title: str, procedures: tuple[tuple[str, str], ...] = ()
-    ) -> None:
-        """Choose the task that is started next, and say what it may continue with."""
-        self.task, self.taskTitle, self.procedures = name, title, procedures
+    def chooseTask(self, task: Task, scenario: Scenario) -> None:
+        """Choose the task that is started next, in its scenario."""
+        self.task, self.taskTitle = task.name, task.title
+        self.procedures = tuple((each.name, each.title) for each in scenario.procedures)
+        self.methods = tuple(each.value for each in playable_methods(scenario))
         self.taskChosen.emit()
 
     def process(self) -> None:

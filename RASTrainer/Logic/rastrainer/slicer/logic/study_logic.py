@@ -130,20 +130,25 @@ class StudyLogic:
         return minutes + self._watch.unsavedS(self._trainees.chosen, step.mode) / 60.0
 
     def startTrial(
-        self, task: str, mode: str, isTutorialFirst: bool = True, procedure: str = ""
+        self,
+        task: str,
+        mode: str,
+        isTutorialFirst: bool = True,
+        procedure: str = "",
+        method: str = "",
     ) -> None:
         """Start a trial for the chosen trainee, unless the study asks for something else first.
 
         Within a study, the protocol decides whether a trial run waits for the tutorial, and whether
-        the trial continues with a procedure.
+        the trial continues with a procedure; its trials are registered by fiducials.
 
         Raises:
             InputError: it does, or no trainee or task is chosen.
         """
         if self.protocol() is not None and self._trainees.chosen:
             procedure = self._progress().check_start(mode, task).procedure
-            isTutorialFirst = True
-        self._training.start(self._trainees.chosen, task, mode, isTutorialFirst, procedure)
+            isTutorialFirst, method = True, ""
+        self._training.start(self._trainees.chosen, task, mode, isTutorialFirst, procedure, method)
 
     def offProtocolSentence(self) -> str:
         """Return a sentence while an enrolled trainee plays what the study has not requested."""

@@ -135,8 +135,11 @@ class TrainingLogic:
         mode: str,
         isTutorialFirst: bool = False,
         procedure: str = "",
+        method: str = "",
     ) -> None:
         """Start a trial, which continues with a procedure of the scenario if one is named.
+
+        It is registered by a `RegistrationMethod`, by fiducials if none is named.
 
         With `isTutorialFirst`, the simulator opens the tutorial instead of a trial run for trainees
         who have not done it yet with the device in use, unless the study or the simulator's setting
@@ -156,9 +159,9 @@ class TrainingLogic:
             )
         else:
             wanted = {"task": task, "trainee": trainee, "mode": mode}
+            others = {"procedure": procedure, "method": method}
             self._send(
-                CommandName.START_TASK,
-                {**wanted, "procedure": procedure} if procedure else wanted,
+                CommandName.START_TASK, wanted | {key: name for key, name in others.items() if name}
             )
 
     def pause(self) -> None:
