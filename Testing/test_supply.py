@@ -33,6 +33,8 @@ EXTRAS = {
     "requirements-docs.lock": ("docs",),
 }
 """What `make lock` makes each lock from, beside the project's own dependencies."""
+PEERS_LOCK = ROOT / "requirements-ralph.lock"
+"""Of a peer in the tests, which has an environment and a file of requirements of its own."""
 NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")
 
 ENTRY = re.compile(r"^[a-z0-9][a-z0-9._-]*==[^\s\\]+(?: ; [^\\]+)? \\$")
@@ -74,10 +76,18 @@ def test_each_lock_holds_every_package_that_the_project_asks_for():
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert {lock.name for lock in LOCKS} == set(EXTRAS)
+    assert {lock.name for lock in LOCKS} == {*EXTRAS, PEERS_LOCK.name}
+    asked = {name: asked_for(project, extras) for name, extras in EXTRAS.items()}
+    asked[PEERS_LOCK.name] = asked_of(PEERS_LOCK.with_suffix(".in"))
     for lock in LOCKS:
         locked = set(re.findall(r"^([a-z0-9._-]+)==", lock.read_text(encoding="utf-8"), re.M))
-        assert asked_for(project, EXTRAS[lock.name]) - locked == set(), lock.name
+        assert asked[lock.name] - locked == set(), lock.name
+
+
+def asked_of(requirements: Path) -> set[str]:
+    """Return the names of the packages in a file of requirements."""
+    lines = requirements.read_text(encoding="utf-8").splitlines()
+    return {NAME.match(line).group(1) for line in lines if not line.startswith("#")}
 
 
 def pinned(lock: Path) -> dict[str, set[str]]:

@@ -72,7 +72,7 @@ class SimulatorProcess:
 
     def wait(self) -> tuple[int, str]:
         """Wait until it has ended of itself; return its exit status and what it said on stderr."""
-        self._process.communicate(timeout=60)
+        self._process.communicate(timeout=300)
         return self._process.returncode, self._what_it_said()
 
     def _what_it_said(self) -> str:
