@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 
@@ -14,7 +16,7 @@ from rastrainer_simulator.desktop.panels.stick import stick_boxes
 from rastrainer_simulator.desktop.picture import own_facts
 from rastrainer_simulator.net.views.screen import PRESS
 from Testing.end_to_end.lab import Lab
-from Testing.end_to_end.stream_trainee import StreamTrainee
+from Testing.end_to_end.stream_trainee import MAX_ATTEMPTS, StreamTrainee
 from Testing.end_to_end.virtual_display import VirtualMouse
 from Testing.end_to_end.window_process import wait_until
 
@@ -102,11 +104,43 @@ class WindowMouse:
 class ClickingInWindow(StreamTrainee):
     """Goes through the menus by clicks."""
 
+    # A click before the window has drawn what is clicked chooses nothing.
+    again_s = 10.0
+
     def choose(self, item: str) -> None:
         """Click on an item, which leads to another menu."""
         before = self.menu.name
-        self.hands.click(item)
-        self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
+        self._until_clicked(item, lambda: not self.menu or self.menu.name != before)
+
+    def show_sticks(self) -> None:
+        """Have the sticks shown, and wait until the window has them."""
+        if not self.view.screen.has_sticks:
+            self._until_clicked("press sticks", lambda: self.view.screen.has_sticks)
+
+    def _until_clicked(self, item: str, is_done: Callable[[], bool]) -> None:
+        for _attempt in range(MAX_ATTEMPTS):
+            self.hands.click(item)
+            with suppress(AssertionError):
+                wait_until(is_done, f"after {item}", self.again_s)
+                return
+        raise AssertionError(f"clicks on {item} did nothing; the screen: {self.view.screen}")
+
+
+def enter_id(trainee):
+    """Click from the start menu to that of the tasks, with the ID P7."""
+    trainee.until_menu("start")
+    for item in ("train", "skip", "next", "clicked", "row 1", "P", "row 3", "7", "done"):
+        trainee.choose(item)
+    assert trainee.value("trainee") == "P7"
+
+
+def begin(lab, window, trainee, task):
+    """Click on a task, and have the sticks shown once the window shows it."""
+    trainee.choose(task)
+    trainee.until(lambda: lab.view.scene["task"] == task, "the scene")
+    # Until the window has loaded the scene, it shows the menu before.
+    window.wait_for_tick(lab.view.state["tick"])
+    trainee.show_sticks()
 
 
 def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the_menu(tmp_path):
@@ -114,15 +148,8 @@ def test_the_mouse_alone_enters_an_id_drives_the_arm_presses_touch_and_opens_the
         window = lab.open_window("window", "--size", "{}x{}".format(*SIZE), "--quality", "low")
         mouse = WindowMouse(lab)
         trainee = ClickingInWindow(lab.view, mouse)
-        trainee.until_menu("start")
-        for item in ("train", "skip", "next", "clicked", "row 1", "P", "row 3", "7", "done"):
-            trainee.choose(item)
-        assert trainee.value("trainee") == "P7"
-        trainee.begin_task("trial-run")
-        # Until the window has loaded the scene, it shows the menu before.
-        window.wait_for_tick(lab.view.state["tick"])
-        mouse.click("press sticks")
-        trainee.until(lambda: lab.view.screen.has_sticks, "the sticks")
+        enter_id(trainee)
+        begin(lab, window, trainee, "trial-run")
         start = trainee.tip.copy()
         mouse.push(0.0, 0.0, 1.0)
         trainee.until(lambda: trainee.tip[2] > start[2] + 0.01, "a move up")
