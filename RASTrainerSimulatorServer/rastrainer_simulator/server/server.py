@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.journal_file import JournalReading
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, FIDUCIAL_COUNT, CommandName
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
+from rastrainer.scenario.method_task import task_by_method
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.settings import SimulationSettings
@@ -223,8 +224,9 @@ class SimulatorServer:
         return simulation, reading
 
     def _interruption(self) -> str:
-        training = self._control_loop.latest.training
-        kept = f"{len(training.touches)} of {FIDUCIAL_COUNT} points are kept"
+        training, scenario = self._control_loop.latest.training, self._control_loop.setup.scenario
+        points = task_by_method(scenario, training.task, training.method).labels
+        kept = f"{len(training.touches)} of {len(points)} points are kept"
         return (
             f"resumes the interrupted trial of {training.trainee} at {training.task}: {kept}; "
             "resume or abort it"

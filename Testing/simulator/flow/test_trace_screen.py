@@ -142,3 +142,35 @@ def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_con
     trainee.choose("register")
     trainee.until(lambda: trainee.state.training.phase is not Phase.COMPLETE, "the registration")
     assert trainee.state.training.phase is Phase.REGISTERED
+
+
+def test_the_method_is_chosen_in_the_experiment_menu_where_the_head_has_landmarks(trainee):
+    trainee.until_menu("start")
+    trainee.choose("train")
+    trainee.until_menu("introduction")
+    while trainee.menu.name != "controls":
+        trainee.tap("accept")
+    trainee.choose("next")
+    trainee.until_menu("experiment")
+    trainee.focus("trainee")
+    trainee.hands.type("P07")
+    trainee.focus("method")
+    seen = [trainee.item("method").value]
+    for _ in range(4):
+        trainee.tap("right")
+        seen.append(trainee.item("method").value)
+    assert seen == [
+        "fiducials",
+        "landmarks of the face",
+        "trace over the skin",
+        "landmarks, then a trace",
+        "fiducials",
+    ]
+    trainee.tap("left", "left")
+    session = trainee.presenter._session
+    assert session.method_of("trial-run").value == "fiducials"
+    session.start_task("task-1")
+    trainee.until_menu(None)
+    training = trainee.state.training
+    assert training.method.value == "surface"
+    assert training.next_point == LANDMARKS[0].name

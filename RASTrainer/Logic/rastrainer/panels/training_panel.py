@@ -181,6 +181,7 @@ class TrainingPanel:
         trial = f"{shortName(progress.trainee)}, {shortName(progress.task)}"
         setText(ui.trialText, trial if progress.trainee else "–")
         setText(ui.phaseText, PHASES.get(progress.phase, progress.phase))
+        ui.pointsProgressBar.maximum = progress.total
         ui.pointsProgressBar.value = min(progress.touched, progress.total)
         setText(ui.nextPointText, progress.nextPoint or "–")
         setText(ui.elapsedText, _clock(progress.elapsedS))

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import Mode, StepKind, TutorialRule
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
+from rastrainer.scenario.method_task import playable_methods
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
@@ -53,7 +55,7 @@ class ExperimentPage(SessionPage):
         mode = self.choice("mode", self.say(f"mode.{session.mode}"))
         scenario = self.button("scenario", value=session.scenario.title)
         by_mouse = (self.button("clicked"),) if session.is_typing_possible(_CLICKS) else ()
-        choices = (trainee, *by_mouse, mode, scenario, *self._procedure())
+        choices = (trainee, *by_mouse, mode, scenario, *self._method(), *self._procedure())
         tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
         step = self._step()
         is_asked = step is not None and step.kind == StepKind.QUESTIONNAIRE
@@ -92,11 +94,15 @@ class ExperimentPage(SessionPage):
             self.session.start_task(item)
 
     def step(self, item: str, direction: int) -> None:
-        """Change the mode, or what follows the touches."""
+        """Change the mode, by what is registered, or what follows that."""
         if item == "mode":
             modes = [mode.value for mode in Mode]
             place = (modes.index(self.session.mode) + direction) % len(modes)
             self.session.mode = modes[place]
+        elif item == "method":
+            methods = playable_methods(self.session.scenario)
+            place = methods.index(self._offered_method()) + direction
+            self.session.method = methods[place % len(methods)]
         elif item == "procedure":
             names = ["", *(each.name for each in self.session.scenario.procedures)]
             present = self.session.procedure if self.session.procedure in names else ""
@@ -116,6 +122,21 @@ class ExperimentPage(SessionPage):
         told = ", ".join(f"{score:.0f}" for score in scores)
         mark = PASS_MARK if self._step() is None else 0.0
         return ScoreTrend(self.say("experiment.scores", scores=told), scores, mark)
+
+    def _method(self) -> tuple[MenuItem, ...]:
+        """Return the choice of what is registered; none where the head has no landmarks."""
+        if len(playable_methods(self.session.scenario)) < 2:
+            return ()
+        is_free = self._step() is None
+        method = self._offered_method() if is_free else RegistrationMethod.FIDUCIALS
+        value = self.say(f"method.{method.value}")
+        help_ = self.say("experiment.method help")
+        return (self.choice("method", value, is_enabled=is_free, help=help_),)
+
+    def _offered_method(self) -> RegistrationMethod:
+        """Return the chosen method; fiducials where the head does not allow it."""
+        is_offered = self.session.method in playable_methods(self.session.scenario)
+        return self.session.method if is_offered else RegistrationMethod.FIDUCIALS
 
     def _procedure(self) -> tuple[MenuItem, ...]:
         """Return the choice of what follows the touches; none where the head has no procedures."""

@@ -22,7 +22,9 @@ from rastrainer.protocol import (
     Mode,
     check_arguments,
 )
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
+from rastrainer.scenario.method_task import playable_methods
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
@@ -111,6 +113,7 @@ class TrainingSession:
         trainee: what was typed as the trainee's ID.
         mode: "desktop" or "hmd".
         procedure: name of the one that is to follow the touches; "" for the touches alone.
+        method: by which the trial is registered, where the head allows it.
         has_read_introduction: whether the pages before the experiment menu can be skipped.
         preferences: what is chosen in the settings.
         texts: say everything in the chosen language.
@@ -141,6 +144,7 @@ class TrainingSession:
         self.trainee = ""
         self.mode = Mode.DESKTOP.value
         self.procedure = ""
+        self.method = RegistrationMethod.FIDUCIALS
         self.has_read_introduction = False
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
@@ -329,7 +333,8 @@ class TrainingSession:
         """Have a trial of a task begun by the trainee, in the chosen mode."""
         trainee = self.trainee.strip()
         start = {"task": task, "trainee": trainee, "mode": self.mode}
-        self.do(CommandName.START_TASK, {**start, "procedure": self.procedure_of(task)})
+        chosen = {"procedure": self.procedure_of(task), "method": self.method_of(task).value}
+        self.do(CommandName.START_TASK, {**start, **chosen})
 
     def procedure_of(self, task: str) -> str:
         """Return the name of the procedure that follows the touches of a task; "" for none.
@@ -341,6 +346,15 @@ class TrainingSession:
             return step.procedure
         names = [each.name for each in self.scenario.procedures]
         return self.procedure if self.procedure in names and task != TRIAL_RUN else ""
+
+    def method_of(self, task: str) -> RegistrationMethod:
+        """Return by what a trial of a task is registered: in a study and the trial run, fiducials.
+
+        Elsewhere it is what the trainee has chosen, if the head allows that.
+        """
+        is_free = task != TRIAL_RUN and self.study.step_of(self.trainee.strip()) is None
+        is_offered = self.method in playable_methods(self.scenario)
+        return self.method if is_free and is_offered else RegistrationMethod.FIDUCIALS
 
     def prefer(self, preferences: Preferences) -> None:
         """Take on other preferences and save them."""

@@ -258,6 +258,13 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "experiment.trend": "Your scores in this mode; the line is the pass mark, {mark:.0f}.",
         "experiment.trend in study": "Your scores in this mode.",
         "experiment.scores": "Scores, oldest first: {scores}.",
+        "experiment.method": "Registration",
+        "experiment.method help": "By what the head is registered in the next trial. Landmarks are "
+        "not marked on the skin: find them by their names.",
+        "method.fiducials": "fiducials",
+        "method.landmarks": "landmarks of the face",
+        "method.surface": "trace over the skin",
+        "method.landmarks-surface": "landmarks, then a trace",
         "experiment.procedure": "After the touches",
         "experiment.procedure help": "What follows the registration: nothing, or a procedure, in "
         "which an instrument is placed by it. The trial run has none.",

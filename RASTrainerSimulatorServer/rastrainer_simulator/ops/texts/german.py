@@ -358,6 +358,13 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "Bestehen, {mark:.0f}.",
         "experiment.trend in study": "Deine Punktzahlen in diesem Modus.",
         "experiment.scores": "Punktzahlen, die älteste zuerst: {scores}.",
+        "experiment.method": "Registrierung",
+        "experiment.method help": "Wodurch der Kopf im nächsten Versuch registriert wird. "
+        "Landmarken sind auf der Haut nicht markiert: Finde sie nach ihren Namen.",
+        "method.fiducials": "markierte Punkte",
+        "method.landmarks": "Landmarken des Gesichts",
+        "method.surface": "Spur über die Haut",
+        "method.landmarks-surface": "Landmarken, dann eine Spur",
         "experiment.procedure": "Nach den Berührungen",
         "experiment.procedure help": "Was auf die Registrierung folgt: nichts, oder eine Prozedur, "
         "in der nach ihr ein Instrument gesetzt wird. Der Probelauf hat keine.",

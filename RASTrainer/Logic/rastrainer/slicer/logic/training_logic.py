@@ -38,6 +38,7 @@ class TrialStatus:
         mode: `desktop` or `hmd`.
         nextPoint: label of the fiducial to touch, empty where there is none.
         touched: how many points are kept.
+        total: how many there are to touch.
         elapsedS: the trial's time, pauses left out.
         clearanceMm: signed distance of the tool to the head; None where it is not known.
         proximity: `free`, `proximity` or `contact`.
@@ -52,6 +53,7 @@ class TrialStatus:
     mode: str = ""
     nextPoint: str = ""
     touched: int = 0
+    total: int = FIDUCIAL_COUNT
     elapsedS: float = 0.0
     clearanceMm: float | None = None
     proximity: str = ""
@@ -62,11 +64,6 @@ class TrialStatus:
     def isOpen(self) -> bool:
         """Whether a trial is being played, paused, or waits to be registered."""
         return self.phase in OPEN_PHASES
-
-    @property
-    def total(self) -> int:
-        """How many points a trial has."""
-        return FIDUCIAL_COUNT
 
 
 class TrainingLogic:
@@ -97,6 +94,7 @@ class TrainingLogic:
         self._state: Mapping[str, Any] = {}
         self._stateTime = 0.0
         self._shownTrial = ""
+        self._total = FIDUCIAL_COUNT
         link.stateChanged.connect(self._follow)
         link.pointsChanged.connect(self._emitChange)
 
@@ -121,6 +119,7 @@ class TrainingLogic:
             mode=str(state.get("mode", "")),
             nextPoint=str(state.get("nextPoint") or ""),
             touched=touches.GetNumberOfControlPoints() if state and touches is not None else 0,
+            total=self._total,
             elapsedS=elapsed,
             clearanceMm=knownNumber(state.get("clearanceMm")),
             proximity=str(state.get("proximity", "")),
@@ -239,6 +238,7 @@ class TrainingLogic:
         except InputError as error:
             self.answered.emit(str(error))
             return
+        self._total = fixed.GetNumberOfControlPoints()
         noteTouchedTask(self._scene, scenario.name, str(self._state.get("task", "")), method)
         showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
         self.sceneShown.emit(scenario)
