@@ -13,7 +13,8 @@ SUBPROTOCOL = "rastrainer.views.1"
 TIMEOUT_S = 30.0
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 
-HELLO = {"type": "hello", "kind": "page", "device": "", "refreshHz": 60}
+HELLO = {"type": "hello", "kind": "headset", "device": "", "refreshHz": 60}
+POSE = [0.5, 0.0, 1.2, 0.5, 0.5, 0.5, 0.5]
 MESSAGES = (
     HELLO,
     {"type": "key", "code": "KeyW", "isDown": True, "text": "w"},
@@ -25,8 +26,10 @@ MESSAGES = (
     {"type": "text", "name": "trainee", "value": "P01"},
     {"type": "frames", "shown": 60, "dropped": 0, "refreshHz": 60},
     {"type": "visibility", "isVisible": True},
+    {"type": "worn", "eyes": POSE, "left": None, "right": POSE},
     {"type": "alive"},
 )
+"""One of each type; the first is the hello."""
 
 
 def frame(kind: int, payload: bytes, is_last: bool = True, is_masked: bool = True) -> bytes:

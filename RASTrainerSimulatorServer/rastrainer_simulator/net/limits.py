@@ -67,11 +67,14 @@ class ViewLimits:
 
     Attributes:
         views: streams at a time; further ones are refused.
+        spectators: streams at a time of those who were paired to watch only, beside the views;
+            further ones are refused.
         connections: of any kind at a time; a further one replaces the oldest that has shown no
             key, and is closed immediately if all have.
         new_connections_per_s: that are taken in a second; further ones wait.
         requests_per_s: of all connections together; further ones wait for their turn.
         sessions: keys that are remembered; the oldest is forgotten.
+        spectator_sessions: keys of spectators, likewise.
         message_bytes: of one message from a view.
         messages_per_s: that a view may send on average, and at most that many at once.
         first_message_s: time that a connection has to agree on a key, for its first request, and a
@@ -85,10 +88,12 @@ class ViewLimits:
     """
 
     views: int = 32
+    spectators: int = 16
     connections: int = 128
     new_connections_per_s: float = 50.0
     requests_per_s: float = 200.0
     sessions: int = 64
+    spectator_sessions: int = 64
     message_bytes: int = 16 * 1024
     messages_per_s: float = 500.0
     first_message_s: float = 5.0

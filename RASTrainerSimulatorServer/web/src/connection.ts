@@ -1,6 +1,6 @@
 /** Stay connected to the simulator, and reconnect whenever it was away. */
 
-import { SUBPROTOCOL, type Hello, type News } from "./messages";
+import { SUBPROTOCOL, type Hello, type News, type Role } from "./messages";
 
 const RETRY_MS = 1000;
 /** A view that holds something says so at least this often; the simulator releases it after 0.5 s. */
@@ -41,7 +41,13 @@ export class Connection {
     return this.socket?.readyState === WebSocket.OPEN;
   }
 
-  start(): void {
+  /** Whether this page only watches: the simulator would end what sends more than signs of life. */
+  get isWatching(): boolean {
+    return this.hello.kind === "spectator";
+  }
+
+  start(hello: Hello): void {
+    this.hello = hello;
     this.isWanted = true;
     this.join();
   }
@@ -55,7 +61,7 @@ export class Connection {
 
   /** Send a message, unless there is no connection: what was pressed then does not count. */
   send(type: string, members: object = {}): void {
-    if (this.isConnected) {
+    if (this.isConnected && !this.isWatching) {
       this.lastSent = performance.now();
       this.socket?.send(JSON.stringify({ type, ...members }));
     }
@@ -94,7 +100,7 @@ export class Connection {
   }
 
   private async comeBack(wasOpen: boolean): Promise<void> {
-    if (!wasOpen && !(await isPaired())) {
+    if (!wasOpen && (await readRole()) === null) {
       this.isWanted = false;
       this.listener.onUnknown();
       return;
@@ -118,12 +124,16 @@ export class Connection {
   }
 }
 
-/** Tell whether the simulator knows this browser; a simulator that is away knows everyone. */
-export async function isPaired(): Promise<boolean> {
+let known: Role = "view";
+
+/** Return what this browser was paired for, null if it is not; a simulator that is away knows everyone. */
+export async function readRole(): Promise<Role | null> {
   try {
-    const answer = await fetch("/sounds/focus.wav", { method: "HEAD" });
-    return answer.status !== 401;
+    const answer = await fetch("/role");
+    if (answer.status === 401) return null;
+    if (answer.ok) known = ((await answer.json()) as { role: Role }).role;
   } catch {
-    return true;
+    // It is away.
   }
+  return known;
 }

@@ -2,13 +2,15 @@
 
 import { PerspectiveCamera, Vector2 } from "three";
 
-import { hasGuide, type SceneNews, type StateNews } from "./messages";
+import { hasGuide, type CameraPlace, type SceneNews, type StateNews } from "./messages";
 import type { Stage } from "./stage";
 import { Flight, Viewpoint } from "./viewpoint";
 
 export const INSET_SHARE = 0.22;
 /** Name of the view along the skin. */
 export const BESIDE = "beside";
+/** Name of the view through the eyes of who wears a headset. */
+const WORN = "worn";
 /** Name of the view across the line of a procedure. */
 export const ACROSS = "across";
 const NEAR = 0.05;
@@ -45,11 +47,12 @@ export class FlatView {
     return Object.keys(this.scene?.cameras ?? {}).find((name) => name !== this.chosen) ?? "";
   }
 
-  /** Look as the simulator says. */
-  choose(state: StateNews, now: number): void {
+  /** Look as the simulator says, or through the eyes of who wears a headset. */
+  choose(state: StateNews, now: number, worn: CameraPlace | null): void {
     if (this.scene?.cameras[state.camera] === undefined) return;
     this.chosen = state.camera;
-    this.flight.go(state.camera, state.view, now);
+    if (worn === null) this.flight.go(state.camera, state.view, now);
+    else this.flight.go(WORN, worn, now);
     this.isBeside = state.inset !== null;
     this.hasLine = hasGuide(state);
     const other = state.inset ?? this.scene.cameras[this.otherCamera];

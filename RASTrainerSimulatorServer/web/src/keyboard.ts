@@ -29,6 +29,7 @@ export class Keyboard {
   }
 
   private press(event: KeyboardEvent): void {
+    if (this.connection.isWatching) return;
     const isForBrowser = event.ctrlKey || event.metaKey || event.altKey;
     if (isForBrowser || event.code === "" || BROWSERS.has(event.code) || isOfElement(event)) return;
     event.preventDefault();

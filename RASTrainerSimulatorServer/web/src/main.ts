@@ -1,6 +1,6 @@
 /** The page: connects to the simulator, shows its screens, and sends what is pressed. */
 
-import { Connection, isPaired } from "./connection";
+import { Connection, readRole } from "./connection";
 import { byId } from "./elements";
 import { EnterButton } from "./enter_button";
 import { ErrorArrows } from "./error_arrows";
@@ -16,6 +16,7 @@ import { pair } from "./pairing";
 import { PoseStream } from "./pose_stream";
 import { loadScene, type SceneModel } from "./scene_model";
 import { Sounds } from "./sounds";
+import { isPairedAgain, onlyRead, showWatching, SPECTATOR } from "./spectator";
 import { Stage } from "./stage";
 import { TargetArrow } from "./target_arrow";
 import { say, useLanguage } from "./texts";
@@ -23,6 +24,7 @@ import { TouchControls } from "./touch_controls";
 import { TouchRing } from "./touch_ring";
 import { TraceMarks } from "./trace_marks";
 import { ViewMouse } from "./view_mouse";
+import { WornView } from "./worn_view";
 import { GuidingPanel } from "./guiding_panel";
 import { Headset } from "./xr/headset";
 
@@ -44,6 +46,7 @@ export class Page {
   private readonly frames = new FrameCount(this.connection);
   private readonly arrow = new TargetArrow();
   private readonly ring = this.stage && new TouchRing(this.stage.scene);
+  private readonly worn = this.stage && new WornView(this.stage.world);
   private readonly errors = new ErrorArrows();
   private readonly trace = new TraceMarks();
   private readonly ghost = new Ghost();
@@ -80,8 +83,13 @@ export class Page {
 
   /** Pair if need be, and connect. */
   async begin(wasPaired = false): Promise<void> {
-    if (!(await isPaired())) await pair(byId("pairing") as HTMLFormElement, wasPaired);
-    this.connection.start();
+    let role = isPairedAgain() ? null : await readRole();
+    if (role === null) {
+      await pair(byId("pairing") as HTMLFormElement, wasPaired);
+      role = await readRole();
+    }
+    this.connection.start(role === "spectator" ? SPECTATOR : PAGE);
+    this.label();
     await this.sounds.load();
   }
 
@@ -109,13 +117,7 @@ export class Page {
         this.takeState(news);
         break;
       case "screen":
-        this.screen = news.screen;
-        this.isDue = true;
-        useLanguage(news.screen.language);
-        this.label();
-        this.overlay.show(news.screen);
-        this.touch.show(news.screen);
-        this.headset?.showScreen(news.screen);
+        this.showScreen(this.connection.isWatching ? onlyRead(news.screen) : news.screen);
         break;
       case "control":
         this.control = news;
@@ -132,11 +134,22 @@ export class Page {
     }
   }
 
+  private showScreen(screen: Screen): void {
+    this.screen = screen;
+    this.isDue = true;
+    useLanguage(screen.language);
+    this.label();
+    this.overlay.show(screen);
+    this.touch.show(screen);
+    this.headset?.showScreen(screen);
+  }
+
   /** Name in the present language what the page itself names. */
   private label(): void {
     byId("picture").setAttribute("aria-label", say("view"));
     byId("status").setAttribute("aria-label", say("status"));
     this.enter.label();
+    showWatching(this.connection.isWatching);
   }
 
   private async load(news: SceneNews): Promise<void> {
@@ -177,6 +190,7 @@ export class Page {
     const now = performance.now() / 1000;
     this.poses.put(state.time, state.poses, now);
     this.ghost.put(state.time, state.ghost, now);
+    this.worn?.put(state.wearer ?? null, now);
     this.state = state;
     this.touch.takeState(state);
     this.isDue = true;
@@ -261,7 +275,7 @@ export class Page {
 
   private drawFlat(flat: FlatView, now: number, model: SceneModel, state: StateNews): void {
     if (this.screen?.menu == null) this.mouse.tell();
-    flat.choose(state, now);
+    flat.choose(state, now, this.worn?.place(now) ?? null);
     const hasMoved = flat.fit() || flat.advance(now) || this.isDue;
     if (!model.pulse(now) && !hasMoved) return;
     this.isDue = false;

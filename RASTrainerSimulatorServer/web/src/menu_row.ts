@@ -51,8 +51,10 @@ export class MenuRow {
       this.control.setAttribute("aria-disabled", String(!item.is_enabled));
       this.control.tabIndex = hasFocus ? 0 : -1;
     }
-    if (this.value instanceof HTMLInputElement) this.showText(this.value);
-    else if (this.value instanceof HTMLMeterElement) showAxis(this.value, item);
+    if (this.value instanceof HTMLInputElement) {
+      this.value.readOnly = !item.is_enabled;
+      this.showText(this.value);
+    } else if (this.value instanceof HTMLMeterElement) showAxis(this.value, item);
     else this.value.textContent = item.value;
   }
 

@@ -87,6 +87,16 @@ export interface Screen {
 
 export type Triple = readonly [number, number, number];
 
+/** x, y, z (m) and the unit quaternion qx, qy, qz, qw, in World. */
+export type Pose = readonly [number, number, number, number, number, number, number];
+
+/** Where somebody in a headset has eyes and controllers; both look along −z. */
+export interface Wearer {
+  readonly eyes: Pose;
+  readonly left: Pose | null;
+  readonly right: Pose | null;
+}
+
 export interface CameraPlace {
   readonly position: Triple;
   readonly focalPoint: Triple;
@@ -156,6 +166,8 @@ export interface StateNews {
   readonly touched: readonly string[];
   readonly elapsed: number;
   readonly procedure: ProcedureNews | null;
+  /** For spectators only: who wears a headset, null for nobody. */
+  readonly wearer?: Wearer | null;
 }
 
 /** Whether a procedure is at one of its lines: the guide is aligned, or something is fed through it. */
@@ -204,9 +216,12 @@ export interface TraceNews {
 
 export type News = TraceNews | Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews | PairingNews;
 
+/** What a browser was paired for: to take part, or only to watch. */
+export type Role = "view" | "spectator";
+
 /** What a view says about itself when it connects. */
 export interface Hello {
-  readonly kind: "page" | "headset";
+  readonly kind: "page" | "headset" | "spectator";
   readonly device: string;
   readonly refreshHz: number;
 }

@@ -1,17 +1,18 @@
 /** Ask for the pairing code, and exchange it for the cookie that lets this browser in. */
 
+import type { Role } from "./messages";
 import { say, type TextName } from "./texts";
 
 /**
- * Return when the browser is paired. A code in the address, as `#code=123456`, is tried first.
- * `wasPaired`: whether it was until now.
+ * Return when the browser is paired. A code in the address, as `#code=123456`, is tried first; with
+ * `&role=spectator` after it, to watch only. `wasPaired`: whether it was until now.
  */
 export async function pair(form: HTMLFormElement, wasPaired: boolean): Promise<void> {
-  const given = /^#code=(\d{1,64})$/.exec(location.hash)?.[1];
+  const [, given, role] = /^#code=(\d{1,64})(?:&role=(spectator))?$/.exec(location.hash) ?? [];
   let wrong = wasPaired ? say("restarted") : "";
   if (given !== undefined) {
     history.replaceState(null, "", location.pathname);
-    wrong = await send(given, "oldCode");
+    wrong = await send(given, (role ?? "view") as Role, "oldCode");
     if (wrong === "") return;
   }
   const input = form.querySelector("input")!;
@@ -24,7 +25,8 @@ export async function pair(form: HTMLFormElement, wasPaired: boolean): Promise<v
   await new Promise<void>((done) => {
     form.onsubmit = async (event) => {
       event.preventDefault();
-      complaint.value = await send(input.value.trim(), "wrongCode");
+      const role = (event.submitter as HTMLButtonElement | null)?.value === "spectator" ? "spectator" : "view";
+      complaint.value = await send(input.value.trim(), role, "wrongCode");
       if (complaint.value === "") done();
       else input.select();
     };
@@ -36,13 +38,15 @@ function label(form: HTMLFormElement): void {
   form.querySelector("h2")!.textContent = say("pair");
   form.querySelector("label")!.textContent = say("code");
   form.querySelector("p")!.textContent = say("codeHelp");
-  form.querySelector("button")!.textContent = say("join");
+  const [join, watch] = form.querySelectorAll("button");
+  join!.textContent = say("join");
+  watch!.textContent = say("watch");
 }
 
 /** Return what is wrong with a code, "" for nothing; `wrong` names the sentence about a wrong one. */
-async function send(code: string, wrong: TextName): Promise<string> {
+async function send(code: string, role: Role, wrong: TextName): Promise<string> {
   try {
-    const answer = await fetch("/pair", { method: "POST", body: JSON.stringify({ code }) });
+    const answer = await fetch("/pair", { method: "POST", body: JSON.stringify({ code, role }) });
     const seconds = answer.headers.get("Retry-After");
     if (answer.ok) return "";
     return seconds === null ? say(wrong) : say("newCode", { seconds });

@@ -43,7 +43,7 @@ def test_what_the_file_leaves_out_is_as_by_default(tmp_path):
         ("{", "limits.json"),
         ([], "must be a JSON object with any of clients, views, trials"),
         ({"robots": {}}, "must be a JSON object with any of clients, views, trials"),
-        ({"views": 5}, "views must be a JSON object with any of views, connections"),
+        ({"views": 5}, "views must be a JSON object with any of views, spectators"),
         ({"views": {"colour": 5}}, "views must be a JSON object with any of"),
         ({"clients": {"clients": 0}}, "clients.clients must be a whole number above 0"),
         ({"clients": {"clients": 2.5}}, "clients.clients must be a whole number above 0"),

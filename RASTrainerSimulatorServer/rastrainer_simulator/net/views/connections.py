@@ -10,6 +10,8 @@ import socket
 from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
+from rastrainer_simulator.net.views.sessions import ViewRole
+
 KEEP_ALIVE_S = 75.0
 
 
@@ -29,8 +31,9 @@ def _is_own_mistake(record: logging.LogRecord) -> bool:
 class Connections:
     """Makes who talks to each new connection; a protocol factory for `loop.create_server`.
 
-    Where there are as many as may be, the oldest that has shown no key yields to a new one: whoever
-    takes places and does not even read what was asked for keeps nobody out.
+    Where there are as many as may be, the oldest that has shown no key yields to a new one, and
+    where all have, the oldest of a spectator: whoever takes places and does not even read what was
+    asked for keeps nobody out, and spectators keep out nobody who takes part.
     """
 
     def __init__(self, most: int, first_request_s: float) -> None:
@@ -38,7 +41,7 @@ class Connections:
         self._most = most
         self._first_request_s = first_request_s
         self._silent: dict[asyncio.BaseProtocol, asyncio.TimerHandle] = {}
-        self._paired: set[asyncio.BaseProtocol] = set()
+        self._paired: dict[asyncio.BaseProtocol, ViewRole] = {}
         self._sent_away: set[asyncio.BaseProtocol] = set()
         self.server: web.Server | None = None
         """Talks to the connections; set once it is there."""
@@ -60,19 +63,22 @@ class Connections:
             # It would keep a connection that has long ended in memory.
             timer.cancel()
 
-    def note_key(self, request: web.BaseRequest) -> None:
+    def note_key(self, request: web.BaseRequest, role: ViewRole) -> None:
         """Take note that a connection has shown the key of a session."""
-        self._paired.add(request.protocol)
+        self._paired[request.protocol] = role
 
     def _has_room(self, there: list[web.RequestHandler]) -> bool:
-        """Return whether one more connection may be; the oldest without a key makes room for it."""
-        self._paired.intersection_update(there)
+        """Return whether one more connection may be; one that matters less makes room for it."""
+        self._paired = {each: self._paired[each] for each in there if each in self._paired}
         self._sent_away.intersection_update(there)
         if len(there) - len(self._sent_away) < self._most:
             return True
-        strangers = (each for each in there if each not in self._paired | self._sent_away)
-        oldest = next(strangers, None)
-        if oldest is None:
+        may_yield = [each for each in there if each not in self._sent_away]
+        for role in (None, ViewRole.SPECTATOR):
+            oldest = next((each for each in may_yield if self._paired.get(each) is role), None)
+            if oldest is not None:
+                break
+        else:
             return False
         self._sent_away.add(oldest)
         _send_away(oldest)

@@ -6,23 +6,22 @@ A person types the pairing code into a view, and gets a session key for it.
 from __future__ import annotations
 
 import asyncio
-import hashlib
 import hmac
 import ipaddress
 import logging
 import math
 import secrets
 import socket
-from collections import deque
 from collections.abc import Callable
 
 from aiohttp import hdrs, web
 from aiohttp.typedefs import Handler
 
 from rastrainer.errors import InputError
-from rastrainer.json_checks import text
+from rastrainer.json_checks import one_of, text
 from rastrainer.protocol import decode_json_object
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
+from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 
 _log = logging.getLogger(__name__)
 
@@ -32,9 +31,6 @@ FIRST_PAUSE_S = 1.0
 LONGEST_PAUSE_S = 300.0
 WRONG = "This is not the pairing code that the simulator shows."
 TOO_MANY = "There were too many wrong codes: wait, then use the new code that the simulator shows."
-KEY_BYTES = 32
-SHORTEST_KEY = 32
-LONGEST_KEY = 200
 
 
 class PairingCode:
@@ -79,42 +75,18 @@ def _new_code() -> str:
     return f"{secrets.randbelow(10**DIGITS):0{DIGITS}d}"
 
 
-class Sessions:
-    """The keys of paired views."""
-
-    def __init__(self, most: int) -> None:
-        """Remember up to `most` keys; then the oldest is forgotten."""
-        self._hashes: deque[bytes] = deque(maxlen=most)
-
-    def open(self) -> str:
-        """Return a new key."""
-        key = secrets.token_urlsafe(KEY_BYTES)
-        self._hashes.append(_hash(key))
-        return key
-
-    def admit(self, key: str) -> None:
-        """Accept a key that was agreed on before the simulator was started."""
-        self._hashes.append(_hash(key))
-
-    def knows(self, key: str) -> bool:
-        """Return whether a key was given out; it takes the same time for every one."""
-        if not SHORTEST_KEY <= len(key) <= LONGEST_KEY:
-            return False
-        wanted = _hash(key)
-        matches = [hmac.compare_digest(wanted, known) for known in self._hashes]
-        return any(matches)
-
-
-def _hash(key: str) -> bytes:
-    return hashlib.sha256(key.encode(errors="replace")).digest()
-
-
 COOKIE = "rastrainer-view"
 PAIR_FIRST = "Pair first: POST /pair with the code that the simulator shows."
-NOT_A_CODE = f'Send {{"code": "…"}} with the {DIGITS} digits that the simulator shows.'
+NOT_A_CODE = (
+    f'Send {{"code": "…"}} with the {DIGITS} digits that the simulator shows, and for a spectator '
+    f'also {{"role": "{ViewRole.SPECTATOR.value}"}}.'
+)
 BODY_S = 5.0
 _BEARER = "Bearer "
 _code_text = text(64)
+_role_name = one_of(*(role.value for role in ViewRole))
+ROLE = web.RequestKey("role", ViewRole)
+"""Where a request that has passed has the role of its key."""
 WRONG_HOST = "The simulator is not known under this name: use its address."
 FOREIGN = "A page of another origin may not connect."
 HEADERS = {
@@ -139,7 +111,7 @@ class Gate:
         sessions: Sessions,
         code: PairingCode,
         note: Callable[[web.Request], None],
-        note_key: Callable[[web.Request], None],
+        note_key: Callable[[web.Request, ViewRole], None],
         rate_limiter: AsyncRateLimiter,
     ) -> None:
         """Make a gate.
@@ -148,7 +120,7 @@ class Gate:
             sessions: whose keys open it.
             code: that a new session is given for.
             note: is called with every request that arrives, and
-            note_key: of every one that shows a session's key.
+            note_key: of every one that shows a session's key, with the role of this key.
             rate_limiter: every request waits for its turn at it.
         """
         self._rate_limiter = rate_limiter
@@ -163,20 +135,22 @@ class Gate:
         self._note(request)
         await self._rate_limiter.passed()
         check_origin(request)
-        if self._sessions.knows(_key(request)):
-            self._note_key(request)
+        role = self._sessions.role(_key(request))
+        if role is not None:
+            request[ROLE] = role
+            self._note_key(request, role)
         elif not _is_public(request):
             raise web.HTTPUnauthorized(text=PAIR_FIRST)
         return await handler(request)
 
     async def pair(self, request: web.Request) -> web.Response:
-        """Give a key, and a cookie with it, for the pairing code."""
-        code = await _code(request)
+        """Give a key, and a cookie with it, for the pairing code; a spectator's only watches."""
+        code, role = await _code_and_role(request)
         self._check_pause()
         if not self._code.accepts(code):
             self._check_pause()
             raise web.HTTPForbidden(text=WRONG)
-        key = self._sessions.open()
+        key = self._sessions.open(role)
         response = web.json_response({"key": key}, headers={hdrs.CACHE_CONTROL: "no-store"})
         response.set_cookie(
             COOKIE, key, path="/", httponly=True, samesite="Strict", secure=request.secure
@@ -205,10 +179,12 @@ def _key(request: web.Request) -> str:
     return request.cookies.get(COOKIE, "")
 
 
-async def _code(request: web.Request) -> str:
+async def _code_and_role(request: web.Request) -> tuple[str, ViewRole]:
     try:
         body = await asyncio.wait_for(request.read(), BODY_S)
-        return _code_text(decode_json_object(body.decode()).get("code"))
+        values = decode_json_object(body.decode())
+        role = ViewRole(_role_name(values.get("role", ViewRole.VIEW.value)))
+        return _code_text(values.get("code")), role
     except (InputError, ValueError, asyncio.TimeoutError, ConnectionError):
         raise web.HTTPBadRequest(text=NOT_A_CODE) from None
 

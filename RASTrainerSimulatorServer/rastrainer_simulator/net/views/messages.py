@@ -5,6 +5,7 @@ docs/views.md says what each means.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -27,12 +28,19 @@ TEXT = "text"
 FRAMES = "frames"
 VISIBILITY = "visibility"
 ALIVE = "alive"
+WORN = "worn"
 
-VIEW_KINDS = ("desktop", "page", "headset")
+HEADSET = "headset"
+SPECTATOR = "spectator"
+VIEW_KINDS = ("desktop", "page", HEADSET, SPECTATOR)
 MAX_AXES = 16
 MAX_BUTTONS = 32
 # Pads go a little beyond their end; what is farther out is no position of a stick.
 SLACK = 1.5
+POSE_NUMBERS = 7
+FARTHEST_M = 100.0
+# By so much the length of a quaternion that was rounded differs from 1.
+NEARLY_UNIT = 0.01
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,25 @@ class Received:
 
     type: str
     values: tuple[Any, ...]
+
+
+Pose = tuple[float, ...]
+"""x, y, z (m) and the unit quaternion qx, qy, qz, qw, in World."""
+
+
+@dataclass(frozen=True)
+class Worn:
+    """Where a headset and its controllers are.
+
+    Attributes:
+        eyes: pose of the middle between the eyes, which look along −z with y up; None while nobody
+            wears the headset.
+        left, right: poses of the controllers, which point along −z; None where there is none.
+    """
+
+    eyes: Pose | None
+    left: Pose | None
+    right: Pose | None
 
 
 def _maybe_empty(longest: int) -> Callable[[Any], str]:
@@ -59,6 +86,16 @@ def _positions(most: int, lowest: float) -> Callable[[Any], tuple[float, ...]]:
         return tuple(min(1.0, max(lowest, check_one(item))) for item in value)
 
     return check
+
+
+def _pose_or_null(value: Any) -> Pose | None:
+    """Accept x, y, z (m) and a unit quaternion qx, qy, qz, qw, or null."""
+    if value is None:
+        return None
+    pose = numbers(POSE_NUMBERS, FARTHEST_M)(value)
+    if abs(math.hypot(*pose[3:]) - 1.0) > NEARLY_UNIT:
+        raise ValueError("a position (m) and a unit quaternion, or null")
+    return pose
 
 
 _RATE = number(0, 1000, "Hz")
@@ -84,6 +121,7 @@ MEMBERS: Mapping[str, Mapping[str, Callable[[Any], Any]]] = {
     TEXT: {"name": text(80), "value": _maybe_empty(200)},
     FRAMES: {"shown": _COUNT, "dropped": _COUNT, "refreshHz": _RATE},
     VISIBILITY: {"isVisible": yes_or_no},
+    WORN: {"eyes": _pose_or_null, "left": _pose_or_null, "right": _pose_or_null},
     ALIVE: {},
 }
 """Every message a view may send, and how each of its members is checked."""

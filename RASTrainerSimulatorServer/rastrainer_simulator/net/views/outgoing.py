@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from collections.abc import Mapping, Sequence
@@ -11,7 +12,7 @@ import numpy as np
 
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.net.views.messages import PROTOCOL
+from rastrainer_simulator.net.views.messages import PROTOCOL, Worn
 from rastrainer_simulator.net.views.presenter import Control, Feedback, TraceGuidance
 from rastrainer_simulator.net.views.screen import Screen, screen_to_json
 from rastrainer_simulator.procedure_state import Tool
@@ -105,6 +106,20 @@ def state(
         delayed=delayed,
         procedure=_procedure(now, pictures),
     )
+
+
+def wearer(worn: Worn) -> str:
+    """Return where a headset and its controllers are, as the member `wearer` of a state."""
+    poses = {
+        name: None if pose is None else [round(value, DECIMALS) for value in pose]
+        for name, pose in dataclasses.asdict(worn).items()
+    }
+    return json.dumps(poses, allow_nan=False, separators=(",", ":"))
+
+
+def mirrored(state_text: str, wearer_text: str) -> str:
+    """Return the state as a spectator gets it, with who wears a headset; "null" for nobody."""
+    return f'{state_text[:-1]},"wearer":{wearer_text}}}'
 
 
 def screen(now: Screen) -> str:

@@ -18,7 +18,7 @@ class Hello:
     """What a view says of itself when it joins.
 
     Attributes:
-        kind: "desktop", "page" or "headset".
+        kind: "desktop", "page", "headset" or "spectator".
         device: model of the headset or name of the browser; "" where unknown.
         refresh_hz: of its display; 0 where unknown.
     """

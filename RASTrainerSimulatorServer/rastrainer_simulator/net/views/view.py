@@ -15,15 +15,17 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.loop.rates import RateLimit
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views import messages
-from rastrainer_simulator.net.views.messages import Received, check_message
+from rastrainer_simulator.net.views.messages import Received, Worn, check_message
+from rastrainer_simulator.net.views.mirror import Mirror
 from rastrainer_simulator.net.views.outgoing import CONTROL, PAIRING, SCENE, SCREEN, STATE, WELCOME
-from rastrainer_simulator.net.views.presenter import Frames, Presenter
+from rastrainer_simulator.net.views.presenter import Frames, Hello, Presenter
 
 _log = logging.getLogger(__name__)
 
 TOO_MANY_MESSAGES = "The view has sent more messages than a trainee's inputs can produce."
 TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
+ONLY_WATCHES = f"A spectator drives nothing: it may send {messages.ALIVE} and nothing else."
 MAX_KEYS = 32
 _BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING)
 
@@ -33,6 +35,7 @@ class View:
 
     Attributes:
         number: of the view; none is used twice.
+        hello: what it says of itself.
         is_local: whether it is on this computer, as far as the network can tell.
         outbox: what waits to be sent to it.
         held: what it holds down.
@@ -42,21 +45,30 @@ class View:
         self,
         number: int,
         socket: web.WebSocketResponse,
+        hello: Hello,
         presenter: Presenter,
+        mirror: Mirror,
         limits: ViewLimits,
         is_local: bool = False,
     ) -> None:
         self.number = number
+        self.hello = hello
         self.is_local = is_local
         self.outbox = Outbox(limits.waiting_events)
         self.held = HeldInput(number, presenter)
         self._socket = socket
         self._presenter = presenter
+        self._mirror = mirror
         self._rate = RateLimit(limits.messages_per_s, at_once=limits.messages_per_s)
         self._clock = asyncio.get_running_loop().time
         self._last_message = self._clock()
         self._has_reported_frames = False
         self._take = self._takers()
+
+    @property
+    def is_spectator(self) -> bool:
+        """Whether it only watches: the flow, which counts who sees a trial, is never told of it."""
+        return self.hello.kind == messages.SPECTATOR
 
     async def serve(self) -> None:
         """Send and receive until either side ends it."""
@@ -107,9 +119,12 @@ class View:
                 raise InputError(NOT_TEXT)
 
     def _handle(self, received: Received) -> None:
-        if received.type not in self._take:
-            raise InputError(f"A second {received.type} is not expected.")
-        self._take[received.type](*received.values)
+        if received.type in self._take:
+            self._take[received.type](*received.values)
+        elif self.is_spectator:
+            raise InputError(ONLY_WATCHES)
+        else:
+            raise InputError(f"A {self.hello.kind} sends no {received.type} after its hello.")
 
     def _takers(self) -> Mapping[str, Callable[..., None]]:
         """Return what is done with each message after the first."""
@@ -121,7 +136,11 @@ class View:
         def nothing(*_values: Any) -> None:
             """A sign of life needs no more than to have arrived."""
 
+        if self.is_spectator:
+            return {messages.ALIVE: nothing}
+        worn = {messages.WORN: self._take_worn} if self.hello.kind == messages.HEADSET else {}
         return {
+            **worn,
             messages.KEY: self.held.key,
             messages.PAD: self.held.pad,
             messages.STICKS: self.held.sticks,
@@ -137,6 +156,9 @@ class View:
     def _take_frames(self, frames: Frames) -> None:
         self._has_reported_frames = True
         self._presenter.on_frames(self.number, frames)
+
+    def _take_worn(self, *values: Any) -> None:
+        self._mirror.take(self.number, Worn(*values))
 
     async def _close(self, code: int, reason: str) -> None:
         # The protocol has room for 123 bytes.

@@ -7,6 +7,7 @@ import contextlib
 import gzip
 import socket
 import ssl
+from collections import Counter
 from collections.abc import Callable
 from ipaddress import ip_address
 from pathlib import Path
@@ -20,10 +21,11 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
 from rastrainer_simulator.net.state_feed import StateFeed, StateSource
 from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
-from rastrainer_simulator.net.views.gate import Gate, PairingCode, Sessions, add_security_headers
-from rastrainer_simulator.net.views.messages import HELLO, SUBPROTOCOL, check_message
+from rastrainer_simulator.net.views.gate import ROLE, Gate, PairingCode, add_security_headers
+from rastrainer_simulator.net.views.messages import HELLO, SPECTATOR, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.page import NOT_BUILT, page_folder
 from rastrainer_simulator.net.views.presenter import Hello, Presenter
+from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.net.views.views import Views
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
@@ -32,6 +34,7 @@ FOREVER = "private, max-age=31536000, immutable"
 FULL_SIZE = "X-File-Size"
 FULL = "The maximum number of views is connected."
 HELLO_FIRST = "The first message of a view must be a hello."
+ONLY_WATCHES = f"This key is a spectator's: the kind of the view must be {SPECTATOR}."
 LARGEST_BODY = 1024
 SHUTDOWN_S = 1.0
 
@@ -72,11 +75,16 @@ class ViewServer:
         self.code = PairingCode(asyncio.get_running_loop().time, self._renewed)
         self.addresses: list[str] = []
         self._on_new_code = on_new_code
-        self.sessions = Sessions(self._limits.sessions)
+        self.sessions = Sessions(
+            {
+                ViewRole.VIEW: self._limits.sessions,
+                ViewRole.SPECTATOR: self._limits.spectator_sessions,
+            }
+        )
         self.port = 0
         self._scenes = SceneFiles(cache_folder(), robot_meshes)
         self._views = Views(source, presenter, self._scenes, self._limits)
-        self._streams = 0
+        self._streams: Counter[ViewRole] = Counter()
         self._page = page_folder()
         self._connections = Connections(self._limits.connections, self._limits.first_message_s)
         self._runner = web.AppRunner(
@@ -155,6 +163,7 @@ class ViewServer:
                 web.get("/scene/{sha256:[0-9a-f]{64}}.glb", self._send_scene),
                 web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_sound),
                 web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_picture),
+                web.get("/role", _send_role),
                 web.get("/stream", self._stream),
             ]
         )
@@ -208,27 +217,32 @@ class ViewServer:
         )
         if stream.can_prepare(request).protocol != SUBPROTOCOL:
             raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
-        if self._streams >= self._limits.views:
+        role = request[ROLE]
+        most = {ViewRole.VIEW: self._limits.views, ViewRole.SPECTATOR: self._limits.spectators}[
+            role
+        ]
+        if self._streams[role] >= most:
             raise web.HTTPServiceUnavailable(text=FULL)
-        self._streams += 1
+        self._streams[role] += 1
         try:
             await stream.prepare(request)
             self._keep_little_waiting(request)
-            await self._serve(stream, _is_local(request))
+            await self._serve(stream, role, _is_local(request))
         finally:
-            self._streams -= 1
+            self._streams[role] -= 1
         return stream
 
-    async def _serve(self, stream: web.WebSocketResponse, is_local: bool) -> None:
+    async def _serve(self, stream: web.WebSocketResponse, role: ViewRole, is_local: bool) -> None:
         try:
-            hello = await self._first_message(stream)
+            hello = await self._first_message(stream, role)
         except InputError as error:
             await stream.close(code=WSCloseCode.POLICY_VIOLATION, message=str(error).encode()[:120])
             return
-        view = View(self._views.next_number(), stream, self._presenter, self._limits, is_local)
-        await self._views.serve(view, hello)
+        number, mirror = self._views.next_number(), self._views.mirror
+        view = View(number, stream, hello, self._presenter, mirror, self._limits, is_local)
+        await self._views.serve(view)
 
-    async def _first_message(self, stream: web.WebSocketResponse) -> Hello:
+    async def _first_message(self, stream: web.WebSocketResponse, role: ViewRole) -> Hello:
         try:
             first = await stream.receive(self._limits.first_message_s)
         except asyncio.TimeoutError:
@@ -238,7 +252,10 @@ class ViewServer:
         received = check_message(first.data)
         if received.type != HELLO:
             raise InputError(HELLO_FIRST)
-        return Hello(*received.values)
+        hello = Hello(*received.values)
+        if role is ViewRole.SPECTATOR and hello.kind != SPECTATOR:
+            raise InputError(ONLY_WATCHES)
+        return hello
 
     def _keep_little_waiting(self, request: web.Request) -> None:
         transport = request.transport
@@ -248,6 +265,11 @@ class ViewServer:
         with contextlib.suppress(OSError):
             peer = transport.get_extra_info("socket")
             peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, self._limits.buffer_bytes)
+
+
+async def _send_role(request: web.Request) -> web.Response:
+    """Tell a browser, which cannot read its cookie, what it was paired for."""
+    return web.json_response({"role": request[ROLE].value}, headers={"Cache-Control": "no-store"})
 
 
 def _is_local(request: web.Request) -> bool:

@@ -14,13 +14,9 @@ from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.net.views.presenter import (
-    Control,
-    Feedback,
-    Hello,
-    Presenter,
-    ViewUpdate,
-)
+from rastrainer_simulator.net.views.messages import HEADSET
+from rastrainer_simulator.net.views.mirror import Mirror
+from rastrainer_simulator.net.views.presenter import Control, Feedback, Presenter, ViewUpdate
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.net.views.trace_news import TraceNews
 from rastrainer_simulator.net.views.view import View
@@ -35,7 +31,11 @@ ENDING = "The simulator has been stopped."
 
 
 class Views:
-    """The joined views; `is_due` may be called in any thread, all else in the event loop's."""
+    """The joined views; `is_due` may be called in any thread, all else in the event loop's.
+
+    Attributes:
+        mirror: what spectators are told of who wears a headset.
+    """
 
     def __init__(
         self, source: StateSource, presenter: Presenter, scenes: SceneFiles, limits: ViewLimits
@@ -52,6 +52,7 @@ class Views:
         self._scene = ""
         self._pairing = ""
         self._trace = TraceNews()
+        self.mirror = Mirror()
         self._loading: asyncio.Task[None] | None = None
         self._watching: asyncio.Task[None] | None = None
         self._unsubscribe = presenter.subscribe(self._send_update)
@@ -60,18 +61,23 @@ class Views:
         """Return a number for a view that no other has had."""
         return next(self._numbers)
 
-    async def serve(self, view: View, hello: Hello) -> None:
-        """Have a view take part until it leaves."""
+    async def serve(self, view: View) -> None:
+        """Have a view take part, or a spectator watch, until it leaves."""
         self._views[view.number] = view
         try:
-            self._presenter.view_joined(view.number, hello)
+            if not view.is_spectator:
+                self._presenter.view_joined(view.number, view.hello)
+            if view.hello.kind == HEADSET:
+                self.mirror.joined(view.number)
             self._send_all(view)
             self._watch()
             await view.serve()
         finally:
             view.held.release()
             del self._views[view.number]
-            self._presenter.view_left(view.number)
+            self.mirror.left(view.number)
+            if not view.is_spectator:
+                self._presenter.view_left(view.number)
 
     def tell_pairing(self, code: str, addresses: Sequence[str]) -> None:
         """Send the views of this computer how others are paired, now and whenever one joins."""
@@ -97,7 +103,7 @@ class Views:
         self._look_for_scene(now)
         text = self._state_text(now)
         for view in self._views.values():
-            view.outbox.put_latest(outgoing.STATE, text)
+            self._put_state(view, text)
         news = self._trace.news(now, self._presenter.trace_guidance(now), time.monotonic())
         if news is not None:
             for view in self._views.values():
@@ -113,14 +119,20 @@ class Views:
             put(outgoing.SCENE, self._scene)
         put(outgoing.CONTROL, outgoing.control(self._presenter.control, view.number))
         put(outgoing.SCREEN, outgoing.screen(self._presenter.screen))
-        put(outgoing.STATE, self._state_text(now))
+        self._put_state(view, self._state_text(now))
         trace = self._trace.everything()
         if trace is not None:
             view.outbox.put_event(trace)
         self._put_pairing(view)
 
+    def _put_state(self, view: View, text: str) -> None:
+        if view.is_spectator:
+            text = outgoing.mirrored(text, self.mirror.text)
+        view.outbox.put_latest(outgoing.STATE, text)
+
     def _put_pairing(self, view: View) -> None:
-        if view.is_local and self._pairing:
+        # By the code a spectator could come back as one who drives.
+        if view.is_local and self._pairing and not view.is_spectator:
             view.outbox.put_latest(outgoing.PAIRING, self._pairing)
 
     def _state_text(self, now: SimulationState) -> str:

@@ -2,12 +2,9 @@
 
 import {
   BufferGeometry,
-  CapsuleGeometry,
   Float32BufferAttribute,
   Line,
   LineBasicMaterial,
-  Mesh,
-  MeshLambertMaterial,
   Raycaster,
   type Intersection,
   type Object3D,
@@ -18,6 +15,7 @@ import {
 import type { Connection } from "../connection";
 import type { EventNews } from "../messages";
 import type { Board } from "../panels/board";
+import { controllerBody } from "./controller_body";
 import type { Grab } from "./grab";
 
 const DEAD = 0.12;
@@ -112,6 +110,11 @@ export class Hands {
     this.grab.steer(this.message.translation, passed);
     this.tellSticks();
     this.repeat(this.isStepped ? step : "", Math.min(LONGEST_STEP_S, passed));
+  }
+
+  /** Return the controller of that hand, null where there is none. */
+  controller(handedness: XRHandedness): XRTargetRaySpace | null {
+    return this.hands.find(({ source, ray }) => source?.handedness === handedness && ray.visible)?.ray ?? null;
   }
 
   /** Let both hands feel something. */
@@ -225,12 +228,7 @@ function makeHand(ray: XRTargetRaySpace, parent: Object3D): Hand {
   geometry.setAttribute("position", new Float32BufferAttribute([0, 0, 0, 0, 0, -1], 3));
   const line = new Line(geometry, new LineBasicMaterial({ color: 0xbfdbff, depthTest: false, transparent: true }));
   line.renderOrder = AFTER_BOARDS;
-  const body = new Mesh(
-    new CapsuleGeometry(0.018, 0.09, 4, 10).rotateX(Math.PI / 2),
-    new MeshLambertMaterial({ color: 0x2a3444 }),
-  );
-  body.position.z = 0.05;
-  ray.add(line, body);
+  ray.add(line, controllerBody());
   parent.add(ray);
   const hand: Hand = { ray, line, source: null, down: new Array<boolean>(8).fill(false), pointed: "" };
   ray.addEventListener("connected", (event) => (hand.source = event.data));

@@ -15,6 +15,7 @@ import { Hands } from "./hands";
 import { Placement } from "./placement";
 import { SightArrow } from "./sight_arrow";
 import { Seating } from "./seating";
+import { WornPoses } from "./worn_poses";
 
 const HIGHEST_HZ = 90;
 const MAX_FOVEATION = 1;
@@ -30,6 +31,7 @@ export class Headset {
   private readonly arrow = new SightArrow();
   private hasArrow = false;
   private readonly hands: Hands;
+  private readonly worn: WornPoses;
   private base: XRReferenceSpace | null = null;
   private mustRecenter = false;
   private looked = 0;
@@ -46,6 +48,7 @@ export class Headset {
     private readonly leave: () => void,
   ) {
     const { scene, renderer } = stage;
+    this.worn = new WornPoses(connection, stage.world);
     this.placement.rig.add(this.camera);
     scene.add(this.placement.rig, this.boards.room);
     this.boards.room.add(this.arrow.group);
@@ -69,7 +72,10 @@ export class Headset {
     await this.setFrameRate();
     this.session.addEventListener("visibilitychange", () => {
       const isVisible = this.session.visibilityState === "visible";
-      if (!isVisible) this.hands.release();
+      if (!isVisible) {
+        this.hands.release();
+        if (this.session.visibilityState === "hidden") this.worn.takeOff();
+      }
       this.connection.send("visibility", { isVisible });
     });
     this.sounds.setSpatial(true);
@@ -134,6 +140,10 @@ export class Headset {
     this.bringBoards();
     this.hands.poll(Math.min(1, now - this.looked));
     this.looked = now;
+    // A device may go on asking for pictures of a headset that was taken off.
+    if (this.session.visibilityState !== "hidden") {
+      this.worn.tell(now, this.camera, this.hands.controller("left"), this.hands.controller("right"));
+    }
     this.hear(model);
     this.boards.closeUp.draw(this.stage, this.boards.room, state.inset);
     this.arrow.show(model, this.camera, state.next, this.hasArrow);

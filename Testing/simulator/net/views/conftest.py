@@ -9,6 +9,7 @@ import pytest
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views import view_server as view_server_module
+from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.scene.scene_files import NO_TASK, SceneFiles, cache_folder
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ServedViews, ViewClient
@@ -60,8 +61,8 @@ def connect():
     """Connects views to a server, each with a key of its own, and lets them go."""
     views = []
 
-    def connect_one(served: ServedViews) -> ViewClient:
-        views.append(ViewClient(thread, served.url, served.new_key()))
+    def connect_one(served: ServedViews, role: ViewRole = ViewRole.VIEW) -> ViewClient:
+        views.append(ViewClient(thread, served.url, served.new_key(role)))
         return views[-1]
 
     with LoopThread() as thread:

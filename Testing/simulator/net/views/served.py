@@ -12,6 +12,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.presenter import Control, TraceGuidance
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.viewpoint.orbit import CameraPose
 from rastrainer_simulator.viewpoint.view_control import Pictures
@@ -88,8 +89,8 @@ class ServedViews:
     def code(self) -> str:
         return self.server.code.code
 
-    def new_key(self) -> str:
-        return self.thread.call(self.server.sessions.open)
+    def new_key(self, role: ViewRole = ViewRole.VIEW) -> str:
+        return self.thread.call(self.server.sessions.open, role)
 
     def tell(self, *news):
         """Have the presenter tell several things at once."""

@@ -24,6 +24,7 @@ STICKS = {
     "fine": False,
     "yawDeg": 0,
 }
+WORN = {"type": "worn", "eyes": None, "left": None, "right": None}
 ORBIT = {"type": "orbit", "aroundDeg": 5, "higherDeg": 0, "zoom": 1}
 GARBAGE = {
     "no JSON": "{",
@@ -53,6 +54,10 @@ GARBAGE = {
     "code is long": changed(KEY, code="K" * 33),
     "text has a line feed": changed(KEY, text="\n"),
     "text is long": json.dumps({"type": "text", "name": "trainee", "value": "x" * 201}),
+    "a page wears nothing": json.dumps(WORN),
+    "eyes are no pose": changed(WORN, eyes=[0] * 6),
+    "eyes are far out": changed(WORN, eyes=[1e9, 0, 0, 0, 0, 0, 1]),
+    "a hand is not turned": changed(WORN, left=[0] * 7),
     "frames below zero": '{"type":"frames","shown":-1,"dropped":0,"refreshHz":60}',
     "frames in halves": '{"type":"frames","shown":1.5,"dropped":0,"refreshHz":60}',
 }

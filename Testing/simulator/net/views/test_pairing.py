@@ -1,9 +1,11 @@
+import json
 import logging
 
 import pytest
 
 from rastrainer_simulator.net.views import view_server as view_server_module
-from rastrainer_simulator.net.views.gate import COOKIE, PairingCode, Sessions
+from rastrainer_simulator.net.views.gate import COOKIE, PairingCode
+from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 from Testing.simulator.net.views.served import SUBPROTOCOL, raw_request, request
 
 UPGRADE = {
@@ -102,6 +104,23 @@ def test_guessing_never_waits_longer_than_five_minutes_and_a_right_code_still_pa
         assert code.seconds_to_wait() <= 300.0
         now[0] += 300.0
     assert code.accepts(code.code)
+
+
+def test_a_key_knows_what_it_was_given_for(served):
+    for role in ("view", "spectator"):
+        body = {"code": served.code, "role": role}
+        headers = request(served.url, "/pair", "POST", json=body)[1]
+        cookie = {"Cookie": headers["Set-Cookie"].split(";")[0]}
+        status, _, told = request(served.url, "/role", headers=cookie)
+        assert (status, json.loads(told)) == (200, {"role": role})
+    assert request(served.url, "/role")[0] == 401
+
+
+@pytest.mark.parametrize("role", ["teacher", "", 1, None, ["view"]])
+def test_a_role_that_is_none_is_refused_and_costs_no_guess(served, role):
+    body = {"code": served.code, "role": role}
+    status, _, answer = request(served.url, "/pair", "POST", json=body)
+    assert (status, b"spectator" in answer, served.new_codes) == (400, True, [])
 
 
 @pytest.mark.parametrize(
@@ -208,8 +227,20 @@ def test_no_path_leads_out_of_the_page(served, path):
 
 
 def test_the_oldest_key_is_forgotten_when_there_are_too_many():
-    sessions = Sessions(most=2)
+    sessions = Sessions({ViewRole.VIEW: 2, ViewRole.SPECTATOR: 2})
     keys = [sessions.open() for _ in range(3)]
-    assert [sessions.knows(key) for key in keys] == [False, True, True]
+    assert [sessions.role(key) for key in keys] == [None, ViewRole.VIEW, ViewRole.VIEW]
     assert len(set(keys)) == 3
-    assert not sessions.knows("")
+    assert sessions.role("") is None
+
+
+def test_spectators_make_no_key_of_a_view_forgotten():
+    sessions = Sessions({ViewRole.VIEW: 1, ViewRole.SPECTATOR: 2})
+    key = sessions.open()
+    watching = [sessions.open(ViewRole.SPECTATOR) for _ in range(3)]
+    assert sessions.role(key) is ViewRole.VIEW
+    assert [sessions.role(each) for each in watching] == [
+        None,
+        ViewRole.SPECTATOR,
+        ViewRole.SPECTATOR,
+    ]

@@ -1,0 +1,51 @@
+/** What a spectator sees of a headset: its eyes' place for the camera, and its controllers in the room. */
+
+import { Object3D, Vector3 } from "three";
+
+import type { CameraPlace, Pose, Wearer } from "./messages";
+import { PoseStream } from "./pose_stream";
+import { controllerBody } from "./xr/controller_body";
+
+/** Of the picture, from top to bottom: enough to see what the wearer does. */
+const ANGLE_DEG = 70;
+const AT_REST: Pose = [0, 0, 0, 0, 0, 0, 1];
+const BODIES = 3;
+
+export class WornView {
+  private readonly eyes = new Object3D();
+  private readonly hands = [controllerBody(), controllerBody()] as const;
+  private stream = new PoseStream(BODIES);
+  private isWorn = false;
+  private readonly ahead = new Vector3();
+  private readonly up = new Vector3();
+
+  /** `world` is the object whose frame is World. */
+  constructor(world: Object3D) {
+    world.add(...this.hands);
+    for (const hand of this.hands) hand.visible = false;
+  }
+
+  /** Take what arrived at `now` (s); null while nobody wears a headset. */
+  put(wearer: Wearer | null, now: number): void {
+    const [left, right] = this.hands;
+    left.visible = wearer?.left != null;
+    right.visible = wearer?.right != null;
+    // Whoever puts it on again is elsewhere by then.
+    if (wearer === null && this.isWorn) this.stream = new PoseStream(BODIES);
+    this.isWorn = wearer !== null;
+    if (wearer !== null) this.stream.put(now, [wearer.eyes, wearer.left ?? AT_REST, wearer.right ?? AT_REST], now);
+  }
+
+  /** Return where the eyes look from at `now` (s), and place the hands; null while nobody wears a headset. */
+  place(now: number): CameraPlace | null {
+    if (!this.isWorn) return null;
+    this.stream.place([this.eyes, ...this.hands], now);
+    const { position, quaternion } = this.eyes;
+    return {
+      position: position.toArray(),
+      focalPoint: this.ahead.set(0, 0, -1).applyQuaternion(quaternion).add(position).toArray(),
+      viewUp: this.up.set(0, 1, 0).applyQuaternion(quaternion).toArray(),
+      viewAngleDeg: ANGLE_DEG,
+    };
+  }
+}

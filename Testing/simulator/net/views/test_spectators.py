@@ -1,0 +1,177 @@
+"""A spectator sees everything that a view sees, and drives nothing whatever it sends."""
+
+import json
+
+import aiohttp
+import pytest
+
+from rastrainer_simulator.net.views.messages import ALIVE, MEMBERS, Worn
+from rastrainer_simulator.net.views.mirror import Mirror
+from rastrainer_simulator.net.views.presenter import Control, Feedback
+from rastrainer_simulator.net.views.screen import Screen, ScreenMessage
+from rastrainer_simulator.net.views.sessions import ViewRole
+from Testing.security.stream_attack import MESSAGES
+from Testing.simulator.net.views.served import HELLO
+
+EXAMPLES = {message["type"]: message for message in MESSAGES}
+EYES = [0.5, -0.6, 1.25, 0.0, 0.6, 0.0, 0.8]
+HAND = [0.4, -0.2, 1.0, 0.0, 0.0, 0.0, 1.0]
+WORN = {"type": "worn", "eyes": EYES, "left": None, "right": HAND}
+TOLD = {"eyes": EYES, "left": None, "right": HAND}
+NOTHING_ELSE = (1008, "A spectator drives nothing: it may send alive and nothing else.")
+
+
+def watch(served, connect, role=ViewRole.SPECTATOR):
+    """Return a spectator that has joined."""
+    spectator = connect(served, role)
+    spectator.join(kind="spectator")
+    return spectator
+
+
+def wearers(view):
+    """Return what a spectator has read of who wears a headset, state by state."""
+    while True:
+        yield view.next("state")["wearer"]
+
+
+def is_cut_off(view):
+    """Read on until the connection ends without a word; return whether it has."""
+    try:
+        while True:
+            view.next()
+    except (AssertionError, aiohttp.ClientError):
+        return True
+
+
+def until(wanted, view):
+    next(told for told in wearers(view) if told == wanted)
+
+
+def test_there_is_an_example_of_every_message_of_the_protocol():
+    assert EXAMPLES.keys() == MEMBERS.keys()
+
+
+@pytest.mark.parametrize("role", ViewRole)
+@pytest.mark.parametrize("kind", [kind for kind in MEMBERS if kind != ALIVE])
+def test_a_spectator_that_sends_anything_is_closed_and_nothing_has_happened(
+    served, connect, kind, role
+):
+    spectator = watch(served, connect, role)
+    spectator.send(EXAMPLES[kind])
+    assert spectator.closing() == NOTHING_ELSE
+    assert served.presenter.calls == []
+
+
+def test_a_spectator_that_is_alive_goes_on_watching(served, connect):
+    spectator = watch(served, connect)
+    spectator.send(EXAMPLES[ALIVE])
+    spectator.send(EXAMPLES[ALIVE])
+    spectator.leave()
+    assert watch(served, connect).next("state")["wearer"] is None
+    assert served.presenter.calls == []
+
+
+@pytest.mark.parametrize("kind", ["desktop", "page", "headset"])
+def test_the_key_of_a_spectator_lets_no_view_join(served, connect, kind):
+    spectator = connect(served, ViewRole.SPECTATOR)
+    spectator.send({**HELLO, "kind": kind})
+    reason = "This key is a spectator's: the kind of the view must be spectator."
+    assert spectator.closing() == (1008, reason)
+    assert served.presenter.calls == []
+
+
+def test_the_flow_which_counts_who_sees_a_trial_hears_of_no_spectator(served, connect):
+    spectator = watch(served, connect)
+    view = connect(served)
+    number = view.join()["view"]
+    spectator.leave()
+    watch(served, connect)
+    view.leave()
+    calls = served.wait_for_call("view_left", number)
+    assert [call[:2] for call in calls] == [("view_joined", number), ("view_left", number)]
+
+
+def test_a_spectator_is_told_all_that_a_view_is_but_the_code(served, connect):
+    served.presenter.screen = Screen(instruction=ScreenMessage("Touch 3"))
+    view, spectator = connect(served), connect(served, ViewRole.SPECTATOR)
+    view.join()
+    spectator.join(kind="spectator")
+    seen = [view.next("pairing")["code"], spectator.next("screen")["screen"]["instruction"]["text"]]
+    assert seen == [served.code, "Touch 3"]
+    served.tell(Feedback(1, "touch", "touch"), Control("gamepad"))
+    for _ in range(2):
+        told = spectator.all_until(lambda message: message["type"] == "state")
+        assert "pairing" not in {message["type"] for message in told}
+    # A new code is told to the views, and to no spectator either.
+    served.thread.call(served.server.announce, "https://192.0.2.1:18946")
+    assert "https://192.0.2.1:18946" in view.next("pairing")["addresses"]
+    served.tell(Feedback(2, "touch"))
+    until_last = spectator.all_until(lambda m: m["type"] == "event" and m["number"] == 2)
+    assert "pairing" not in {message["type"] for message in until_last}
+
+
+def test_a_spectator_sees_where_the_eyes_and_hands_of_a_headset_are_and_no_view_does(
+    served, connect
+):
+    headset, spectator, page = connect(served), watch(served, connect), connect(served)
+    headset.join(kind="headset")
+    page.join()
+    assert next(wearers(spectator)) is None
+    headset.send(WORN)
+    until(TOLD, spectator)
+    assert "wearer" not in page.next("state")
+    late = watch(served, connect)
+    assert late.next("state")["wearer"] == TOLD
+    headset.send({**WORN, "eyes": None})
+    until(None, spectator)
+
+
+def test_a_headset_that_leaves_is_worn_by_nobody(served, connect):
+    spectator, headset = watch(served, connect), connect(served)
+    headset.join(kind="headset")
+    headset.send(WORN)
+    until(TOLD, spectator)
+    headset.leave()
+    until(None, spectator)
+
+
+def test_the_newest_headset_is_followed_and_after_it_the_one_before():
+    mirror, worn = Mirror(), Worn(tuple(EYES), None, tuple(HAND))
+    mirror.take(1, worn)
+    assert mirror.text == "null", "it is no headset"
+    for headset in (1, 2):
+        mirror.joined(headset)
+        mirror.take(headset, worn)
+        assert json.loads(mirror.text) == TOLD
+    mirror.take(1, Worn(None, None, None))
+    assert json.loads(mirror.text) == TOLD, "it was left for the other one"
+    mirror.left(2)
+    assert mirror.text == "null"
+    mirror.take(1, worn)
+    assert json.loads(mirror.text) == TOLD
+
+
+def test_spectators_take_no_place_of_a_view(serve, connect):
+    served = serve(views=1, spectators=1)
+    watch(served, connect)
+    with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
+        connect(served, ViewRole.SPECTATOR)
+    view = connect(served)
+    assert view.join()["type"] == "welcome"
+
+
+def test_a_spectator_s_connection_yields_to_a_view_where_there_are_too_many(serve, connect):
+    served = serve(connections=2)
+    view, spectator = connect(served), watch(served, connect)
+    view.join()
+    again = connect(served)
+    again.join()
+    assert is_cut_off(spectator)
+    assert view.next("state")["type"] == again.next("state")["type"] == "state"
+
+
+def test_a_spectator_that_lets_too_many_events_wait_is_dropped_as_a_view_is(served, connect):
+    spectator = watch(served, connect)
+    spectator.next("state")
+    served.tell(*(Feedback(number, "touch") for number in range(1, 300)))
+    assert spectator.closing() == (1013, "The view has not read its events; it may come back.")

@@ -1,0 +1,203 @@
+"""Somebody who only watches in a browser, through the eyes of who wears a headset, if anybody."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.net.views.screen import Hint, Menu, MenuItem, Screen, ScreenMessage
+from Testing.simulator.net.igtl.servers import LoopThread
+from Testing.simulator.net.views.served import ViewClient
+from Testing.web.chromium import (
+    PATIENCE_MS,
+    accessibility_checker,
+    draw_nothing,
+    enter_headset,
+    open_page,
+    pixels,
+    wait_for,
+)
+from Testing.web.hands import Controllers
+from Testing.web.place import WITHOUT_GRAPHICS, Place
+from Testing.web.test_page_access import VIOLATIONS, complaints
+
+SCREEN = Screen(
+    menu=Menu(
+        "start",
+        "RASTrainer",
+        items=(
+            MenuItem("train", "Train"),
+            MenuItem("trainee", "ID", "text", "P07"),
+            MenuItem("language", "Language", "choice", "English"),
+        ),
+        focus="train",
+    ),
+    hints=(Hint("A", "Choose", "press accept"),),
+)
+WORKING = Screen(instruction=ScreenMessage("Touch 3"), has_sticks=True, hints=(Hint("A", "Touch"),))
+EYES = [0.2, -0.5, 1.0, 0.0, 0.0, 0.6, 0.8]
+"""Turned about World's z, from looking down."""
+AHEAD = (0.2, -0.5, 0.0)
+UP = (-0.96, 0.28, 0.0)
+HAND = [0.4, -0.2, 0.9, 0.0, 0.0, 0.0, 1.0]
+LOOKS = """(() => {
+  const { position, matrixWorld } = page.flat.camera;
+  const axis = (column) => matrixWorld.elements.slice(4 * column, 4 * column + 3);
+  return { position: position.toArray(), up: axis(1), back: axis(2) };
+})()"""
+DRIVES_NOTHING = """async () => {
+  const sent = [];
+  const { send } = WebSocket.prototype;
+  WebSocket.prototype.send = function (text) { sent.push(text); send.call(this, text); };
+  page.connection.send("press", { control: "touch" });
+  press(0, 1);
+  await frames_(3);
+  press(0, 0);
+  await frames_(3);
+  return sent;
+}"""
+
+
+def y_up(x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Return a point of World in three's frame."""
+    return x, z, -y
+
+
+def watch(browser, served, **options):
+    return open_page(browser, served.url, f"{served.code}&role=spectator", draws=False, **options)
+
+
+@pytest.fixture
+def page(browser, served):
+    served.presenter.screen = SCREEN
+    page = watch(browser, served, has_pad=True)
+    yield page
+    assert page.problems == []
+    page.context.close()
+
+
+def test_keys_clicks_pad_and_pointer_of_a_spectator_go_nowhere(served, page):
+    assert page.evaluate(DRIVES_NOTHING) == []
+    for name in ("train", "language"):
+        row = page.locator(f"#menu li[data-name={name}] button")
+        assert row.get_attribute("aria-disabled") == "true"
+        row.click(force=True)
+    assert not page.locator("#menu input").is_editable()
+    assert page.locator("#hints button").count() == 0
+    for key in ("Enter", "ArrowDown", "KeyW", "Escape"):
+        page.keyboard.press(key)
+    served.tell(WORKING)
+    page.wait_for_selector("#instruction:has-text('Touch 3')")
+    assert page.locator("#touch-controls").is_hidden()
+    page.mouse.move(200, 110)
+    page.mouse.down(button="right")
+    page.mouse.move(300, 110)
+    page.mouse.up(button="right")
+    page.keyboard.press("Space")
+    page.evaluate("frames_(3)")
+    # Whatever was sent would have ended the connection.
+    assert page.evaluate("page.connection.isConnected")
+    assert served.presenter.calls == []
+
+
+def test_a_spectator_may_pair_to_take_part(served, page):
+    page.click("#take-part")
+    page.wait_for_selector("#pairing:not([hidden])")
+    page.fill("#code", served.code)
+    page.press("#code", "Enter")
+    page.wait_for_selector("body[data-scene]:not([data-watching])")
+    wait_for(page, "page.connection.isConnected")
+    assert page.locator("#take-part").is_hidden()
+    page.keyboard.press("KeyW")
+    served.wait_for_call("on_key", _joined(served), "KeyW", True, "w")
+
+
+def _joined(served) -> int:
+    (number,) = (call[1] for call in served.presenter.calls if call[0] == "view_joined")
+    return number
+
+
+def test_the_form_lets_who_pairs_choose_to_watch(browser, served):
+    context = browser.new_context()
+    page = context.new_page()
+    draw_nothing(page)
+    page.set_default_timeout(PATIENCE_MS)
+    page.goto(served.url)
+    page.wait_for_selector("#pairing:not([hidden])")
+    page.evaluate(accessibility_checker())
+    assert page.evaluate(VIOLATIONS) == []
+    page.fill("#code", served.code)
+    page.get_by_role("button", name="Only watch").click()
+    page.wait_for_selector("body[data-watching][data-scene]")
+    page.reload()
+    page.wait_for_selector("body[data-watching][data-scene]")
+    context.close()
+    assert served.presenter.calls == []
+
+
+def test_a_spectator_looks_through_the_eyes_of_who_wears_a_headset(served, page):
+    served.tell(WORKING)
+    worn = {"type": "worn", "eyes": EYES, "left": None, "right": HAND}
+    with LoopThread() as thread, ViewClient(thread, served.url, served.new_key()) as headset:
+        headset.join(kind="headset")
+        headset.send(worn)
+        wait_for(page, "page.worn.hands[1].visible")
+        close = json.dumps(y_up(*EYES[:3]))
+        wait_for(page, f"Math.hypot(...{LOOKS}.position.map((x, i) => x - {close}[i])) < 1e-4")
+        seen = page.evaluate(LOOKS)
+        np.testing.assert_allclose(seen["back"], y_up(0.0, 0.0, 1.0), atol=1e-4)
+        np.testing.assert_allclose(seen["up"], y_up(*UP), atol=1e-4)
+        left, right = page.evaluate("page.worn.hands.map((hand) => hand.visible)")
+        assert (left, right) == (False, True)
+        wait_for(page, f"page.worn.hands[1].position.distanceTo({_vector(HAND)}) < 1e-4")
+    wait_for(page, "!page.worn.hands[1].visible")
+    home = json.dumps(y_up(*LOOKED_FROM))
+    wait_for(page, f"Math.hypot(...{LOOKS}.position.map((x, i) => x - {home}[i])) < 1e-4")
+
+
+LOOKED_FROM = (0.5, -0.5, 0.4)
+"""Where the presenter of these tests looks from."""
+
+
+def _vector(pose: list[float]) -> str:
+    x, y, z = pose[:3]
+    return f"{{ x: {x}, y: {y}, z: {z} }}"
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_what_a_spectator_sees_breaks_no_rule_of_accessibility(browser, served, language):
+    page = watch(browser, served)
+    page.evaluate(accessibility_checker())
+    found = []
+    for name, screen in (("menu", SCREEN), ("work", WORKING)):
+        served.tell(Screen(menu=screen.menu, instruction=screen.instruction, language=language))
+        page.wait_for_selector(f"html[lang={language}]")
+        page.wait_for_selector(f"body[data-menu='{'start' if name == 'menu' else ''}']")
+        found += complaints(page, name, ("phone", "laptop at 200 %", "full HD at 200 %"))
+    page.context.close()
+    assert found == []
+
+
+@pytest.mark.soak
+def test_a_headset_is_mirrored_and_its_leaving_pauses_though_somebody_watches(tmp_path, browser):
+    with Place(tmp_path, limits=WITHOUT_GRAPHICS) as place:
+        url, code = place.simulator.url, place.simulator.code
+        headset = open_page(browser, url, code, "metaQuest2", draws=False)
+        enter_headset(headset)
+        trainee = place.carried_trainee(Controllers(headset))
+        trainee.begin("task-1", headset)
+        page = open_page(browser, url, f"{code}&role=spectator")
+        wait_for(page, "page.state?.wearer != null")
+        told = page.evaluate("page.state.wearer")
+        assert told["left"] is not None
+        assert told["right"] is not None
+        before = pixels(page)
+        headset.evaluate("device.quaternion.set(0, Math.sin(0.2), 0, Math.cos(0.2)); frames_(3)")
+        wait_for(page, f"Math.abs(page.state.wearer.eyes[3] - {told['eyes'][3]}) > 0.01")
+        trainee.until(lambda: np.abs(pixels(page) - before).mean() > 5.0, "another picture")
+        headset.evaluate("device.updateVisibilityState('hidden')")
+        wait_for(page, "page.state.wearer === null")
+        trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
+        assert page.problems == headset.problems == []
