@@ -166,7 +166,7 @@ def _vector(pose: list[float]) -> str:
     return f"{{ x: {x}, y: {y}, z: {z} }}"
 
 
-@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("language", [pytest.param("en", marks=pytest.mark.soak), "de"])
 def test_what_a_spectator_sees_breaks_no_rule_of_accessibility(browser, served, language):
     page = watch(browser, served)
     page.evaluate(accessibility_checker())
