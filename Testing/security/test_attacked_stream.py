@@ -43,7 +43,7 @@ def attack(folder, warm_up: int, count: int, capsys) -> None:
 
 
 def test_a_hundred_mutated_messages_of_views_harm_nobody_else(tmp_path, capsys):
-    attack(tmp_path / "records", 20, 100, capsys)
+    attack(tmp_path / "records", 100, 100, capsys)
 
 
 @pytest.mark.soak
