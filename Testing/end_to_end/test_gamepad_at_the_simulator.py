@@ -59,7 +59,7 @@ def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_pa
         # Start training, three pages of introduction, the controls, and the ID: "A".
         for button in ("a", "a", "a", "a", "a", "a", "a", *["dpdown"] * 5, "a"):
             simulator.tap(button)
-        for button in (*["dpdown"] * 4, "a"):
+        for button in (*["dpdown"] * 5, "a"):
             simulator.tap(button)
         watch.until(lambda state: state["phase"] == "running")
         state = watch.state()

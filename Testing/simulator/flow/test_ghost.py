@@ -56,8 +56,10 @@ class GhostPlace(Place):
         """Begin a task, and let no time of it pass while the ghost is being loaded."""
         answer = self.submit("StartTask", task=task, trainee=trainee)
         assert answer.ok, answer
+        ghost = self.presenter._session.ghost
+        self.until(lambda: ghost._trial_id == answer.data["trialId"], "the trial")
         self.until_menu(None)
-        loading = self.presenter._session.ghost._loading
+        loading = ghost._loading
         if loading is not None:
             loading.ghost.result(PATIENCE_S)
         self.step()
@@ -154,9 +156,10 @@ def test_the_expert_is_the_trainee_whom_the_settings_name(place):
 def test_where_no_acceptable_trial_is_to_be_found_the_trainee_is_told(place, task, choice):
     place.prefer(ghost=choice)
     place.start_and_load(task)
-    place.step(2)
+    place.until(
+        lambda: NONE in [warning.text for warning in place.presenter.screen.warnings], "the reason"
+    )
     assert place.ghost is None
-    assert NONE in [warning.text for warning in place.presenter.screen.warnings]
     assert place.noted() == []
 
 
