@@ -7,7 +7,7 @@ import pytest
 
 from Testing.web.chromium import open_page
 from Testing.web.hands import PageMouse
-from Testing.web.place import WITHOUT_GRAPHICS, CarriedTrainee, Place, Trainee
+from Testing.web.place import WITHOUT_GRAPHICS, Place, Trainee
 
 SIZE = {"width": 1280, "height": 720}
 SLOW = "0.5"
@@ -47,10 +47,6 @@ class ClickingTrainee(Clicks, Trainee):
     """Does everything by the mouse."""
 
 
-class CarriedClicker(Clicks, CarriedTrainee):
-    """Is quick: only far ways are carried by command."""
-
-
 @pytest.fixture
 def place(tmp_path):
     with Place(tmp_path, "--speed", SLOW, limits=WITHOUT_GRAPHICS, **ON_SCREEN) as place:
@@ -66,7 +62,7 @@ def page(place, browser):
 
 
 def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(place, page):
-    trainee = CarriedClicker(place.view, PageMouse(page), place.client())
+    trainee = ClickingTrainee(place.view, PageMouse(page))
     trainee.begin_trial_run()
     page.wait_for_selector("#touch-controls .stick")
     assert page.query_selector("#touch-controls button:visible") is None
