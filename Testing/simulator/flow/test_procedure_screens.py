@@ -133,15 +133,7 @@ def perform(operation: Operation) -> None:
 def begin(operation: Operation) -> None:
     """Choose a procedure and a task, touch all points wherever the tip is, and register them."""
     trainee = operation.trainee
-    trainee.until_menu("start")
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    while trainee.menu.name != "controls":
-        trainee.tap("accept")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
-    trainee.focus("trainee")
-    trainee.hands.type("P07")
+    trainee.go_to_experiment("P07")
     trainee.focus("procedure")
     operation.seen["procedures"] = [trainee.item("procedure").value]
     for _ in range(3):

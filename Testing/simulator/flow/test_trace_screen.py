@@ -41,6 +41,16 @@ def landmarks_touched(trainee, task="task-1"):
         trainee.step()
 
 
+def draw_stroke(trainee):
+    """Begin a stroke, draw enough points to register, and end it."""
+    trainee.tap("touch")
+    trainee.until(lambda: trainee.state.training.trace.is_on, "a stroke")
+    trainee.hands.push(0.9, 0.0, 0.0, fine=False)
+    trainee.until(lambda: traced(trainee) > MIN_TRACE_POINTS, "the points")
+    trainee.hands.push(0.0, 0.0, 0.0, fine=False)
+    trainee.tap("touch")
+
+
 def guidance(trainee):
     return trainee.presenter.trace_guidance(trainee.state)
 
@@ -66,12 +76,7 @@ def test_after_a_stroke_elsewhere_another_place_is_next(trainee):
     landmarks_touched(trainee)
     trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
     first = guidance(trainee).next_place
-    trainee.tap("touch")
-    trainee.until(lambda: trainee.state.training.trace.is_on, "a stroke")
-    trainee.hands.push(0.9, 0.0, 0.0, fine=False)
-    trainee.until(lambda: traced(trainee) > MIN_TRACE_POINTS, "the points")
-    trainee.hands.push(0.0, 0.0, 0.0, fine=False)
-    trainee.tap("touch")
+    draw_stroke(trainee)
     trainee.until(lambda: guidance(trainee).next_place != first, "another place")
 
 
@@ -126,12 +131,7 @@ def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_con
     assert trainee.presenter.screen.status[1] == "0 of 30–500 points traced"
     assert "draw the tip over the skin" in trainee.presenter.screen.instruction.text
     assert "Begin or end a stroke" in [hint.action for hint in trainee.presenter.screen.hints]
-    trainee.tap("touch")
-    trainee.until(lambda: trainee.state.training.trace.is_on, "a stroke")
-    trainee.hands.push(0.9, 0.0, 0.0, fine=False)
-    trainee.until(lambda: traced(trainee) > MIN_TRACE_POINTS, "the points")
-    trainee.hands.push(0.0, 0.0, 0.0, fine=False)
-    trainee.tap("touch")
+    draw_stroke(trainee)
     trainee.until(lambda: not trainee.state.training.trace.is_on, "the end of the stroke")
     trainee.step()
     count = traced(trainee)
@@ -145,15 +145,7 @@ def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_con
 
 
 def test_the_method_is_chosen_in_the_experiment_menu_where_the_head_has_landmarks(trainee):
-    trainee.until_menu("start")
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    while trainee.menu.name != "controls":
-        trainee.tap("accept")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
-    trainee.focus("trainee")
-    trainee.hands.type("P07")
+    trainee.go_to_experiment("P07")
     trainee.focus("method")
     seen = [trainee.item("method").value]
     for _ in range(4):

@@ -138,6 +138,18 @@ class Trainee:
         self.focus(item)
         self.tap("accept")
 
+    def go_to_experiment(self, trainee: str) -> None:
+        """Read through to the experiment menu, and type an ID there."""
+        self.until_menu("start")
+        self.choose("train")
+        self.until_menu("introduction")
+        while self.menu.name != "controls":
+            self.tap("accept")
+        self.choose("next")
+        self.until_menu("experiment")
+        self.focus("trainee")
+        self.hands.type(trainee)
+
     def focus(self, item: str) -> None:
         names = [each.name for each in self.menu.items if each.kind != "axis"]
         assert item in names, f"{self.menu.name} has {names}"

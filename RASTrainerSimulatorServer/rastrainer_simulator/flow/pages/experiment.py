@@ -101,7 +101,7 @@ class ExperimentPage(SessionPage):
             self.session.mode = modes[place]
         elif item == "method":
             methods = playable_methods(self.session.scenario)
-            place = methods.index(self._offered_method()) + direction
+            place = methods.index(self.session.offered_method) + direction
             self.session.method = methods[place % len(methods)]
         elif item == "procedure":
             names = ["", *(each.name for each in self.session.scenario.procedures)]
@@ -128,15 +128,10 @@ class ExperimentPage(SessionPage):
         if len(playable_methods(self.session.scenario)) < 2:
             return ()
         is_free = self._step() is None
-        method = self._offered_method() if is_free else RegistrationMethod.FIDUCIALS
+        method = self.session.offered_method if is_free else RegistrationMethod.FIDUCIALS
         value = self.say(f"method.{method.value}")
         help_ = self.say("experiment.method help")
         return (self.choice("method", value, is_enabled=is_free, help=help_),)
-
-    def _offered_method(self) -> RegistrationMethod:
-        """Return the chosen method; fiducials where the head does not allow it."""
-        is_offered = self.session.method in playable_methods(self.session.scenario)
-        return self.session.method if is_offered else RegistrationMethod.FIDUCIALS
 
     def _procedure(self) -> tuple[MenuItem, ...]:
         """Return the choice of what follows the touches; none where the head has no procedures."""

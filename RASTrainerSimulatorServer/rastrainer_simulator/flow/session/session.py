@@ -353,8 +353,13 @@ class TrainingSession:
         Elsewhere it is what the trainee has chosen, if the head allows that.
         """
         is_free = task != TRIAL_RUN and self.study.step_of(self.trainee.strip()) is None
+        return self.offered_method if is_free else RegistrationMethod.FIDUCIALS
+
+    @property
+    def offered_method(self) -> RegistrationMethod:
+        """The chosen method; fiducials where the head does not allow it."""
         is_offered = self.method in playable_methods(self.scenario)
-        return self.method if is_free and is_offered else RegistrationMethod.FIDUCIALS
+        return self.method if is_offered else RegistrationMethod.FIDUCIALS
 
     def prefer(self, preferences: Preferences) -> None:
         """Take on other preferences and save them."""
