@@ -8,6 +8,11 @@ import numpy as np
 import pytest
 import trimesh
 
+from rastrainer_simulator.desktop.camera import Viewpoint
+from rastrainer_simulator.desktop.glb_parts import read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.performance import Quality
+from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.net.views.screen import (
     Hint,
     ItemKind,
@@ -114,3 +119,22 @@ def gl_window():
         window = GlWindow(SIZE, is_fullscreen=False)
         yield window
         window.close()
+
+
+@pytest.fixture(scope="module")
+def inbox(glb):
+    """What a window of that scene has received."""
+    inbox = Inbox()
+    inbox.bodies = BODIES
+    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
+    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
+    return inbox
+
+
+@pytest.fixture(scope="module")
+def picture(gl_window, inbox):
+    """A picture of it, as software OpenGL draws it."""
+    picture = Picture(gl_window, inbox, Quality.LOW)
+    yield picture
+    for renderer in list(gl_window.render_window.GetRenderers()):
+        gl_window.render_window.RemoveRenderer(renderer)

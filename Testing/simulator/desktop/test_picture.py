@@ -7,21 +7,16 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.desktop.camera import TRANSITION_S, Viewpoint
-from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.camera import TRANSITION_S
 from rastrainer_simulator.desktop.panels.stick import stick_boxes
 from rastrainer_simulator.desktop.performance import Quality, first_quality
-from rastrainer_simulator.desktop.picture import Picture, Pointer
+from rastrainer_simulator.desktop.picture import Pointer
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
 from rastrainer_simulator.net.views.screen import Hint, Screen
 from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.read_png import read_png
 from Testing.simulator.desktop.conftest import (
-    BODIES,
-    CAMERAS,
-    FIDUCIALS,
     HERE,
     MENU,
     SCREEN,
@@ -33,23 +28,6 @@ BLUE, RED = ((0, 40, 200), (60, 120, 255)), ((220, 0, 0), (255, 70, 70))
 WHITE, ON_SKIN = ((245, 245, 245), (255, 255, 255)), ((55, 200, 120), (65, 207, 132))
 VIOLET = (95, 60, 150), (190, 160, 255)
 GREEN, YELLOW = ((10, 130, 40), (70, 190, 100)), ((220, 170, 0), (255, 255, 215))
-
-
-@pytest.fixture(scope="module")
-def inbox(glb):
-    inbox = Inbox()
-    inbox.bodies = BODIES
-    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
-    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
-    return inbox
-
-
-@pytest.fixture(scope="module")
-def picture(gl_window, inbox):
-    picture = Picture(gl_window, inbox, Quality.LOW)
-    yield picture
-    for renderer in list(gl_window.render_window.GetRenderers()):
-        gl_window.render_window.RemoveRenderer(renderer)
 
 
 @pytest.fixture

@@ -5,13 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.performance import Quality
-from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.shown_trace import ShownTrace, SkinPaint
-from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, SCREEN, state_text
+from Testing.simulator.desktop.conftest import SCREEN, state_text
 
 MARKS, RING = ((0, 15, 80), (30, 60, 130)), ((240, 190, 0), (255, 220, 40))
 PAINT = ((40, 100, 140), (120, 210, 255))
@@ -26,23 +22,6 @@ def news(points=(), known=0, covered_mm=WIDE_MM, next_place=NEXT):
     return {"known": known, "points": points, "coveredMm": covered_mm, "next": next_place}
 
 
-@pytest.fixture(scope="module")
-def inbox(glb):
-    inbox = Inbox()
-    inbox.bodies, inbox.problem, inbox.screen = BODIES, "", SCREEN
-    views = {name: Viewpoint.from_json(value) for name, value in CAMERAS.items()}
-    inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
-    return inbox
-
-
-@pytest.fixture(scope="module")
-def picture(gl_window, inbox):
-    picture = Picture(gl_window, inbox, Quality.LOW)
-    yield picture
-    for renderer in list(gl_window.render_window.GetRenderers()):
-        gl_window.render_window.RemoveRenderer(renderer)
-
-
 @pytest.fixture
 def show(gl_window, inbox, picture):
     """Return a function that shows a trace and returns the pixels of the main picture."""
@@ -50,7 +29,7 @@ def show(gl_window, inbox, picture):
     picture.set_quality(Quality.LOW)
 
     def show(trace, screen=SCREEN):
-        inbox.trace, inbox.screen = trace, screen
+        inbox.trace, inbox.screen, inbox.problem = trace, screen, ""
         inbox.take_state(state_text(next=None, touched=[]))
         for now in (float(next(times)), float(next(times))):
             picture.is_due(now)
