@@ -10,6 +10,7 @@ from rastrainer.report.report import report_html
 from rastrainer.study.study_data import read_study_data
 from Testing.domain.report.studied_procedures import with_procedures
 from Testing.domain.report.test_aborted_in_report import path  # noqa: F401
+from Testing.domain.report.test_methods_in_report import played
 from Testing.domain.report.test_report import PUBLISHED, cohort
 from Testing.domain.statistics.test_variation import drawn
 
@@ -27,6 +28,7 @@ FIRST_CELLS = {
     "View",
     "mode",
     "Metric",
+    "Method",
     "Scale",
     "Group",
     "Procedure",
@@ -71,6 +73,7 @@ def drawn_pages():
         with_intervals(drawn()),
         in_two_groups(cohort(30, tasks=6)),
         with_procedures(cohort(4)),
+        played(4),
     )
     return [report_html(data, "today") for data in studies]
 

@@ -17,6 +17,7 @@ from rastrainer.report.elements.registration_methods import methods_note, with_o
 from rastrainer.report.elements.scores import versions_note, with_ctps, with_one_score_version
 from rastrainer.report.sections.calibration import calibration
 from rastrainer.report.sections.learning import learning
+from rastrainer.report.sections.method_comparison import method_comparison
 from rastrainer.report.sections.methods import limits, methods
 from rastrainer.report.sections.mode_comparison import distributions, mode_comparison, motion
 from rastrainer.report.sections.paired_statistics import findings, order_caveat, paired_statistics
@@ -68,7 +69,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     """
     # Before anything that catches `InputError`.
     scipy_module("stats")
-    by_method = methods_note(data)
+    by_method, compared_methods = methods_note(data), method_comparison(data)
     data = with_one_score_version(with_ctps(with_one_method(data)))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
@@ -92,6 +93,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         variation(data),
         passing(data),
         calibration(data),
+        compared_methods,
         procedures(data),
         motion(data, described[0] if described else ()),
         questionnaires(data),

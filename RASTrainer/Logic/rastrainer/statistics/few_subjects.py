@@ -23,6 +23,7 @@ def what_it_shows(
     comparison: PairedComparison,
     adjusted_p: float,
     digits: int = 2,
+    several: str = "outcomes",
 ) -> str:
     """Return a sentence that says what the comparison shows, never more.
 
@@ -34,6 +35,7 @@ def what_it_shows(
         comparison: Second minus first.
         adjusted_p: Its p, adjusted for the number of outcomes.
         digits: After the point, of the difference and its interval.
+        several: What p was adjusted for.
     """
     low, high = comparison.interval
     difference = comparison.mean_difference
@@ -44,12 +46,12 @@ def what_it_shows(
     if adjusted_p < ALPHA:
         return (
             f"{name} was {amount} {direction} with {second} than with {first} "
-            f"(95 % interval {span}); this holds after correction for testing several outcomes."
+            f"(95 % interval {span}); this holds after correction for testing several {several}."
         )
     if comparison.p < ALPHA:
         return (
             f"{name} was {amount} {direction} with {second} than with {first} (95 % interval "
-            f"{span}), but this does not hold after correction for testing several outcomes."
+            f"{span}), but this does not hold after correction for testing several {several}."
         )
     return (
         f"{name}: no difference is shown. The data are compatible with anything {span}; that is "

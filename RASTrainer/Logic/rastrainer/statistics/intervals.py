@@ -55,6 +55,17 @@ def _noncentrality(t: float, dof: float, probability: float) -> float:
     return float(scipy_module("optimize").brentq(excess, low, high, xtol=1e-12))
 
 
+def mean_interval(values: np.ndarray, confidence: float = CONFIDENCE) -> tuple[float, float] | None:
+    """Return the interval of the mean of (n,) float values (Student's t); None for one value."""
+    n = len(values)
+    if n < 2:
+        return None
+    error = float(np.std(values, ddof=1)) / math.sqrt(n)
+    reach = float(scipy_module("stats").t.ppf((1 + confidence) / 2, n - 1)) * error
+    mean = float(np.mean(values))
+    return mean - reach, mean + reach
+
+
 ALPHA = 0.05
 TARGET_POWER = 0.8
 MAX_SUBJECTS = 10_000

@@ -52,12 +52,17 @@ class ModeComparison:
 
 
 def compare_modes(
-    data: StudyData, outcomes: Sequence[Outcome], first: str, second: str
+    data: StudyData,
+    outcomes: Sequence[Outcome],
+    first: str,
+    second: str,
+    confirmatory: Sequence[str] = CONFIRMATORY,
 ) -> tuple[ModeComparison, ...]:
     """Compare two modes on every outcome that trials of both have.
 
     A trainee's mean is over the tasks done in both modes, so a missing trial does not make a mode
-    look easier. With different orders of the modes, the effect of the period is removed.
+    look easier. With different orders of the modes, the effect of the period is removed. Only
+    the `confirmatory` outcomes have an adjusted p.
     """
     found = []
     delays = mode_delays(data, first, second) if data.has_order else None
@@ -69,7 +74,7 @@ def compare_modes(
     p_values = {
         index: comparison.result.p
         for index, comparison in enumerate(found)
-        if comparison.result is not None and comparison.outcome.name in CONFIRMATORY
+        if comparison.result is not None and comparison.outcome.name in confirmatory
     }
     adjusted = holm(np.array([*p_values.values()]))
     for index, p in zip(p_values, adjusted, strict=True):

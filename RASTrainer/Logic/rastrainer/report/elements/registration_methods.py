@@ -1,4 +1,4 @@
-"""Trials by different methods of registration are not compared with each other."""
+"""Which trials a report is about where they were registered by different methods."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ def methods_note(data: StudyData) -> str:
         f"{counted(count, 'trial')} by {method}" for method, count in sorted(left_out.items())
     )
     return (
-        f"Trials by different methods of registration have other points, times and residuals and "
-        f"are not compared: this report is about those by {compared} and leaves out {others}. "
-        "trials.csv has all of them, each with its method."
+        f"Trials by different methods of registration have other points, times and residuals: "
+        f"but for “Methods of registration”, which compares their errors, this report is about "
+        f"those by {compared} and leaves out {others}. trials.csv has all of them, each with its "
+        "method."
     )

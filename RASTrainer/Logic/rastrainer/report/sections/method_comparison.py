@@ -1,0 +1,206 @@
+"""The methods of registration side by side: residual, expected and true target error."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rastrainer.number_text import fixed, p_text
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.report.elements.comparisons import ModeComparison, compare_modes, tested
+from rastrainer.report.elements.markup import (
+    Cell,
+    Line,
+    bullets,
+    figure,
+    heading,
+    paragraph,
+    section,
+    table,
+)
+from rastrainer.report.sections.mode_comparison import Series, grouped_bars
+from rastrainer.report.sections.paired_statistics import interval_text
+from rastrainer.statistics.few_subjects import what_it_shows
+from rastrainer.statistics.intervals import mean_interval
+from rastrainer.statistics.paired import holm
+from rastrainer.study.outcomes import Outcome
+from rastrainer.study.study_data import StudyData, TrialRow
+
+TITLES = {
+    RegistrationMethod.FIDUCIALS.value: "Fiducials",
+    RegistrationMethod.LANDMARKS.value: "Landmarks",
+    RegistrationMethod.SURFACE.value: "Trace",
+    RegistrationMethod.LANDMARKS_SURFACE.value: "Landmarks and trace",
+}
+RESIDUAL = Outcome("rmse_mm", "Residual", "mm", 0, 2)
+EXPECTED = Outcome("expected_tre_mm", "Expected target error", "mm", -1, 2)
+TRUE = Outcome("true_tre_mm", "True target error", "mm", -1, 2)
+OUTCOMES = (RESIDUAL, EXPECTED, TRUE)
+COLORS = {RESIDUAL: "#6b7785", EXPECTED: "#0b6fa4", TRUE: "#d1661b"}
+INTRO = (
+    "Residuals of different methods are of different points: a small residual does not mean a "
+    "small error, and does not tell which method is better. The true target error does."
+)
+PAIRED = (
+    "Each trainee counts once, with the mean over the modes in which both methods were played; "
+    "differences are the second method minus the first, free of the effect of the period where "
+    "the orders allow it. The decision is about the true error alone, with Holm's correction over "
+    "the pairs of methods; the other outcomes are described. What else differed between the "
+    "trials, such as their tasks, is part of the differences."
+)
+
+
+def method_comparison(data: StudyData) -> str:
+    """Return the section; "" where all trials were registered by one method.
+
+    Args:
+        data: With the trials of all methods.
+
+    Raises:
+        InputError: scipy is missing.
+    """
+    by_method = as_conditions(data)
+    methods = [name for name in TITLES if name in by_method.modes]
+    if len(methods) < 2:
+        return ""
+    pairs = compare_methods(by_method)
+    parts = [
+        paragraph(INTRO),
+        table([_HEADER], [_row(by_method, each) for each in methods], "wide"),
+    ]
+    parts.append(figure([_picture(by_method, methods)], "Every trial at the scenario's target."))
+    if pairs:
+        parts += [
+            heading("Differences between methods"),
+            paragraph(PAIRED),
+            bullets(_findings(pairs)),
+            table([_PAIR_HEADER], [_pair_row(each) for each in pairs], "wide"),
+        ]
+    else:
+        parts.append(paragraph("No trainee played two methods in one mode: nothing is tested."))
+    return section("Methods of registration", *parts)
+
+
+def as_conditions(data: StudyData) -> StudyData:
+    """Return the study with methods in place of modes, and modes in place of tasks."""
+    trials = tuple(replace(each, mode=each.method, task=each.mode) for each in data.trials)
+    return replace(data, trials=trials)
+
+
+def compare_methods(by_method: StudyData) -> tuple[ModeComparison, ...]:
+    """Compare each two methods on residual, expected and true error.
+
+    The p of the true errors are adjusted together (Holm); the others are only described.
+
+    Args:
+        by_method: As from `as_conditions`.
+    """
+    names = [name for name in TITLES if name in by_method.modes]
+    found = [
+        comparison
+        for first, second in itertools.combinations(names, 2)
+        for comparison in compare_modes(by_method, OUTCOMES, first, second, confirmatory=())
+    ]
+    p_values = {
+        index: each.result.p
+        for index, each in enumerate(found)
+        if each.result is not None and each.outcome is TRUE
+    }
+    adjusted = holm(np.array([*p_values.values()]))
+    for index, p in zip(p_values, adjusted, strict=True):
+        found[index] = replace(found[index], adjusted_p=float(p))
+    return tuple(found)
+
+
+def _findings(pairs: Sequence[ModeComparison]) -> list[str]:
+    sentences = [
+        what_it_shows(
+            f"True target error ({TITLES[each.first].lower()} and {TITLES[each.second].lower()})",
+            each.outcome.unit,
+            TITLES[each.first].lower(),
+            TITLES[each.second].lower(),
+            result,
+            each.adjusted_p,
+            each.outcome.digits,
+            "pairs of methods",
+        )
+        for each, result in tested(pairs)
+        if each.adjusted_p is not None
+    ]
+    return sentences or ["The true errors of too few trainees are known: nothing is tested."]
+
+
+_HEADER = (
+    *("Method", "n, trainees", "trials", "residual (mm) [95 %]", "expected TRE (mm) [95 %]"),
+    *("true TRE (mm) [95 %]", "true inside"),
+)
+
+
+def _row(by_method: StudyData, method: str) -> Line:
+    trials = by_method.of_mode(method)
+    trainees = {trial.trainee for trial in trials}
+    means = [_mean_text(trials, outcome) for outcome in OUTCOMES]
+    held = [_is_inside(t) for t in trials if {"tre_low_mm", "true_tre_mm"} <= set(t.values)]
+    inside = f"{sum(held)} of {len(held)}" if held else "–"
+    return [TITLES[method], str(len(trainees)), str(len(trials)), *means, inside]
+
+
+def _is_inside(trial: TrialRow) -> bool:
+    values = trial.values
+    return values["tre_low_mm"] <= values["true_tre_mm"] <= values["tre_high_mm"]
+
+
+def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
+    """Return the mean of the trainees' means with its interval."""
+    own: dict[str, list[float]] = {}
+    for trial in trials:
+        if outcome.name in trial.values:
+            own.setdefault(trial.trainee, []).append(trial.values[outcome.name])
+    if not own:
+        return "–"
+    means = np.array([float(np.mean(values)) for values in own.values()])
+    interval = mean_interval(means)
+    if interval is None:
+        return outcome.text(float(means.mean()))
+    return interval_text(float(means.mean()), interval, outcome.digits)
+
+
+def _picture(by_method: StudyData, methods: Sequence[str]) -> str:
+    series = [
+        Series(
+            outcome.title,
+            color,
+            tuple(
+                tuple(
+                    trial.values[outcome.name]
+                    for trial in by_method.of_mode(method)
+                    if outcome.name in trial.values
+                )
+                for method in methods
+            ),
+        )
+        for outcome, color in COLORS.items()
+    ]
+    names = [TITLES[method] for method in methods]
+    return grouped_bars("Residual and target error, mm", names, series, "method")
+
+
+_PAIR_HEADER = ("Outcome", "first", "second", "n", "difference [95 %]", "t", "p", "p (Holm)")
+
+
+def _pair_row(pair: ModeComparison) -> Line:
+    outcome, result = pair.outcome, pair.result
+    start: Line = [outcome.heading, TITLES[pair.first], TITLES[pair.second]]
+    start = [*start, str(len(pair.trainees))]
+    if result is None:
+        return [*start, Cell(pair.reason, 4, kind="text")]
+    return [
+        *start,
+        interval_text(result.mean_difference, result.interval, outcome.digits),
+        fixed(result.t, 2),
+        p_text(result.p),
+        "–" if pair.adjusted_p is None else p_text(pair.adjusted_p),
+    ]
