@@ -225,7 +225,7 @@ def test_a_trial_that_will_not_count_is_reported_while_it_is_played(enrolled):
     enrolled.logic.answer([0] * 16)
     enrolled.tell(phase="running", task="task-3")
     assert (
-        "plays task-3 in the mode hmd, which the study does not ask for"
+        "plays task-3 by fiducials in the mode hmd, which the study does not ask for"
         in enrolled.logic.offProtocolSentence()
     )
     enrolled.tell(phase="running", task="trial-run")
@@ -461,3 +461,22 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     enrolled.logic.explainRepeat("the fire alarm went off")
     room.run_until(lambda: room.sent("StudyStep")[-1]["kind"] == "trial")
     assert enrolled.logic.offProtocolSentence() == ""
+
+
+def test_a_trial_of_a_study_is_started_by_the_method_of_its_protocol(lab, tmp_path):
+    path = tmp_path / "methods.json"
+    changed = {"questionnaires": [], "trialRun": {"minutes": 0}, "modes": ["desktop"]}
+    changed |= {"methods": {"task-1": "landmarks-surface"}}
+    path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changed))
+    lab.logic.begin(path)
+    lab.logic.enroll()
+    assert "by landmarks and a trace" in lab.logic.progress().sentence
+    lab.room.run_until(lambda: told(lab).get("method") == "landmarks-surface")
+    lab.logic.startStep()
+    lab.logic.startTrial("task-1", "desktop", method="fiducials")
+    lab.room.run_until(lambda: len(lab.room.sent("StartTask")) == 2)
+    assert {start["method"] for start in lab.room.sent("StartTask")} == {"landmarks-surface"}
+    lab.tell(phase="running", mode="desktop", task="task-1", method="landmarks-surface")
+    assert lab.logic.offProtocolSentence() == ""
+    lab.tell(phase="running", mode="desktop", task="task-1", method="fiducials")
+    assert "plays task-1 by fiducials in the mode desktop" in lab.logic.offProtocolSentence()

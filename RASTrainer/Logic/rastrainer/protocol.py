@@ -308,6 +308,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "ghost": Argument(one_of(*(rule.value for rule in GhostRule)), ""),
         "procedure": Argument(text(40, 0), ""),
         "tutorial": Argument(one_of(*(rule.value for rule in TutorialRule)), ""),
+        "method": Argument(text(40, 0), ""),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},

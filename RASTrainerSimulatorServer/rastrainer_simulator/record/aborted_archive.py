@@ -15,6 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.protocol import AbortReason, CommandName, Phase
+from rastrainer.scenario.method_task import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
@@ -192,5 +193,7 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
         undone_touches=trajectory.undone,
         versions=header["versions"],
         touch_rule=header["settings"]["training"]["touch_rule"],
+        method=method_of(header["method"]["name"] if "method" in header else None),
+        traced=len(trajectory.traced),
     )
     return AbortedTrial.from_json(record.to_json())

@@ -276,6 +276,8 @@ class TrialEntries:
             undone_touches=training.undone,
             versions=self.versions,
             touch_rule=self._setup.settings.training.touch_rule.value,
+            method=training.method,
+            traced=0 if training.trace is None else len(training.trace.points),
         )
 
     def _points(self, training: TrainingState) -> tuple[TouchedPoint, ...]:

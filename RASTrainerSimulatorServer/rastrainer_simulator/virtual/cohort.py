@@ -152,13 +152,19 @@ def simulate_cohort(
 
     Raises:
         InputError: the folder holds something else, a task or procedure is not in the scenario,
-            journals are wanted of procedures, or the engine fails.
+            journals are wanted of procedures, trials are not registered by fiducials, or the
+            engine fails.
         WorkerDiedError: several worker processes in turn died at one trial; the study is resumable.
     """
     if with_journals and protocol.procedures:
         raise InputError(
             "The journals of virtual trainees hold the touches alone: leave --records out, or the "
             "protocol's procedures."
+        )
+    if protocol.methods:
+        raise InputError(
+            "Virtual trainees touch fiducials: leave the protocol's methods out. To compare "
+            "methods in simulated trials, use rastrainer compare-methods."
         )
     if not (folder / DATABASE).is_file():
         make_empty_folder(folder)

@@ -391,3 +391,29 @@ def test_an_invalid_protocol_is_refused_with_one_sentence_that_names_the_field(
     with pytest.raises(InputError, match=words) as caught:
         read_study_protocol(path)
     assert "\n" not in str(caught.value)
+
+
+def test_a_protocol_may_say_by_what_the_trials_of_a_task_are_registered():
+    silent = protocol()
+    assert "methods" not in silent.to_json()
+    assert {step.method for step in steps_for(silent, 0)} == {"fiducials"}
+    own = protocol(methods={"task-2": "surface", "task-3": "landmarks"})
+    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    trials = [step for step in steps_for(own, 0) if step.kind is StepKind.TRIAL]
+    assert {(step.task, step.method) for step in trials} == {
+        ("task-1", "fiducials"),
+        ("task-2", "surface"),
+        ("task-3", "landmarks"),
+        ("task-4", "fiducials"),
+        ("task-5", "fiducials"),
+    }
+    told = {step.task: step.sentence for step in trials}
+    assert told["task-2"].startswith("Play Task 2 by a trace over the skin ")
+    assert told["task-3"].startswith("Play Task 3 by landmarks of the face ")
+    assert told["task-4"].startswith("Play Task 4 ")
+    sent = StudyStep("P07", "trial", task="task-2", method="surface").arguments()
+    assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).method == "surface"
+    with pytest.raises(InputError, match=r"methods.task-9 must be one of the study's tasks"):
+        protocol(methods={"task-9": "surface"})
+    with pytest.raises(InputError, match=r"methods.task-1 must be one of fiducials, landmarks, "):
+        protocol(methods={"task-1": "scan"})

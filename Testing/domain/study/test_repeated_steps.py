@@ -137,3 +137,57 @@ def test_skipping_a_step_settles_its_aborted_trials(study):
     skipped = progress.skip("A", "desktop/1/task-1", "felt sick and went home")
     assert skipped.next_step.name == "desktop/2/task-1"
     assert not skipped.unexplained
+
+
+def by_landmarks(tmp_path):
+    """Return a study whose trials are registered by landmarks and a trace."""
+    study = Study.open(tmp_path / "other.db")
+    study.create_trainee("A")
+    progress = StudyProgress(study)
+    methods = {"task-1": "landmarks-surface"}
+    progress.set_protocol(
+        replace(
+            read_study_protocol(SHIPPED),
+            **dict.fromkeys(("trial_run_min", "break_between_tasks_min"), 0.0),
+            tasks=("task-1",),
+            modes=("desktop",),
+            questionnaires=(),
+            methods=methods,
+        )
+    )
+    progress.enroll("A")
+    return study
+
+
+def test_a_trial_counts_only_by_the_method_that_the_study_asks_for(tmp_path):
+    with by_landmarks(tmp_path) as study:
+        progress = StudyProgress(study)
+        play(study, 1, 1)
+        assert progress.count_played("A").entries == ()
+        with pytest.raises(InputError, match="task-1 in the mode desktop, registered by fiducials"):
+            progress.finish(
+                "A", "desktop/1/task-1", {"trialId": "00000000-0000-0000-0000-000000000001"}
+            )
+        trace = [[float(x), 0.0, 0.0, 1.0] for x in range(30)]
+        record = make_record(trainee="A", startedUtc="2999-01-01T10:02:00Z")
+        record |= {"points": record["points"][:5], "method": "landmarks-surface", "trace": trace}
+        study.add_trial(record)
+        (entry,) = progress.count_played("A").entries
+        assert entry.details["trialId"] == record["trialId"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"touches": 3}, "aborted with 3 of 15 points touched"),
+        ({"touches": 1, "method": "landmarks"}, "aborted with 1 landmark touched"),
+        (
+            {"touches": 3, "method": "surface", "traced": 41},
+            "aborted with 3 landmarks touched and 41 points traced",
+        ),
+    ],
+    ids=["fiducials", "landmarks", "trace"],
+)
+def test_what_was_done_before_it_was_aborted_depends_on_the_method(study, changes, sentence):
+    abort(study, 900, 1, **changes)
+    assert sentence in StudyProgress(study).progress("A").repeat_sentence

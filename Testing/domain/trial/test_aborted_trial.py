@@ -7,6 +7,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.export.trainee_data import erase_trainee, export_trainee
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 from rastrainer.study.database.study import Study
@@ -190,3 +191,15 @@ def test_aborting_bad_trials_does_not_help_to_show_competence(study):
     last = finished[-1].trial_id
     assert progress_of(finished, last, 10.0).competence.competent_at is not None
     assert progress_of(attempts, last, 10.0).competence.competent_at is None
+
+
+def test_an_aborted_trial_keeps_its_method_and_older_records_are_of_fiducials():
+    assert not {"method", "traced"} & AbortedTrial.from_json(make_aborted()).to_json().keys()
+    given = make_aborted(touches=3, method="surface", traced=41)
+    record = AbortedTrial.from_json(given)
+    assert (record.method, record.traced) == (RegistrationMethod.SURFACE, 41)
+    assert record.to_json() == given
+    with pytest.raises(InputError, match="method must be one of"):
+        AbortedTrial.from_json(make_aborted(method="scan"))
+    with pytest.raises(InputError, match="traced must be"):
+        AbortedTrial.from_json(make_aborted(method="surface", traced=501))

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
 from rastrainer_simulator.flow.session.study_steps import ANSWERED, MAX_TRAINEES, StudySteps
 
@@ -230,3 +231,19 @@ def test_the_guide_forgets_the_oldest_news_and_keeps_no_more_than_it_may():
         guide.take(StudyStep(f"P{number}", "all-done", 1, 1))
     assert guide.step_of("P4") is None
     assert guide.step_of("P5") is not None
+
+
+def test_a_trial_of_a_study_is_registered_by_what_its_protocol_says(menu, guide):
+    session = menu.presenter._session
+    chosen = session.method_of("task-2")
+    tell(menu, guide, replace(TASK_2, method="surface"))
+    assert menu.menu.paragraphs == (
+        "Step 3 of 19: play Task 2 by a trace over the skin on the desktop screen.",
+    )
+    assert session.method_of("task-2") is RegistrationMethod.SURFACE
+    method = menu.item("method")
+    assert (method.value, method.is_enabled) == ("trace over the skin", False)
+    tell(menu, guide, TASK_2)
+    assert session.method_of("task-2") is RegistrationMethod.FIDUCIALS
+    tell(menu, guide, StudyStep("P07"))
+    assert session.method_of("task-2") is chosen

@@ -12,6 +12,7 @@ from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.record.aborted_archive import interrupted_attempt
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 from Testing.simulator.record.test_interrupted_trial import Server, cut
@@ -185,3 +186,24 @@ LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]
 def test_a_record_that_does_not_fit_its_method_is_refused_with_a_sentence(changes, said):
     with pytest.raises(InputError, match=said):
         TrialRecord.from_json(record_of(**changes))
+
+
+def test_an_aborted_trial_and_an_interrupted_one_tell_their_method_and_how_much_was_traced(
+    traced_in_air, tmp_path
+):
+    with Server(traced_in_air, tmp_path) as server:
+        start(server)
+        stroke(server, 60)
+        stroke(server, 60, (0.0, 0.9, 0.1))
+        assert server.do(CommandName.UNDO).ok
+        traced = len(server.training.trace.points)
+        assert traced > 0
+        assert server.do(CommandName.ABORT, reason="trainee").ok
+        # The journal's thread has written all that came before.
+        server.loop._writer.submit(lambda: None).result()
+        (record,) = server.loop.unacknowledged()
+    assert (record.method, record.traced) == (RegistrationMethod.SURFACE, traced)
+    data = server.path.read_bytes()
+    server.path.write_bytes(data[: data.index(b'"kind":"aborted"')])
+    interrupted = interrupted_attempt(read_journal(server.path))
+    assert (interrupted.method, interrupted.traced) == (RegistrationMethod.SURFACE, traced)

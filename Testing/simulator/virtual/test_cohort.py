@@ -3,6 +3,7 @@
 import functools
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -122,6 +123,13 @@ def test_a_folder_that_holds_something_is_not_touched(protocol, population, tmp_
     with pytest.raises(InputError, match="holds something"):
         simulate_cohort(protocol, population, 2, 0, tmp_path, PlaySettings(), workers=1)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_trials_that_are_not_registered_by_fiducials_are_not_played(protocol, population, tmp_path):
+    by_trace = replace(protocol, methods={"task-1": "surface"})
+    with pytest.raises(InputError, match="Virtual trainees touch fiducials: leave the protocol's"):
+        simulate_cohort(by_trace, population, 2, 0, tmp_path / "study", PlaySettings(), workers=1)
+    assert not (tmp_path / "study").exists()
 
 
 def test_the_command_reports_power_without_playing(capsys):

@@ -29,7 +29,7 @@ TOUCH_COLUMNS = (
 ABORTED_COLUMNS = (
     *("trainee", "mode", "task", "trial_id", "started_utc", "aborted_utc", "scenario"),
     *("trial_run", "phase", "reason", "elapsed_s", "touches", "refused_touches", "undone_touches"),
-    *("counts_as_not_passed", "step", "repeat_reason"),
+    *("counts_as_not_passed", "step", "repeat_reason", "method", "traced_points"),
 )
 ABORTED_TOUCH_COLUMNS = (
     *("trainee", "mode", "task", "trial_id", "label"),
@@ -123,6 +123,8 @@ def aborted_csv(trials: Iterable[StoredAborted]) -> str:
                 int(record.counts_as_failed),
                 stored.step,
                 plain_cell(stored.repeat_reason),
+                record.method.value,
+                record.traced,
             ]
         )
     return csv_text(ABORTED_COLUMNS, rows)

@@ -131,7 +131,7 @@ class StudyPanel:
     def _warn(self) -> None:
         """Warn, once for each trial, of one that will not count."""
         trial = self._session.training.progress
-        key = (trial.trainee, trial.task, trial.mode, trial.isOpen)
+        key = (trial.trainee, trial.task, trial.mode, trial.method, trial.procedure, trial.isOpen)
         if key != self._judged:
             self._judged = key
             with contextlib.suppress(InputError):

@@ -109,8 +109,7 @@ class TrainingPanel:
         """Start the chosen task, by the chosen method and with the chosen procedure."""
         ui = self._ui
         procedure, method = (chosenData(box) for box in (ui.procedureComboBox, ui.methodComboBox))
-        fiducials = RegistrationMethod.FIDUCIALS.value
-        self._start(self._session.task, procedure, "" if method == fiducials else method)
+        self._start(self._session.task, procedure, method)
 
     def pause(self) -> None:
         """Pause the trial."""
@@ -144,7 +143,7 @@ class TrainingPanel:
         setUsable(
             box,
             len(methods) > 1,
-            _("What the trainee touches, and how the head is registered. In a study: fiducials."),
+            _("What the trainee touches, and how the head is registered. A study says which."),
             _("The chosen scenario has no landmarks: only its fiducials can be touched."),
         )
         entries = [(_("none: only touches"), "")]

@@ -11,11 +11,15 @@ from typing import Any
 
 from rastrainer import json_checks
 from rastrainer.json_checks import Argument
-from rastrainer.protocol import MIN_ABORTED_S, OPEN_PHASES, TRIAL_RUN, Phase
+from rastrainer.protocol import FIDUCIAL_COUNT, MIN_ABORTED_S, OPEN_PHASES, TRIAL_RUN, Phase
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.scenario.method_task import TRACED_METHODS
 from rastrainer.trial.record import (
+    MAX_TRACE_POINTS,
     SHARED_CHECKS,
     TIME_LIMIT_S,
     TouchedPoint,
+    played_method,
     points_up_to_all,
     record_from_json,
     record_to_json,
@@ -44,6 +48,8 @@ class AbortedTrial:
         undone_touches: Number of touches that the trainee undid.
         versions: Name and version of each program and format that made the record.
         touch_rule: Which touches counted, a `TouchRule`.
+        method: By what it would have been registered; a `PLAYED_METHODS`.
+        traced: Number of points that were traced over the skin.
     """
 
     trial_id: str
@@ -61,6 +67,19 @@ class AbortedTrial:
     undone_touches: int
     versions: Mapping[str, str]
     touch_rule: str
+    method: RegistrationMethod = RegistrationMethod.FIDUCIALS
+    traced: int = 0
+
+    @property
+    def done(self) -> str:
+        """How far the trainee came, such as "3 of 15 points touched"."""
+        touched = len(self.points)
+        if self.method is RegistrationMethod.FIDUCIALS:
+            return f"{touched} of {FIDUCIAL_COUNT} points touched"
+        landmarks = f"{touched} landmark{'' if touched == 1 else 's'} touched"
+        if self.method not in TRACED_METHODS:
+            return landmarks
+        return f"{landmarks} and {self.traced} points traced"
 
     @property
     def is_trial_run(self) -> bool:
@@ -94,7 +113,14 @@ class AbortedTrial:
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON object that `from_json` reads."""
-        return record_to_json(self)
+        values = record_to_json(self)
+        # Records of touched fiducials stay as they were before there was anything else.
+        del values["method"], values["traced"]
+        if self.method is not RegistrationMethod.FIDUCIALS:
+            values["method"] = self.method.value
+        if self.traced:
+            values["traced"] = self.traced
+        return values
 
 
 _CHECKS = {
@@ -104,4 +130,6 @@ _CHECKS = {
     "phase": Argument(json_checks.one_of(*(phase.value for phase in OPEN_PHASES))),
     "reason": Argument(json_checks.text()),
     "points": Argument(points_up_to_all),
+    "method": Argument(played_method, RegistrationMethod.FIDUCIALS),
+    "traced": Argument(json_checks.whole_number(0, MAX_TRACE_POINTS), 0),
 }

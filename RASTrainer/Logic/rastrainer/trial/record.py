@@ -254,7 +254,8 @@ def _check_method(record: TrialRecord) -> None:
         )
 
 
-def _played_method(value: Any) -> RegistrationMethod:
+def played_method(value: Any) -> RegistrationMethod:
+    """Accept the name of a `PLAYED_METHODS`; the words of a `ValueError` follow "must be"."""
     return RegistrationMethod(_METHOD_NAME(value))
 
 
@@ -375,6 +376,6 @@ _CHECKS = {
         _mapping(DISPLAY_LIMIT, "names with texts or finite numbers", _text_or_number), {}
     ),
     "procedure": Argument(_optional(ProcedureRecord.from_json), None),
-    "method": Argument(_played_method, RegistrationMethod.FIDUCIALS),
+    "method": Argument(played_method, RegistrationMethod.FIDUCIALS),
     "trace": Argument(trace_points, ()),
 }

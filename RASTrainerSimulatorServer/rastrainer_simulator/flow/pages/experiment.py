@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import Mode, StepKind, TutorialRule
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
-from rastrainer.scenario.method_task import playable_methods
+from rastrainer.scenario.method_task import method_of, playable_methods
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
@@ -127,11 +126,11 @@ class ExperimentPage(SessionPage):
         """Return the choice of what is registered; none where the head has no landmarks."""
         if len(playable_methods(self.session.scenario)) < 2:
             return ()
-        is_free = self._step() is None
-        method = self.session.offered_method if is_free else RegistrationMethod.FIDUCIALS
+        step = self._step()
+        method = self.session.offered_method if step is None else method_of(step.method)
         value = self.say(f"method.{method.value}")
         help_ = self.say("experiment.method help")
-        return (self.choice("method", value, is_enabled=is_free, help=help_),)
+        return (self.choice("method", value, is_enabled=step is None, help=help_),)
 
     def _procedure(self) -> tuple[MenuItem, ...]:
         """Return the choice of what follows the touches; none where the head has no procedures."""

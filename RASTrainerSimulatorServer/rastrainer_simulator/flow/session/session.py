@@ -24,7 +24,7 @@ from rastrainer.protocol import (
 )
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
-from rastrainer.scenario.method_task import playable_methods
+from rastrainer.scenario.method_task import method_of, playable_methods
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
@@ -348,12 +348,15 @@ class TrainingSession:
         return self.procedure if self.procedure in names and task != TRIAL_RUN else ""
 
     def method_of(self, task: str) -> RegistrationMethod:
-        """Return by what a trial of a task is registered: in a study and the trial run, fiducials.
+        """Return by what a trial of a task is registered.
 
-        Elsewhere it is what the trainee has chosen, if the head allows that.
+        A study says which; else it is what the trainee has chosen, if the head allows that. In the
+        trial run it is fiducials.
         """
-        is_free = task != TRIAL_RUN and self.study.step_of(self.trainee.strip()) is None
-        return self.offered_method if is_free else RegistrationMethod.FIDUCIALS
+        step = self.study.step_of(self.trainee.strip())
+        if step is not None:
+            return method_of(step.method)
+        return self.offered_method if task != TRIAL_RUN else RegistrationMethod.FIDUCIALS
 
     @property
     def offered_method(self) -> RegistrationMethod:

@@ -88,11 +88,12 @@ class StudySteps:
 def step_sentence(texts: Texts, step: StudyStep, task_title: str, left: str) -> str:
     """Return the sentence about a step; `left` is the time that a break still lasts."""
     asked = QUESTIONNAIRES.get(step.questionnaire)
+    by = f"study.by {step.method}"
     return texts.say(
         f"study.{step.kind}",
         number=step.number,
         count=step.count,
-        task=task_title,
+        task=f"{task_title} {texts.say(by)}" if by in texts else task_title,
         mode=texts.say(f"study.{step.mode}") if step.mode else "",
         minutes=step.minutes,
         left=left,

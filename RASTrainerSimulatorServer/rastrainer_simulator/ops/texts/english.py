@@ -245,6 +245,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "study.played": "{task} is done. 3D Slicer will say what comes next.",
         "study.desktop": "on the desktop screen",
         "study.hmd": "with the headset",
+        "study.by landmarks": "by landmarks of the face",
+        "study.by surface": "by a trace over the skin",
+        "study.by landmarks-surface": "by landmarks and a trace",
         "experiment.answer": "Answer the questionnaire",
         "questionnaire.text": "{trainee}, answer every line: {lowest} is {low}, {highest} is "
         "{high}, unless the line says otherwise. Your instructor has the form with the full "

@@ -354,6 +354,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "study.played": "{task} ist erledigt. 3D Slicer wird sagen, was als Nächstes kommt.",
         "study.desktop": "am Bildschirm",
         "study.hmd": "mit dem Headset",
+        "study.by landmarks": "anhand von Landmarken des Gesichts",
+        "study.by surface": "anhand einer Spur über die Haut",
+        "study.by landmarks-surface": "anhand von Landmarken und einer Spur",
         "experiment.trend": "Deine Punktzahlen in diesem Modus; die Linie ist die Marke zum "
         "Bestehen, {mark:.0f}.",
         "experiment.trend in study": "Deine Punktzahlen in diesem Modus.",

@@ -139,15 +139,15 @@ class StudyLogic:
     ) -> None:
         """Start a trial for the chosen trainee, unless the study asks for something else first.
 
-        Within a study, the protocol decides whether a trial run waits for the tutorial, and whether
-        the trial continues with a procedure; its trials are registered by fiducials.
+        Within a study, the protocol decides whether a trial run waits for the tutorial, by what a
+        trial is registered, and whether it continues with a procedure.
 
         Raises:
             InputError: it does, or no trainee or task is chosen.
         """
         if self.protocol() is not None and self._trainees.chosen:
-            procedure = self._progress().check_start(mode, task).procedure
-            isTutorialFirst, method = True, ""
+            step = self._progress().check_start(mode, task)
+            isTutorialFirst, procedure, method = True, step.procedure, step.method
         self._training.start(self._trainees.chosen, task, mode, isTutorialFirst, procedure, method)
 
     def offProtocolSentence(self) -> str:
@@ -164,20 +164,25 @@ class StudyLogic:
             step = progress.check_start(trial.mode, trial.task)
         except InputError:
             return self._notAsked(trial)
-        return "" if step.procedure == trial.procedure else self._notAsked(trial)
+        isAsked = (step.procedure, step.method) == (trial.procedure, trial.method)
+        return "" if isAsked else self._notAsked(trial)
 
     def _notAsked(self, trial: TrialStatus) -> str:
         text = _(
-            "{trainee} plays {task} in the mode {mode}, which the study does not ask for now: "
-            "it will not count."
+            "{trainee} plays {task} by {method} in the mode {mode}, which the study does not ask "
+            "for now: it will not count."
         )
         if trial.procedure:
             text = _(
-                "{trainee} plays {task} with the procedure {procedure} in the mode {mode}, which "
-                "the study does not ask for now: it will not count."
+                "{trainee} plays {task} by {method} with the procedure {procedure} in the mode "
+                "{mode}, which the study does not ask for now: it will not count."
             )
         return text.format(
-            trainee=trial.trainee, task=trial.task, mode=trial.mode, procedure=trial.procedure
+            trainee=trial.trainee,
+            task=trial.task,
+            method=trial.method,
+            mode=trial.mode,
+            procedure=trial.procedure,
         )
 
     def startStep(self) -> None:

@@ -11,6 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.json_checks import is_number
 from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, TRIAL_RUN, CommandName, Phase
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.method_task import method_of
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link import Link
@@ -44,6 +45,7 @@ class TrialStatus:
         proximity: `free`, `proximity` or `contact`.
         instruction: what the trainee reads.
         procedure: that the trial continues with; empty for the touches alone.
+        method: by what it is registered, a `PLAYED_METHODS`.
     """
 
     trialId: str = ""
@@ -59,6 +61,7 @@ class TrialStatus:
     proximity: str = ""
     instruction: str = ""
     procedure: str = ""
+    method: str = RegistrationMethod.FIDUCIALS.value
 
     @property
     def isOpen(self) -> bool:
@@ -125,6 +128,7 @@ class TrainingLogic:
             proximity=str(state.get("proximity", "")),
             instruction=str(state.get("instruction", "")),
             procedure=procedureOf(state),
+            method=str(state.get("method") or RegistrationMethod.FIDUCIALS.value),
         )
 
     def start(
@@ -158,7 +162,8 @@ class TrainingLogic:
             )
         else:
             wanted = {"task": task, "trainee": trainee, "mode": mode}
-            others = {"procedure": procedure, "method": method}
+            isMarked = method == RegistrationMethod.FIDUCIALS.value
+            others = {"procedure": procedure, "method": "" if isMarked else method}
             self._send(
                 CommandName.START_TASK, wanted | {key: name for key, name in others.items() if name}
             )

@@ -10,6 +10,7 @@ import sqlite3
 from dataclasses import replace
 from datetime import datetime
 
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.database.aborted_trials import unexplained
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.values import moment
@@ -48,7 +49,7 @@ def _played_for(
         (
             (when, trial)
             for when, trial, *played in _trials_of(connection, pseudonym)
-            if played == [step.mode, step.task, step.procedure]
+            if played == [step.mode, step.task, step.procedure, step.method]
             and trial not in counted
             and when >= since
         ),
@@ -63,13 +64,17 @@ def _played_for(
 
 def _trials_of(
     connection: sqlite3.Connection, pseudonym: str
-) -> list[tuple[datetime, str, str, str, str]]:
-    """Return start, UUID, mode, task and procedure of a trainee's finished trials, in order."""
+) -> list[tuple[datetime, str, str, str, str, str]]:
+    """Return a trainee's finished trials, in order.
+
+    Each is its start, UUID, mode, task, procedure and method.
+    """
     rows = connection.execute(
         "SELECT started_utc, trial_id, mode, task, "
-        "coalesce(json_extract(record_json, '$.procedure.procedure'), '') "
+        "coalesce(json_extract(record_json, '$.procedure.procedure'), ''), "
+        "coalesce(json_extract(record_json, '$.method'), ?) "
         f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
-        (pseudonym,),
+        (RegistrationMethod.FIDUCIALS.value, pseudonym),
     ).fetchall()
     return sorted((moment(started), *others) for started, *others in rows)
 

@@ -9,7 +9,6 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
-from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import Step, StepKind
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -127,8 +126,8 @@ class Progress:
             return ""
         last = self.unexplained[-1]
         return (
-            f"This trial was aborted with {len(last.points)} of {FIDUCIAL_COUNT} points touched. "
-            "It is played again only with a reason, which goes into the report."
+            f"This trial was aborted with {last.done}. It is played again only with a reason, "
+            "which goes into the report."
         )
 
     def check_start(self, mode: str, task: str) -> Step:

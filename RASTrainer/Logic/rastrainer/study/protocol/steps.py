@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.study_protocol import (
     AFTER_ALL,
@@ -18,6 +19,12 @@ from rastrainer.study.protocol.study_protocol import (
 )
 
 _IN_MODE = {Mode.DESKTOP.value: "on the desktop screen", Mode.HMD.value: "with the headset"}
+
+_BY_METHOD = {
+    RegistrationMethod.LANDMARKS.value: " by landmarks of the face",
+    RegistrationMethod.SURFACE.value: " by a trace over the skin",
+    RegistrationMethod.LANDMARKS_SURFACE.value: " by landmarks and a trace",
+}
 
 
 @dataclass(frozen=True)
@@ -36,6 +43,7 @@ class Step:
         ghost: A `GhostRule` for a trial; "" for none.
         tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
         procedure: That the trial continues with; "" for the touches alone.
+        method: By what the trial is registered, a `PLAYED_METHODS`.
     """
 
     name: str
@@ -49,6 +57,7 @@ class Step:
     ghost: str = ""
     tutorial: str = ""
     procedure: str = ""
+    method: str = RegistrationMethod.FIDUCIALS.value
 
     @property
     def sentence(self) -> str:
@@ -61,9 +70,9 @@ class Step:
         if self.kind is StepKind.TRIAL_RUN:
             return f"Get to know the trial run{where} for {self.minutes:g} minutes."
         task = self.task.replace("-", " ").capitalize()
-        if self.procedure:
-            return f"Play {task} with the procedure {self.procedure}{where}."
-        return f"Play {task}{where}."
+        method = _BY_METHOD.get(self.method, "")
+        procedure = f" with the procedure {self.procedure}" if self.procedure else ""
+        return f"Play {task}{method}{procedure}{where}."
 
 
 def steps_for(protocol: StudyProtocol, place: int) -> tuple[Step, ...]:
@@ -134,6 +143,7 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
                 guidance=protocol.guidance,
                 ghost=protocol.ghost,
                 procedure=protocol.procedures.get(task, ""),
+                method=protocol.methods.get(task, RegistrationMethod.FIDUCIALS.value),
             )
             yield from _questions(protocol, AFTER_TASK, mode, name)
     yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")

@@ -276,10 +276,11 @@ def _check_trial(
     connection: sqlite3.Connection, pseudonym: str, progress: Progress, step: Step, trial_id: str
 ) -> None:
     record = study_trials.find_record(connection, trial_id)
-    if (record.trainee, record.mode, record.task) != (pseudonym, step.mode, step.task):
+    played = (record.trainee, record.mode, record.task, record.method.value)
+    if played != (pseudonym, step.mode, step.task, step.method):
         raise InputError(
             f"The trial {trial_id} is not the one that the step {step.name} asks for: it was "
-            f"{record.task} in the mode {record.mode}."
+            f"{record.task} in the mode {record.mode}, registered by {record.method.value}."
         )
     if any(entry.details.get("trialId") == trial_id for entry in progress.entries):
         raise InputError(f"The trial {trial_id} already counts for an earlier step.")

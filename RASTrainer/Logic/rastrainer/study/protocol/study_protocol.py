@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.json_checks import is_identifier
 from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, Mode, TutorialRule
+from rastrainer.scenario.method_task import PLAYED_METHODS
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
 
@@ -30,7 +31,7 @@ READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, "2", SCORE_VERSION)
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
     *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
-    *("guidance", "ghost", "tutorial", "procedures"),
+    *("guidance", "ghost", "tutorial", "procedures", "methods"),
 )
 
 
@@ -66,6 +67,8 @@ class StudyProtocol:
         tutorial: A `TutorialRule`; "" leaves it to the simulator's setting.
         procedures: By task, the procedure that its trials continue with; without one, a trial ends
             with the registration.
+        methods: By task, by what its trials are registered, a `PLAYED_METHODS`; without one, by its
+            fiducials.
     """
 
     name: str
@@ -86,12 +89,13 @@ class StudyProtocol:
     ghost: str = ""
     tutorial: str = ""
     procedures: Mapping[str, str] = field(default_factory=dict)
+    methods: Mapping[str, str] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
         mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
         chosen = {"guidance": self.guidance, "ghost": self.ghost, "tutorial": self.tutorial}
-        procedures = {"procedures": dict(self.procedures)} if self.procedures else {}
+        by_task = {"procedures": dict(self.procedures), "methods": dict(self.methods)}
         return {
             "formatVersion": FORMAT_VERSION,
             "name": self.name,
@@ -100,7 +104,7 @@ class StudyProtocol:
             "modeOrder": self.mode_order,
             "tasks": list(self.tasks),
             **{name: value for name, value in chosen.items() if value},
-            **procedures,
+            **{name: value for name, value in by_task.items() if value},
             "taskOrder": self.task_order,
             "repetitions": self.repetitions,
             "trialRun": {"minutes": self.trial_run_min},
@@ -199,21 +203,29 @@ def _protocol(fields: Fields) -> StudyProtocol:
         tutorial=fields.one_of("tutorial", tuple(rule.value for rule in TutorialRule))
         if "tutorial" in fields.names()
         else "",
-        procedures=_procedures(fields, tasks),
+        procedures=_by_task(fields, "procedures", tasks, Fields.identifier),
+        methods=_by_task(fields, "methods", tasks, _method),
     )
     if len(modes) * len(tasks) * protocol.repetitions > MAX_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MAX_STEPS} trials")
     return protocol
 
 
-def _procedures(fields: Fields, tasks: tuple[str, ...]) -> dict[str, str]:
-    if "procedures" not in fields.names():
+def _by_task(
+    fields: Fields, name: str, tasks: tuple[str, ...], read: Callable[[Fields, str], str]
+) -> dict[str, str]:
+    """Return an optional object from the study's tasks to what `read` finds for each."""
+    if name not in fields.names():
         return {}
-    entries = fields.fields("procedures")
+    entries = fields.fields(name)
     for task in entries.names():
         if task not in tasks:
             raise entries.error(task[:40], f"one of the study's tasks, {', '.join(tasks)}")
-    return {task: entries.identifier(task) for task in entries.names()}
+    return {task: read(entries, task) for task in entries.names()}
+
+
+def _method(entries: Fields, task: str) -> str:
+    return entries.one_of(task, tuple(method.value for method in PLAYED_METHODS))
 
 
 def _questionnaire(entry: Fields, modes: tuple[str, ...]) -> ScheduledQuestionnaire:

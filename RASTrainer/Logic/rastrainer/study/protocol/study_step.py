@@ -10,6 +10,7 @@ from typing import Any
 
 from rastrainer.files.json_fields import Fields
 from rastrainer.protocol import ALL_DONE, FREE, REPEAT, StepKind
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.protocol.progress import Progress
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 
@@ -33,6 +34,7 @@ class StudyStep:
         ghost: A `GhostRule`; "" for none.
         procedure: To be carried out after the registration; "" for the touches alone.
         tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
+        method: By what the trial is registered, a `PLAYED_METHODS`; "" for its fiducials.
     """
 
     trainee: str
@@ -48,6 +50,7 @@ class StudyStep:
     ghost: str = ""
     procedure: str = ""
     tutorial: str = ""
+    method: str = ""
 
     @classmethod
     def of(cls, trainee: str, progress: Progress, now: datetime) -> StudyStep:
@@ -69,6 +72,7 @@ class StudyStep:
             ghost=step.ghost,
             procedure=step.procedure,
             tutorial=step.tutorial,
+            method="" if step.method == RegistrationMethod.FIDUCIALS.value else step.method,
         )
 
     @classmethod
