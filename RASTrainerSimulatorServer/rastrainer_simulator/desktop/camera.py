@@ -46,14 +46,13 @@ class Viewpoint:
         return Viewpoint(place, focus, up, angle, self.aside + share * (other.aside - self.aside))
 
     def look(self, renderer: vtkRenderer) -> None:
-        """Set a renderer's camera."""
+        """Set a renderer's camera, but for how near and how far it sees."""
         camera = renderer.GetActiveCamera()
         camera.SetPosition(*self.position)
         camera.SetFocalPoint(*self.focal_point)
         camera.SetViewUp(*self.view_up)
         camera.SetViewAngle(self.angle_deg)
         camera.SetWindowCenter(-self.aside, 0.0)
-        renderer.ResetCameraClippingRange()
 
 
 class CameraTransition:

@@ -96,6 +96,9 @@ class Overlay:
         width, height = self._slots["hints"].sprite.size
         left = (self._size[0] - width) // 2
         top = self._size[1] - self._brush.px(theme.MARGIN) - height
+        if not Box(left, top, width, height).contains(x, y):
+            # Looked up again and again while the pointer rests.
+            return ""
         boxes = strips.hint_boxes(shown, self._brush, room)
         hit = (hint.item for hint, box in boxes if box.contains(x - left, y - top))
         return next(hit, "")

@@ -185,6 +185,7 @@ class Picture:
         if self._scene is not None and wanted != self._cleared:
             self._cleared = wanted
             self._scene.clear_head(is_clear)
+            self.viewports.arrange()
             self._must_draw = True
 
     def _show_instrument(self, procedure: Mapping[str, Any] | None) -> None:
@@ -204,7 +205,7 @@ class Picture:
             return
         self._loaded, self._drawn_state = loaded, None
         self._scene = ShownScene(loaded.parts, self.viewports.quality.is_physical)
-        self._scene.actors += [*self._errors.actors, *self._trace.actors]
+        self._scene.moving += [*self._errors.actors, *self._trace.actors]
         self._scene.paint_skin(self._inbox.trace)
         self.viewports.show(self._scene, loaded.cameras)
 

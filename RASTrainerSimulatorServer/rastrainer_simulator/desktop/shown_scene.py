@@ -97,7 +97,9 @@ class ShownScene:
     """Actors of one scene.
 
     Attributes:
-        actors: all of them, for a renderer.
+        still, moving: its actors, by whether they look the same in most pictures.
+        still_version: another number whenever those that stand still look different.
+        is_clear: whether what is within the head is seen through the skin.
         poses: (4, 4) float of each body that was placed, to World.
     """
 
@@ -105,20 +107,23 @@ class ShownScene:
         self._finishes = {}
         self._matrices: dict[str, vtkMatrix4x4] = defaultdict(vtkMatrix4x4)
         self._named: dict[str, list[vtkActor]] = defaultdict(list)
-        self.actors: list[vtkActor] = []
+        self.still: list[vtkActor] = []
+        self.moving: list[vtkActor] = []
+        self.still_version = 0
+        self.is_clear = False
         self.poses: dict[str, np.ndarray] = {}
-        self._still: dict[str, list[tuple[vtkActor, Part]]] = {body: [] for body in STILL_BODIES}
+        self._lit: dict[str, list[tuple[vtkActor, Part]]] = {body: [] for body in STILL_BODIES}
         self._is_physical = is_physical
         self._coverage = SkinPaint()
         self._ghost = _Ghost()
         for part in parts:
             actor = self._actor(part)
-            self.actors.append(actor)
+            (self.still if _stands_still(part) else self.moving).append(actor)
             if part.body and part.body not in STILL_BODIES:
-                self.actors.append(self._ghost.add(part.body, actor))
+                self.moving.append(self._ghost.add(part.body, actor))
             self._finishes[actor] = part.finish
             if part.body in STILL_BODIES and not part.finish.is_glowing:
-                self._still[part.body].append((actor, part))
+                self._lit[part.body].append((actor, part))
             for name in part.nodes:
                 self._named[name].append(actor)
         for name in list(self._named):
@@ -127,6 +132,11 @@ class ShownScene:
         self._marked: object = None
         self._pulsing: list[vtkActor] = []
         self.finish(is_physical)
+
+    @property
+    def actors(self) -> list[vtkActor]:
+        """All of them."""
+        return [*self.still, *self.moving]
 
     def finish(self, is_physical: bool) -> None:
         """Make the surfaces physically based, or plain; marks and tip are as in the file again."""
@@ -143,12 +153,10 @@ class ShownScene:
             if body not in self._matrices:
                 continue
             matrix = pose_matrix(pose)
-            is_turned = body in STILL_BODIES and not np.array_equal(
-                matrix[:3, :3], self.poses.get(body, np.eye(4))[:3, :3]
-            )
+            is_moved = not np.array_equal(matrix, self.poses.get(body, np.eye(4)))
             self.poses[body] = matrix
             self._matrices[body].DeepCopy(matrix.ravel().tolist())
-            if is_turned:
+            if is_moved and body in STILL_BODIES:
                 self._light_still(body)
 
     def place_ghost(self, poses: Mapping[str, Sequence[float]] | None) -> None:
@@ -160,8 +168,9 @@ class ShownScene:
 
         In software OpenGL that saves a third of a picture's time.
         """
+        self.still_version += 1
         rotation = self.poses.get(body, np.eye(4))[:3, :3]
-        for actor, part in self._still[body]:
+        for actor, part in self._lit[body]:
             covered = self._coverage.shares if SKIN_NODE in part.nodes else None
             has_colors = covered is not None or not self._is_physical
             actor.GetMapper().SetScalarVisibility(has_colors)
@@ -211,12 +220,14 @@ class ShownScene:
 
     def paint_skin(self, trace: ShownTrace) -> None:
         """Paint the skin around what was traced."""
-        for _actor, part in self._still["head"]:
+        for _actor, part in self._lit["head"]:
             if SKIN_NODE in part.nodes and self._coverage.cover(part.vertices, trace):
                 self._light_still("head")
 
     def clear_head(self, is_clear: bool) -> None:
         """Let what is within the head be seen through the skin, or not."""
+        self.is_clear = is_clear
+        self.still_version += 1
         for actor in self._named[SKIN_NODE]:
             actor.GetProperty().SetOpacity(CLEAR_SKIN if is_clear else 1.0)
 
@@ -253,6 +264,12 @@ class ShownScene:
         if part.body:
             actor.SetUserMatrix(self._matrices[part.body])
         return actor
+
+
+def _stands_still(part: Part) -> bool:
+    """Return whether a part neither moves, nor changes its color, nor is seen through."""
+    is_mark = any(name.startswith(FIDUCIAL) for name in part.nodes)
+    return part.body in STILL_BODIES and not is_mark and part.finish.opacity == 1.0
 
 
 class _Ghost:

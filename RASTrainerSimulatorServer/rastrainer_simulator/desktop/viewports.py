@@ -9,6 +9,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from rastrainer_simulator.desktop.camera import CameraTransition, Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.kept_view import KeptView
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.canvas import Box
 from rastrainer_simulator.desktop.performance import Quality
@@ -31,16 +32,17 @@ class Viewports:
 
     def __init__(self, window: GlWindow, quality: Quality):
         self._window = window
-        self.main, self._inset, self.overlay = vtkRenderer(), vtkRenderer(), vtkRenderer()
         window.render_window.SetNumberOfLayers(2)
+        self._main, self._inset = KeptView(window), KeptView(window)
+        self.main = self._main.still
+        for view in (self._main, self._inset):
+            view.still.SetBackground(*BACKGROUND)
+        self.overlay = vtkRenderer()
         self.overlay.SetLayer(1)
         self.overlay.InteractiveOff()
-        for renderer in (self.main, self._inset, self.overlay):
-            renderer.AutomaticLightCreationOff()
-            window.render_window.AddRenderer(renderer)
-        for renderer in (self.main, self._inset):
-            renderer.SetBackground(*BACKGROUND)
-        self._reduced = ReducedScene(window, self.main)
+        self.overlay.AutomaticLightCreationOff()
+        window.render_window.AddRenderer(self.overlay)
+        self._reduced = ReducedScene(window, self._main)
         self._scene: ShownScene | None = None
         self._cameras: dict[str, Viewpoint] = {}
         self._chosen = ("", 0.0)
@@ -52,12 +54,18 @@ class Viewports:
 
     def show(self, scene: ShownScene, cameras: Mapping[str, Viewpoint]) -> None:
         """Show another scene."""
-        for renderer in (self.main, self._inset):
-            renderer.RemoveAllViewProps()
-            for actor in scene.actors:
-                renderer.AddActor(actor)
         scene.finish(self.quality.is_physical)
         self._scene, self._cameras, self._transition = scene, dict(cameras), None
+        self.arrange()
+
+    def arrange(self) -> None:
+        """Have what stands still kept, where that saves time and looks the same."""
+        if self._scene is None:
+            return
+        # What is seen through the skin moves, and the skin would no longer be before it.
+        is_split = self.quality is Quality.LOW and not self._scene.is_clear
+        for view in (self._main, self._inset):
+            view.show(self._scene, is_split)
 
     def set_quality(self, quality: Quality) -> None:
         """Light the scene better, or faster."""
@@ -65,6 +73,7 @@ class Viewports:
         self._light()
         if self._scene is not None:
             self._scene.finish(quality.is_physical)
+        self.arrange()
 
     def choose(
         self,
@@ -92,8 +101,12 @@ class Viewports:
         self._chosen = (camera, aside)
 
     def is_moving(self, now: float) -> bool:
-        """Return whether the main view's camera is on its way."""
-        return self._transition is not None and self._transition.is_moving(now)
+        """Return whether the main view's camera is on its way, or has arrived and draws finer."""
+        if self._transition is None:
+            return False
+        return self._transition.is_moving(now) or (
+            self._reduced.is_coarse and self._main.is_settled
+        )
 
     @property
     def cameras(self) -> Collection[str]:
@@ -117,24 +130,25 @@ class Viewports:
 
     def prepare(self, now: float) -> None:
         """Set cameras and viewports for the picture at `now` (s)."""
-        self._inset.SetDraw(self.has_inset)
-        self._reduced.fit(self.quality is Quality.LOW)
-        if self._transition is None:
+        is_low = self.quality is Quality.LOW
+        if self._transition is not None:
+            self._main.look(self._transition.at(now))
+            other = next(
+                (name for name in self._cameras if name != self._chosen[0]), self._chosen[0]
+            )
+            self._inset.look(self._beside or self._cameras[other])
+        # What can be kept costs less than to enlarge what is drawn coarsely.
+        self._reduced.fit(is_low and not self._main.is_settled)
+        if not self.has_inset:
+            self._inset.hide()
             return
-        self._transition.at(now).look(self.main)
-        width, height = self._window.size
-        box = self.inset_box
-        self._inset.SetViewport(
-            box.left / width,
-            1.0 - (box.top + box.height) / height,
-            (box.left + box.width) / width,
-            1.0 - box.top / height,
-        )
-        other = next((name for name in self._cameras if name != self._chosen[0]), self._chosen[0])
-        (self._beside or self._cameras[other]).look(self._inset)
+        height, box = self._window.size[1], self.inset_box
+        bottom = height - box.top - box.height
+        self._inset.place((box.left, box.left + box.width, bottom, height - box.top))
 
     def _light(self) -> None:
-        for renderer in (self.main, self._inset):
+        stills = self._main.still, self._inset.still
+        for renderer in (*stills, self._main.moving, self._inset.moving):
             renderer.RemoveAllLights()
             if renderer.GetPass() is not None:
                 renderer.GetPass().ReleaseGraphicsResources(self._window.render_window)
@@ -144,9 +158,9 @@ class Viewports:
             renderer.UseImageBasedLightingOff()
             renderer.SetEnvironmentTexture(None)  # type: ignore[arg-type]
         if not self.quality.is_physical:
-            for renderer in (self.main, self._inset):
+            for renderer in (*stills, self._main.moving, self._inset.moving):
                 add_plain_lights(renderer)
             return
         has_shadows = self.quality is Quality.HIGH
-        light_room(self.main, Shadows.FULL if has_shadows else Shadows.NONE)
-        light_room(self._inset, Shadows.SMALL if has_shadows else Shadows.NONE)
+        for renderer, shadows in zip(stills, (Shadows.FULL, Shadows.SMALL), strict=True):
+            light_room(renderer, shadows if has_shadows else Shadows.NONE)

@@ -1,0 +1,156 @@
+"""One view of the scene, in which what stands still is drawn once and kept with its depths.
+
+A processor that draws spends most of a picture's time on the head and the room, which are the same
+in the next picture while the camera stands: copying them is several times faster.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR
+from vtkmodules.vtkCommonDataModel import vtkBoundingBox
+from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLFramebufferObject
+
+from rastrainer_simulator.desktop.camera import Viewpoint
+from rastrainer_simulator.desktop.frame_copy import COLORS, DEPTHS, Rectangle, copy_frame
+from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.shown_scene import ShownScene
+
+_DEPTH_BITS = 32
+"""As VTK's own framebuffer has them: depths are only copied between equal formats."""
+SPARE = 0.5
+"""So much nearer than the nearest, and as much farther, a camera sees, so that the arm may move."""
+
+
+class KeptView:
+    """Draws what stands still into the picture or copies it, and what moves over it.
+
+    Attributes:
+        still, moving: renderers with one camera and one viewport. Where nothing is kept, `still`
+            draws everything, and `moving` nothing.
+    """
+
+    def __init__(self, window: GlWindow):
+        self.still, self.moving = vtkRenderer(), vtkRenderer()
+        for renderer in (self.still, self.moving):
+            renderer.AutomaticLightCreationOff()
+            window.render_window.AddRenderer(renderer)
+        self.moving.SetActiveCamera(self.still.GetActiveCamera())
+        self.moving.PreserveColorBufferOn()
+        self.moving.PreserveDepthBufferOn()
+        self._window = window
+        self._scene: ShownScene | None = None
+        self._is_split = False
+        self._rectangle: Rectangle = (0, 0, 0, 0)
+        self._frame: vtkOpenGLFramebufferObject | None = None
+        self._drawn: tuple[object, ...] | None = None
+        self._kept: tuple[object, ...] | None = None
+        # VTK's stubs leave out that events have names.
+        self.still.AddObserver("EndEvent", lambda *_event: self._keep())  # type: ignore[arg-type]
+        self.moving.AddObserver("StartEvent", lambda *_event: self._lay())  # type: ignore[arg-type]
+        self.moving.AddObserver("EndEvent", lambda *_event: self._note())  # type: ignore[arg-type]
+
+    def show(self, scene: ShownScene, is_split: bool) -> None:
+        """Show a scene; `is_split` keeps what stands still."""
+        self._scene, self._is_split = scene, is_split
+        self._drawn = self._kept = None
+        _fill(self.still, scene.still if is_split else scene.actors)
+        _fill(self.moving, scene.moving if is_split else ())
+
+    def look(self, viewpoint: Viewpoint) -> None:
+        """Set the camera."""
+        camera = self.still.GetActiveCamera()
+        before, (near, far) = self._camera, camera.GetClippingRange()
+        viewpoint.look(self.still)
+        box = vtkBoundingBox()
+        for renderer in (self.still, self.moving):
+            if renderer.VisibleActorCount():
+                box.AddBounds(renderer.ComputeVisiblePropBounds())
+        if not box.IsValid():
+            return
+        bounds = [0.0] * 6
+        box.GetBounds(bounds)
+        self.still.ResetCameraClippingRange(bounds)
+        nearest, farthest = camera.GetClippingRange()
+        if self._camera == before and near <= nearest and farthest <= far:
+            # Depths are kept only as long as the range is the same.
+            camera.SetClippingRange(near, far)
+        else:
+            camera.SetClippingRange(SPARE * nearest, farthest / SPARE)
+
+    def place(self, rectangle: Rectangle) -> None:
+        """Draw into a part of the window, in pixels: left, right, bottom, top."""
+        width, height = self._window.size
+        left, right, bottom, top = self._rectangle = rectangle
+        viewport = left / width, bottom / height, right / width, top / height
+        for renderer in (self.still, self.moving):
+            renderer.SetViewport(*viewport)
+        self.still.SetDraw(not self._has_kept)
+        self.moving.DrawOn()
+
+    def hide(self) -> None:
+        """Draw nothing."""
+        self.still.DrawOff()
+        self.moving.DrawOff()
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether what stands still looks as in the picture before, so that it can be kept."""
+        return self._is_split and self._look == self._drawn
+
+    @property
+    def _look(self) -> tuple[object, ...]:
+        version = None if self._scene is None else self._scene.still_version
+        depths = self.still.GetActiveCamera().GetClippingRange()
+        return version, self._camera, depths, self._window.size
+
+    @property
+    def _camera(self) -> tuple[object, ...]:
+        camera = self.still.GetActiveCamera()
+        place = camera.GetPosition(), camera.GetFocalPoint(), camera.GetViewUp()
+        return *place, camera.GetViewAngle(), camera.GetWindowCenter()
+
+    @property
+    def _has_kept(self) -> bool:
+        return self._is_split and self._kept == (*self._look, self._rectangle)
+
+    def _keep(self) -> None:
+        if not self.is_settled:
+            return
+        left, right, bottom, top = self._rectangle
+        size = right - left, top - bottom
+        if self._frame is None:
+            self._frame = vtkOpenGLFramebufferObject()
+            self._frame.SetContext(self._window.render_window)
+        state = self._window.render_window.GetState()
+        state.PushFramebufferBindings()
+        if self._frame.GetLastSize() != size:
+            self._frame.PopulateFramebuffer(
+                *size, True, 1, VTK_UNSIGNED_CHAR, True, _DEPTH_BITS, 0, False
+            )
+        state.PopFramebufferBindings()
+        drawn = self._window.render_window.GetRenderFramebuffer()
+        copy_frame(self._window, drawn, self._rectangle, self._frame, self._whole, COLORS | DEPTHS)
+        self._kept = (*self._look, self._rectangle)
+
+    def _lay(self) -> None:
+        if self.still.GetDraw() or self._frame is None:
+            return
+        drawn = self._window.render_window.GetRenderFramebuffer()
+        copy_frame(self._window, self._frame, self._whole, drawn, self._rectangle, COLORS | DEPTHS)
+
+    def _note(self) -> None:
+        self._drawn = self._look
+
+    @property
+    def _whole(self) -> Rectangle:
+        left, right, bottom, top = self._rectangle
+        return 0, right - left, 0, top - bottom
+
+
+def _fill(renderer: vtkRenderer, actors: Iterable[vtkActor]) -> None:
+    renderer.RemoveAllViewProps()
+    for actor in actors:
+        renderer.AddActor(actor)
