@@ -261,7 +261,13 @@ class ViewServer:
         transport = request.transport
         if transport is None:
             return
-        transport.set_write_buffer_limits(high=0)
+        under_tls = getattr(getattr(transport, "_ssl_protocol", None), "_transport", None)
+        if under_tls is None:
+            transport.set_write_buffer_limits(high=0)
+        else:
+            # With 0, asyncio's TLS holds every other message back until the view says something.
+            transport.set_write_buffer_limits(high=1)
+            under_tls.set_write_buffer_limits(high=0)
         with contextlib.suppress(OSError):
             peer = transport.get_extra_info("socket")
             peer.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, self._limits.buffer_bytes)

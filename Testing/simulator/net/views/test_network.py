@@ -15,6 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.net.views.certificate import FILE_NAME, fingerprint, tls_context
 from Testing.forked_child import in_child
 from Testing.simulator.net.igtl.servers import HOST
+from Testing.simulator.net.views.served import ViewClient
 
 REQUEST = f"GET / HTTP/1.1\r\nHost: {HOST}\r\nConnection: close\r\n\r\n".encode()
 
@@ -58,6 +59,16 @@ def test_tls_older_than_1_2_is_refused(port, certificates, version):
         connected(port, version)
     # Where the system's own OpenSSL would allow it, too.
     assert tls_context(certificates).minimum_version > version
+
+
+def test_a_view_that_says_nothing_is_sent_everything_by_tls_too(serve, certificates):
+    # So long that no ping of the server makes the view answer.
+    served = serve(gone_s=1000.0)
+    port = served.thread.run(served.server.listen_in_network(0, tls_context(certificates)))
+    with ViewClient(served.thread, f"https://{HOST}:{port}", served.new_key()) as view:
+        view.join()
+        ticks = [view.next("state")["tick"] for _ in range(20)]
+    assert ticks == sorted(set(ticks))
 
 
 def test_plain_http_gets_no_answer_from_the_local_network_s_port(port):
