@@ -199,6 +199,7 @@ NAMES_OF_PICTURE = {
     "en": "Robot, head and operating room",
     "de": "Roboter, Kopf und Operationssaal",
 }
+NOBODY_DRIVES = {"en": "Nobody drives the robot yet", "de": "Noch steuert niemand den Roboter"}
 
 
 def test_the_page_says_its_language(browser, served):
@@ -207,6 +208,8 @@ def test_the_page_says_its_language(browser, served):
         served.tell(Screen(language=language))
         page.wait_for_selector(f"html[lang={language}]")
         assert page.get_attribute("#picture", "aria-label") == name
+        # What was said before the language changed, too.
+        page.wait_for_selector(f"#control:has-text('{NOBODY_DRIVES[language]}')")
     page.context.close()
 
 

@@ -76,6 +76,8 @@ def test_a_code_that_is_no_longer_valid_says_so_and_so_does_a_new_one(place, bro
     page.goto(f"{place.simulator.url}/#code={wrong}")
     page.wait_for_selector("#pairing output:has-text('gilt nicht mehr')")
     assert page.get_attribute("html", "lang") == "de-DE"
+    # Before it is paired, the page says nothing about the robot.
+    assert not page.is_visible("#control")
     for _ in range(3):
         page.fill("#code", wrong)
         page.click("#pairing button")

@@ -94,9 +94,9 @@ export class Page {
   }
 
   private connected(isConnected: boolean): void {
-    const notice = isConnected ? "" : say("lost");
-    this.overlay.setNotice(notice !== "" || this.stage !== null ? notice : say("noPicture"));
-    this.headset?.setNotice(notice);
+    if (!isConnected) this.overlay.setNotice("lost");
+    else this.overlay.setNotice(this.stage === null ? "noPicture" : "");
+    this.headset?.setNotice(isConnected ? "" : say("lost"));
     this.lastEvent = 0;
   }
 
@@ -149,6 +149,7 @@ export class Page {
     byId("picture").setAttribute("aria-label", say("view"));
     byId("status").setAttribute("aria-label", say("status"));
     this.enter.label();
+    this.overlay.label();
     showWatching(this.connection.isWatching);
   }
 
@@ -174,7 +175,7 @@ export class Page {
     } catch {
       this.loading.hide();
       if (this.scene === news) this.scene = null;
-      this.overlay.setNotice(say("noScene"));
+      this.overlay.setNotice("noScene");
     }
   }
 

@@ -15,7 +15,8 @@ const INSETS: Readonly<Record<string, TextName>> = { "close-up": "closeUp", [BES
 export class Overlay {
   private readonly shown = new Map<string, string>();
   /** What the page says itself in place of the simulator's warnings; "" for nothing. */
-  private notice = "";
+  private notice: TextName | "" = "";
+  private control: ControlNews | null = null;
   private warnings: readonly Message[] = [];
   private menu: Menu | null = null;
   private facts: readonly string[] = [];
@@ -66,9 +67,15 @@ export class Overlay {
   }
 
   showControl(control: ControlNews): void {
-    const place = byId("control");
-    place.textContent = sayHolder(control.holder, control.isYou);
-    place.dataset.holder = control.holder;
+    this.control = control;
+    this.sayControl();
+  }
+
+  /** Say in the present language what is the page's own and stays. */
+  label(): void {
+    this.sayControl();
+    this.showFacts();
+    this.showWarnings();
   }
 
   /** Tell beside each menu how another view is paired. */
@@ -78,8 +85,8 @@ export class Overlay {
   }
 
   /** Say something of the page's own until it is called off by "". */
-  setNotice(text: string): void {
-    this.notice = text;
+  setNotice(name: TextName | ""): void {
+    this.notice = name;
     this.showWarnings();
   }
 
@@ -95,8 +102,16 @@ export class Overlay {
     frame.dataset.name = say(INSETS[name] ?? "far");
   }
 
+  private sayControl(): void {
+    const { control } = this;
+    if (control === null) return;
+    const place = byId("control");
+    place.textContent = sayHolder(control.holder, control.isYou);
+    place.dataset.holder = control.holder;
+  }
+
   private showWarnings(): void {
-    const own: Message[] = this.notice === "" ? [] : [{ text: this.notice, tone: "error" }];
+    const own: Message[] = this.notice === "" ? [] : [{ text: say(this.notice), tone: "error" }];
     const all = [...own, ...this.warnings].slice(0, 3);
     this.part("warnings", all, (parent) => {
       for (const warning of all) {
