@@ -22,8 +22,8 @@ from Testing.simulator.net.views.served import ViewClient
 
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 TIMEOUT_S = 600
-PATIENT = {"views": {"lost_s": TIMEOUT_S}}
-"""A machine that is too busy to draw does not pause the trial."""
+PATIENT = {"views": {"silent_s": 10, "lost_s": TIMEOUT_S}}
+"""A machine that is too busy to draw neither lets go of what is held nor pauses the trial."""
 VIEWS = "RASTrainer simulator serves views on "
 
 

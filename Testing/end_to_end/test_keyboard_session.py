@@ -12,7 +12,8 @@ from Testing.end_to_end.stream_trainee import StreamTrainee
 # A window that the processor draws wants the machine for itself.
 pytestmark = pytest.mark.soak
 
-SPEED = "1.5"
+SPEED = "0.4"
+"""Simulated seconds in a second: a key is let go of in time, however late a picture is."""
 SMALL = ("--size", "640x360", "--quality", "low")
 TRAINEE = "p07"
 KILLED_AFTER = 5

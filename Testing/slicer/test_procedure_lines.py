@@ -15,6 +15,8 @@ from rastrainer.slicer.scene.procedure_lines import (
     showProcedureErrors,
 )
 from rastrainer.slicer.scene.scene import Role, findNode, nodesOf
+from rastrainer_simulator.desktop.panels.theme import TONES
+from rastrainer_simulator.flow.session.plan_marks import PLACED, PLANNED, SHOWN
 from Testing.domain.procedure.made_up_procedure import (
     made_up_meshes,
     made_up_procedure,
@@ -34,6 +36,13 @@ def analysis():
     procedure = made_up_procedure()
     done = recorded(procedure, truth @ off, depth=60.0)
     return procedure, analyze_procedure(done, procedure, made_up_meshes(), truth)
+
+
+def test_each_meaning_has_one_color_in_slicer_and_in_the_simulators_views(headless_scene, analysis):
+    showProcedureErrors(headless_scene.scene, analysis[1])
+    for role, tone in zip(ROLES, (PLANNED, SHOWN, PLACED), strict=True):
+        color = nodesOf(headless_scene.scene, LINE, role)[0].GetDisplayNode().GetSelectedColor()
+        assert color == pytest.approx(TONES[tone][:3], abs=1e-3)
 
 
 def lines(scene, role):

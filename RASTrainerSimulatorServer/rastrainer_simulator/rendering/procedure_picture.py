@@ -11,6 +11,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.procedure.errors import PLACED_COLOR, PLANNED_COLOR, REGISTERED_COLOR
 from rastrainer.procedure.plan import Procedure
 from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.scenario.scenario import Camera
@@ -31,9 +32,9 @@ from rastrainer_simulator.scene.surfaces import shaded, turned
 from rastrainer_simulator.vectors import any_perpendicular, vector
 
 CLEAR_SKIN = replace(SKIN, name="clear_skin", opacity=0.25)
-PLANNED = Material("planned", (0.10, 0.75, 0.30), glowing=True)
-SHOWN = Material("shown", (1.0, 0.75, 0.05), glowing=True)
-PLACED = Material("placed", (0.15, 0.45, 1.0), glowing=True)
+PLANNED = Material("planned", PLANNED_COLOR, glowing=True)
+SHOWN = Material("shown", REGISTERED_COLOR, glowing=True)
+PLACED = Material("placed", PLACED_COLOR, glowing=True)
 LEGEND = (
     (PLANNED, "planned"),
     (SHOWN, "as the registration showed it"),

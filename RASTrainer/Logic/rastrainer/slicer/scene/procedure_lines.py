@@ -8,11 +8,17 @@ from typing import Any
 import numpy as np
 import vtk
 
-from rastrainer.procedure.errors import ProcedureAnalysis, SplitError, TrajectoryErrors
+from rastrainer.procedure.errors import (
+    PLACED_COLOR,
+    PLANNED_COLOR,
+    REGISTERED_COLOR,
+    ProcedureAnalysis,
+    SplitError,
+    TrajectoryErrors,
+)
 from rastrainer.procedure.plan import Procedure
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.error_colors import arrowPolyData
-from rastrainer.slicer.scene.scenario_nodes import TARGET_COLOR
 from rastrainer.slicer.scene.scene import (
     ROLE_ATTRIBUTE,
     Role,
@@ -26,8 +32,6 @@ from rastrainer.slicer.translation import _
 LINE, MODEL, TABLE = "vtkMRMLMarkupsLineNode", "vtkMRMLModelNode", "vtkMRMLTableNode"
 TRAJECTORY_ATTRIBUTE = "RASTrainer.trajectory"
 """On a line: the name of its trajectory."""
-REGISTERED_COLOR, TRUE_COLOR = (0.95, 0.6, 0.1), (0.45, 0.35, 0.9)
-"""Also of the arrows: what the registration caused, and what the hand added to it."""
 THICKNESS = 0.3
 """Of the arrows, which are true to scale, as a factor on those of residuals."""
 
@@ -74,9 +78,9 @@ def forgetProcedureErrors(scene: Any) -> None:
 
 
 _COLORS = {
-    Role.PLANNED_LINE: TARGET_COLOR,
+    Role.PLANNED_LINE: PLANNED_COLOR,
     Role.REGISTERED_LINE: REGISTERED_COLOR,
-    Role.TRUE_LINE: TRUE_COLOR,
+    Role.TRUE_LINE: PLACED_COLOR,
 }
 
 
@@ -114,7 +118,7 @@ def _newLine(scene: Any, role: str) -> Any:
 def _showArrows(scene: Any, each: Sequence[TrajectoryErrors]) -> None:
     for role, name, color in (
         (Role.ERRORS_BY_REGISTRATION, _("Errors by the registration"), REGISTERED_COLOR),
-        (Role.ERRORS_BY_HAND, _("Errors by the hand"), TRUE_COLOR),
+        (Role.ERRORS_BY_HAND, _("Errors by the hand"), PLACED_COLOR),
     ):
         append = vtk.vtkAppendPolyData()
         for errors in each:
