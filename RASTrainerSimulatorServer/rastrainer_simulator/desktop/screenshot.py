@@ -7,7 +7,10 @@ the arm. So a process of its own draws it.
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import os
 import pickle
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -16,16 +19,18 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.errors import InputError
+from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.writing import make_private_folder
 from rastrainer.python_environment import python_words
+from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.performance import Quality
+from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.rendering.offscreen import write_png
 
-MODULE = "rastrainer_simulator.desktop.screenshot_process"
+MODULE = "rastrainer_simulator.desktop.screenshot"
 INPUT_ERROR_STATUS = 2
 """Exit status of a process that says in one sentence what is wrong."""
 
@@ -94,3 +99,30 @@ async def save_screenshot(screenshot: Screenshot) -> None:
         raise InputError(errors.decode(errors="replace").strip().rpartition("\n")[2])
     if process.returncode != 0:
         raise InputError(f"The picture {screenshot.path} cannot be drawn.")
+
+
+def main() -> int:
+    """Write the picture; return 2, with one sentence, where that is impossible."""
+    with contextlib.suppress(AttributeError, OSError):
+        os.nice(10)  # The control loop and the window come first.
+    try:
+        _save(pickle.load(sys.stdin.buffer))
+    except RASTrainerError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+def _save(screenshot: Screenshot) -> None:
+    window = GlWindow(screenshot.size, is_fullscreen=False, is_hidden=True)
+    try:
+        picture = Picture(window, screenshot.inbox(), screenshot.quality)
+        picture.is_due(0.0)
+        picture.draw()
+        write_picture(window.pixels(), screenshot.path)
+    finally:
+        window.close()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
