@@ -203,7 +203,7 @@ class SceneFiles:
 async def _start() -> asyncio.subprocess.Process:
     try:
         return await asyncio.create_subprocess_exec(
-            *python_words("rastrainer_simulator.scene.build_process"),
+            *python_words("rastrainer_simulator.scene.scene_glb"),
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,

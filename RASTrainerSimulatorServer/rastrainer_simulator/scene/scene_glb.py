@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
+import os
+import sys
+import uuid
+from pathlib import Path
+
 import numpy as np
 import trimesh
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
+from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import RobotLink, RobotModel
 from rastrainer_simulator.scene.nodes import (
@@ -206,3 +215,35 @@ def scene_nodes(
         plan_node(scenario.procedures),
         *room_nodes(),
     ]
+
+
+def main() -> int:
+    """Build the given scene; if that is impossible, print one sentence and return 2."""
+    with contextlib.suppress(AttributeError, OSError):
+        os.nice(10)  # The control loop of the parent comes first.
+    wanted = json.load(sys.stdin)
+    meshes, task = wanted["robotMeshes"], wanted["task"]
+    try:
+        setup = load_setup(Path(wanted["scenario"]), robot_meshes=meshes and Path(meshes))
+        chosen = setup.scenario.task(task) if task else None
+        _write(Path(wanted["path"]), scene_glb(setup.scenario, setup.robot, chosen))
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all: others may build the same one at the same time."""
+    partial = path.with_name(f"{uuid.uuid4().hex}.partial")
+    try:
+        partial.write_bytes(content)
+        partial.replace(path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            partial.unlink()
+        raise InputError(f"The scene {path} cannot be written: {error.strerror}.") from error
+
+
+if __name__ == "__main__":
+    sys.exit(main())
