@@ -102,14 +102,14 @@ async def save_screenshot(screenshot: Screenshot) -> None:
 
 
 def main() -> int:
-    """Write the picture; return 2, with one sentence, where that is impossible."""
+    """Write the pickled `Screenshot` of standard input; return 2 where that is impossible."""
     with contextlib.suppress(AttributeError, OSError):
         os.nice(10)  # The control loop and the window come first.
     try:
         _save(pickle.load(sys.stdin.buffer))
     except RASTrainerError as error:
         print(error, file=sys.stderr)
-        return 2
+        return INPUT_ERROR_STATUS
     return 0
 
 

@@ -1,4 +1,9 @@
-"""One scene as a GLB file, made of a scenario, a robot and a task."""
+"""One scene as a GLB file, made of a scenario, a robot and a task.
+
+Run as a short-lived process, since VTK would stop the control loop's, it reads one JSON object from
+standard input: `scenario` and `robotMeshes` (folders, null for the meshes that come with
+RASTrainer), `task` (a name, or "" for none) and `path` (the file to write).
+"""
 
 from __future__ import annotations
 
