@@ -14,8 +14,8 @@ import pygame
 from rastrainer.protocol import OPEN_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.error_arrows import ErrorArrows
 from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.head_marks import ErrorArrows, TraceMarks
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.mouse import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
@@ -26,7 +26,6 @@ from rastrainer_simulator.desktop.panels.target_arrow import Direction, directio
 from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, touch_ring
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
-from rastrainer_simulator.desktop.trace_marks import TraceMarks
 from rastrainer_simulator.desktop.viewports import Viewports
 from rastrainer_simulator.net.views.screen import Menu, Screen, focused_picture
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
