@@ -1,6 +1,8 @@
-"""A painted picture on the screen, to the pixel."""
+"""Painted pictures on the screen, to the pixel, and those of one color: scrim, frame and glow."""
 
 from __future__ import annotations
+
+from enum import Enum
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -12,6 +14,9 @@ from vtkmodules.vtkRenderingCore import (
     vtkTexture,
     vtkTexturedActor2D,
 )
+
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.theme import Color
 
 _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 
@@ -75,3 +80,36 @@ def _quad(points: vtkPoints) -> vtkPolyData:
     quad.SetPolys(cells)
     quad.GetPointData().SetTCoords(places)
     return quad
+
+
+class Side(Enum):
+    """A side of the picture, counterclockwise."""
+
+    TOP = "top"
+    LEFT = "left"
+    BOTTOM = "bottom"
+    RIGHT = "right"
+
+
+def plain(color: Color) -> np.ndarray:
+    """Return one pixel, to be stretched."""
+    canvas = Canvas(1, 1)
+    canvas.box(Box(0, 0, 1, 1), color)
+    return canvas.pixels()
+
+
+def frame(outer: Box, thickness: int, color: Color) -> np.ndarray:
+    """Return a frame as large as a box, empty inside."""
+    canvas = Canvas(outer.width, outer.height)
+    canvas.frame(Box(0, 0, outer.width, outer.height), color, 0.0, thickness)
+    return canvas.pixels()
+
+
+def glow(thickness: int, color: Color, side: Side) -> np.ndarray:
+    """Return a fringe that is full at its side and fades away inward, to be stretched along."""
+    fade = np.linspace(1.0, 0.0, thickness) ** 1.5
+    # Two pixels wide: VTK takes a picture of one for a row.
+    pixels = np.empty((thickness, 2, 4), np.uint8)
+    pixels[..., :3] = np.round(255.0 * np.array(color[:3]))
+    pixels[..., 3] = np.round(255.0 * color[3] * fade)[:, None]
+    return np.rot90(pixels, list(Side).index(side))
