@@ -24,14 +24,15 @@ from rastrainer_simulator.desktop.panels.stick import (
     paint_stick,
     stick_boxes,
 )
-from rastrainer_simulator.desktop.panels.target_arrow import (
+from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.desktop.panels.tip_guides import (
     REACH,
     STEP_DEG,
     Direction,
+    TouchRing,
+    paint_ring,
     target_arrow,
 )
-from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
-from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, paint_ring
 from rastrainer_simulator.net.views.screen import Screen
 
 MAX_WARNINGS = 3

@@ -22,8 +22,12 @@ from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.bulls_eye import bulls_eye
 from rastrainer_simulator.desktop.panels.depth_gauge import depth_gauge
 from rastrainer_simulator.desktop.panels.stick import StickLook
-from rastrainer_simulator.desktop.panels.target_arrow import Direction, direction_out_of_sight
-from rastrainer_simulator.desktop.panels.touch_ring import TouchRing, touch_ring
+from rastrainer_simulator.desktop.panels.tip_guides import (
+    Direction,
+    TouchRing,
+    direction_out_of_sight,
+    touch_ring,
+)
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.desktop.viewports import Viewports
