@@ -12,10 +12,14 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from rastrainer_simulator.desktop.panels import sprite, strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
-from rastrainer_simulator.desktop.panels.bulls_eye import BullsEye, paint_bulls_eye
 from rastrainer_simulator.desktop.panels.canvas import Box
-from rastrainer_simulator.desktop.panels.depth_gauge import DepthGauge, paint_gauge
 from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
+from rastrainer_simulator.desktop.panels.procedure_gauges import (
+    BullsEye,
+    DepthGauge,
+    paint_bulls_eye,
+    paint_gauge,
+)
 from rastrainer_simulator.desktop.panels.sprite import Side, Sprite
 from rastrainer_simulator.desktop.panels.stick import (
     StickLook,

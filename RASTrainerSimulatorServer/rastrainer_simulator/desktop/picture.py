@@ -19,8 +19,7 @@ from rastrainer_simulator.desktop.head_marks import ErrorArrows, TraceMarks
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.mouse import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
-from rastrainer_simulator.desktop.panels.bulls_eye import bulls_eye
-from rastrainer_simulator.desktop.panels.depth_gauge import depth_gauge
+from rastrainer_simulator.desktop.panels.procedure_gauges import bulls_eye, depth_gauge
 from rastrainer_simulator.desktop.panels.stick import StickLook
 from rastrainer_simulator.desktop.panels.tip_guides import (
     Direction,
