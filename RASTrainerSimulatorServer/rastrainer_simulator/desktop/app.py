@@ -19,8 +19,13 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.desktop.connection import ServerConnection
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox
-from rastrainer_simulator.desktop.keyboard import OperatorKeys, without_late_repeats
-from rastrainer_simulator.desktop.mouse import LEFT_BUTTON, MouseSticks, ViewMouse
+from rastrainer_simulator.desktop.keyboard_and_mouse import (
+    LEFT_BUTTON,
+    MouseSticks,
+    OperatorKeys,
+    ViewMouse,
+    without_late_repeats,
+)
 from rastrainer_simulator.desktop.performance import (
     SLOWEST_FRAME_S,
     SOFTWARE_SIZE,

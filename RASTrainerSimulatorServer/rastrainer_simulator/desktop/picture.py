@@ -17,7 +17,7 @@ from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.head_marks import ErrorArrows, TraceMarks
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
-from rastrainer_simulator.desktop.mouse import Push
+from rastrainer_simulator.desktop.keyboard_and_mouse import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.procedure_gauges import bulls_eye, depth_gauge
 from rastrainer_simulator.desktop.panels.stick import StickLook

@@ -1,7 +1,7 @@
 import pygame
 import pytest
 
-from rastrainer_simulator.desktop.keyboard import CODES
+from rastrainer_simulator.desktop.keyboard_and_mouse import CODES
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 
 # SDL's constants beside the codes of the W3C's table, from both documents.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pygame
 import pytest
 
-from rastrainer_simulator.desktop.keyboard import without_late_repeats
+from rastrainer_simulator.desktop.keyboard_and_mouse import without_late_repeats
 
 A, B = pygame.KSCAN_A, pygame.KSCAN_B
 

@@ -3,7 +3,7 @@
 import pygame
 import pytest
 
-from rastrainer_simulator.desktop.mouse import DEG_PER_HEIGHT, ViewMouse
+from rastrainer_simulator.desktop.keyboard_and_mouse import DEG_PER_HEIGHT, ViewMouse
 from rastrainer_simulator.net.views.messages import ORBIT
 
 HEIGHT = 720
