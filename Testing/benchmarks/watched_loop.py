@@ -16,9 +16,9 @@ from multiprocessing.connection import Connection
 import numpy as np
 
 from rastrainer.igtl.client import Client
-from rastrainer_simulator.loop.loop_statistics import LoopStatistics
 from rastrainer_simulator.loop.precise_clock import (
     FIRST,
+    LoopStatistics,
     precise_timing,
     set_real_time,
     sleep_until,

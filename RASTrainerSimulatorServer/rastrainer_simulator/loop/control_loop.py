@@ -21,8 +21,9 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.core.true_head import PlannedBone
-from rastrainer_simulator.loop.loop_statistics import LoopStatistics, Punctuality
 from rastrainer_simulator.loop.precise_clock import (
+    LoopStatistics,
+    Punctuality,
     precise_timing,
     raise_thread_priority,
     sleep_until,
