@@ -23,7 +23,7 @@ from rastrainer_simulator.input.inputs import (
     w3c_gamepad_inputs,
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.subscribers import Subscribers
+from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, FeedbackEvent
 from rastrainer_simulator.net.views.presenter import (
     Control,

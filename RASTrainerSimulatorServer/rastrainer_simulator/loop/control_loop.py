@@ -29,10 +29,9 @@ from rastrainer_simulator.loop.precise_clock import (
     sleep_until,
 )
 from rastrainer_simulator.loop.rates import RateLimit, TrialLimits
-from rastrainer_simulator.loop.subscribers import PendingAnswers, Subscribers
+from rastrainer_simulator.loop.results import DurableResults, PendingAnswers, Subscribers
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
-from rastrainer_simulator.record.durable_results import DurableResults
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.record.view_report import NotedReport

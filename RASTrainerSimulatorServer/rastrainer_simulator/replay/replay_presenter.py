@@ -8,7 +8,7 @@ from functools import reduce
 
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.loop.subscribers import Subscribers
+from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, feedback_event
 from rastrainer_simulator.net.views.presenter import (
     Control,
