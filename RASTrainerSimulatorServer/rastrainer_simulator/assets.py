@@ -1,4 +1,4 @@
-"""Where the robot, the scenarios and the studies that come with RASTrainer are found."""
+"""Where the robot, scenarios, studies and the browser page that come with RASTrainer are found."""
 
 from __future__ import annotations
 
@@ -15,3 +15,26 @@ def asset_path(*parts: str) -> Path:
     """
     root = _INSTALLED if _INSTALLED.is_dir() else _CHECKOUT
     return root.joinpath(*parts)
+
+
+_INSTALLED_PAGE = Path(__file__).parents[2] / "web"
+_CHECKOUT_PAGE = Path(__file__).parents[3] / "web" / "dist"
+
+NOT_BUILT = """<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<title>RASTrainer</title>
+<h1>RASTrainer</h1>
+<p>The simulator is running, but its browser page has not been built.</p>
+<p>Build it with <code>make page</code>, or use the desktop window:
+<code>rastrainer simulator --desktop</code>.</p>
+</html>
+"""
+
+
+def page_folder() -> Path | None:
+    """Return the folder of the built page; None where there is none."""
+    for folder in (_INSTALLED_PAGE, _CHECKOUT_PAGE):
+        if (folder / "index.html").is_file():
+            return folder
+    return None

@@ -13,8 +13,8 @@ from importlib import metadata
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.assets import page_folder
 from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
-from rastrainer_simulator.net.views.page import page_folder
 
 OLDEST_PYTHON = (3, 10)
 MODULES = {

@@ -15,7 +15,7 @@ from pathlib import Path
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.assets import NOT_BUILT, asset_path, page_folder
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
@@ -23,7 +23,6 @@ from rastrainer_simulator.net.state_feed import StateFeed, StateSource
 from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
 from rastrainer_simulator.net.views.gate import ROLE, Gate, PairingCode, add_security_headers
 from rastrainer_simulator.net.views.messages import HELLO, SPECTATOR, SUBPROTOCOL, check_message
-from rastrainer_simulator.net.views.page import NOT_BUILT, page_folder
 from rastrainer_simulator.net.views.presenter import Hello, Presenter
 from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 from rastrainer_simulator.net.views.view import View
