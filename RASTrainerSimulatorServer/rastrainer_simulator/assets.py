@@ -6,6 +6,8 @@ from pathlib import Path
 
 _INSTALLED = Path(__file__).parent / "assets"
 _CHECKOUT = Path(__file__).parents[2] / "assets"
+_INSTALLED_PAGE = Path(__file__).parent / "web"
+_CHECKOUT_PAGE = Path(__file__).parents[1] / "web" / "dist"
 
 
 def asset_path(*parts: str) -> Path:
@@ -16,9 +18,6 @@ def asset_path(*parts: str) -> Path:
     root = _INSTALLED if _INSTALLED.is_dir() else _CHECKOUT
     return root.joinpath(*parts)
 
-
-_INSTALLED_PAGE = Path(__file__).parents[2] / "web"
-_CHECKOUT_PAGE = Path(__file__).parents[3] / "web" / "dist"
 
 NOT_BUILT = """<!doctype html>
 <html lang="en">

@@ -1,4 +1,4 @@
-"""x"""
+"""Keep the control loop punctual: sleeping, priority, and how punctual it has been."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How results leave the control loop: held back until they are on the disk, to whom, and the answers."""
+"""How results leave the control loop: what is on the disk, to callbacks and to who waits for it."""
 
 from __future__ import annotations
 
