@@ -15,10 +15,9 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.messages import HEADSET
-from rastrainer_simulator.net.views.mirror import Mirror
+from rastrainer_simulator.net.views.news import Mirror, TraceNews
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Presenter, ViewUpdate
 from rastrainer_simulator.net.views.screen import Screen
-from rastrainer_simulator.net.views.trace_news import TraceNews
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.scene.scene_files import SceneFiles
 from rastrainer_simulator.state import SimulationState

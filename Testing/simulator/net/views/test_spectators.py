@@ -6,7 +6,7 @@ import aiohttp
 import pytest
 
 from rastrainer_simulator.net.views.messages import ALIVE, MEMBERS, Worn
-from rastrainer_simulator.net.views.mirror import Mirror
+from rastrainer_simulator.net.views.news import Mirror
 from rastrainer_simulator.net.views.presenter import Control, Feedback
 from rastrainer_simulator.net.views.screen import Screen, ScreenMessage
 from rastrainer_simulator.net.views.sessions import ViewRole

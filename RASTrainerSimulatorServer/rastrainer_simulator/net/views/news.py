@@ -1,4 +1,4 @@
-"""What views are told of a trace: its new points, and where to draw next."""
+"""What all views are told beside the state: the news of a trace, and of who wears a headset."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.messages import Worn
 from rastrainer_simulator.net.views.presenter import TraceGuidance
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.trace_state import TracedPoint
@@ -66,3 +67,31 @@ def _in_head(places: Sequence[Sequence[float]], head_to_world: np.ndarray) -> li
     away = np.array(places) - head_to_world[:3, 3]
     found: list[list[float]] = np.round(MM_PER_M * away @ head_to_world[:3, :3], 2).tolist()
     return found
+
+
+NOBODY = "null"
+
+
+class Mirror:
+    """Keeps what the newest headset has told; one that comes back is another view."""
+
+    def __init__(self) -> None:
+        self._headsets: set[int] = set()
+        self.text = NOBODY
+        """JSON of what the newest headset told last; "null" without one that is worn."""
+
+    def joined(self, view: int) -> None:
+        """Follow a headset from now on."""
+        self._headsets.add(view)
+        self.text = NOBODY
+
+    def left(self, view: int) -> None:
+        """Forget a view; the one before it, if any, is followed again."""
+        if view in self._headsets and view == max(self._headsets):
+            self.text = NOBODY
+        self._headsets.discard(view)
+
+    def take(self, view: int, worn: Worn) -> None:
+        """Take what a headset tells; only the newest is followed."""
+        if view == max(self._headsets, default=None):
+            self.text = NOBODY if worn.eyes is None else outgoing.wearer(worn)
