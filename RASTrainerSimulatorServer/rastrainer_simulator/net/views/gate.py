@@ -21,7 +21,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import one_of, text
 from rastrainer.protocol import decode_json_object
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
-from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
+from rastrainer_simulator.net.views.connections import Sessions, ViewRole
 
 _log = logging.getLogger(__name__)
 

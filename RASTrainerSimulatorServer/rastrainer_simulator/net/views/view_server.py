@@ -20,11 +20,16 @@ from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
 from rastrainer_simulator.net.state_feed import StateFeed, StateSource
-from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
+from rastrainer_simulator.net.views.connections import (
+    KEEP_ALIVE_S,
+    Connections,
+    Sessions,
+    ViewRole,
+    http_log,
+)
 from rastrainer_simulator.net.views.gate import ROLE, Gate, PairingCode, add_security_headers
 from rastrainer_simulator.net.views.messages import HELLO, SPECTATOR, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.presenter import Hello, Presenter
-from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.net.views.views import Views
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene

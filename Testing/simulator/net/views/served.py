@@ -10,9 +10,9 @@ import aiohttp
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.limits import ViewLimits
+from rastrainer_simulator.net.views.connections import ViewRole
 from rastrainer_simulator.net.views.presenter import Control, TraceGuidance
 from rastrainer_simulator.net.views.screen import Screen
-from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.viewpoint.orbit import CameraPose
 from rastrainer_simulator.viewpoint.view_control import Pictures
