@@ -14,7 +14,7 @@ from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.viewpoint.best_view import BestView
-from rastrainer_simulator.viewpoint.line_view import across_line
+from rastrainer_simulator.viewpoint.line_views import across_line
 from rastrainer_simulator.viewpoint.orbit import heading_deg, orbit_to
 from rastrainer_simulator.viewpoint.touch_views import BestViews
 from rastrainer_simulator.viewpoint.view_control import (

@@ -20,7 +20,7 @@ from rastrainer_simulator.scene.nodes import no_go_name
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
-from rastrainer_simulator.viewpoint.aim import aim
+from rastrainer_simulator.viewpoint.line_views import aim
 from rastrainer_simulator.viewpoint.orbit import CameraPose, camera_pose
 from rastrainer_simulator.viewpoint.view_control import Pictures
 

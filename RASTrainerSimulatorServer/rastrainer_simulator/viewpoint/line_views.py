@@ -1,4 +1,4 @@
-"""How the planned line lies to the guide, seen along its axis: the bull's-eye of all views."""
+"""How a procedure's planned line is looked at: along the guide, as its bull's-eye, and from across."""
 
 from __future__ import annotations
 
@@ -6,7 +6,19 @@ import math
 from typing import NamedTuple
 
 from rastrainer_simulator.procedure_state import GuideAxis, PlannedLine
-from rastrainer_simulator.vectors import Vector, cross, dot, length, reject, subtract, unit
+from rastrainer_simulator.vectors import (
+    Vector,
+    add,
+    any_perpendicular,
+    cross,
+    dot,
+    length,
+    reject,
+    scale,
+    subtract,
+    unit,
+)
+from rastrainer_simulator.viewpoint.orbit import CameraPose
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
 SIDEWAYS = 0.2
@@ -49,3 +61,29 @@ def _right(pictures: Pictures) -> Vector:
 
 def _up(pictures: Pictures) -> Vector:
     return (0.0, 0.0, 1.0) if pictures.yaw_deg is not None else pictures.main.view_up
+
+
+AWAY_M = 0.4
+MARGIN_M = 0.02
+TALLEST_M = 0.34
+"""The greatest height of what the picture shows: a tool that is far away is not in it."""
+UP: Vector = (0.0, 0.0, 1.0)
+
+
+def across_line(eye: Vector, line: PlannedLine, tip: Vector) -> CameraPose:
+    """Return the camera that looks across a planned line, from the side of another eye.
+
+    In its picture the instrument comes from above. It shows the whole line, and the tool's tip
+    where that is near. World, m.
+    """
+    middle = scale(add(line.entry, line.target), 0.5)
+    across = cross(line.direction, reject(UP, line.direction))
+    if length(across) < MARGIN_M:
+        across = any_perpendicular(line.direction)
+    across = unit(across)
+    beside = [add(middle, scale(across, way * AWAY_M)) for way in (1.0, -1.0)]
+    nearer = min(beside, key=lambda place: math.dist(place, eye))
+    farthest = max(math.dist(middle, end) for end in (line.entry, line.target, tip))
+    height = min(2.0 * (farthest + MARGIN_M), TALLEST_M)
+    angle_deg = math.degrees(2.0 * math.atan(0.5 * height / AWAY_M))
+    return CameraPose(nearer, middle, scale(line.direction, -1.0), angle_deg)
