@@ -10,7 +10,6 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
-from rastrainer_simulator.core.head_outline import HeadOutline
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.true_head import PlannedBone, TrueHead
 from rastrainer_simulator.operator_input import OperatorInput
@@ -18,7 +17,7 @@ from rastrainer_simulator.ops.texts.texts import LocalizedText, Texts
 from rastrainer_simulator.procedure_state import GuideAxis, ProcedureState
 from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.teleoperation.commanded_motion import PathCommand
-from rastrainer_simulator.teleoperation.guide_path import guide_path
+from rastrainer_simulator.teleoperation.guide_path import HeadOutline, guide_path
 from rastrainer_simulator.training.feed import NO_FEED, Feed, FeedDrive
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
 from rastrainer_simulator.vectors import Vector, dot, vector
