@@ -17,10 +17,9 @@ from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import Pressing, next_proximity
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
-from rastrainer_simulator.core.procedure_motion import FED, ProcedureMotion
+from rastrainer_simulator.core.procedure_motion import FED, PlannedBone, ProcedureMotion
 from rastrainer_simulator.core.scene_view import SceneView, stand_pose
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.core.true_head import PlannedBone
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.procedure_state import GuideAxis

@@ -18,9 +18,9 @@ from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES, CommandName
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.core.procedure_motion import PlannedBone
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.core.true_head import PlannedBone
 from rastrainer_simulator.loop.precise_clock import (
     LoopStatistics,
     Punctuality,
