@@ -1,30 +1,81 @@
-"""The trial that was open when a simulator ended, and where to resume it by its journal.
-
-The state machine of the trial is led through the recorded commands again; the arm takes the last
-recorded posture. Nothing is simulated, so that it takes no time and no version of the arm's
-mathematics can change it.
-"""
+"""x"""
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import newest_journal
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
-from rastrainer.protocol import CommandName, Proximity, check_arguments
+from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.recorded_feed import RecordedFeed, metres
+from rastrainer_simulator.core.procedure_motion import FED
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.state import StartingPoint
-from rastrainer_simulator.training.feed import NO_FEED, Feed
+from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE
 from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TRACED, TouchMoment
 from rastrainer_simulator.vectors import ZERO, vector
+
+
+class RecordedFeed:
+    """Follows the feed through a journal's entries.
+
+    Attributes:
+        feed: after the entries taken so far.
+    """
+
+    def __init__(self) -> None:
+        self.feed = NO_FEED
+        self._ahead = HeadAhead()
+        self._stage = Phase.RUNNING
+
+    def before(self, effect: Mapping[str, Any]) -> Feed:
+        """Return the feed at which a command had an effect."""
+        ahead = _ahead(effect) or self._ahead
+        drilled = metres(effect.get("drilledMm", 0.0))
+        return Feed(metres(effect.get("feedMm", 0.0)), drilled, ahead)
+
+    def take(self, entry: Mapping[str, Any]) -> None:
+        """Take the next entry."""
+        if entry["kind"] == "sample" and "feedMm" in entry:
+            depth = metres(entry["feedMm"])
+            deepest = depth if self._stage is Phase.DRILLING else 0.0
+            drilled = max(self.feed.drilled, deepest)
+            self.feed = replace(self.feed, depth=depth, drilled=drilled)
+        elif entry["kind"] == "phase" and "procedure" in entry:
+            self._enter(entry, Phase(entry["procedure"]["stage"]))
+
+    def _enter(self, entry: Mapping[str, Any], stage: Phase) -> None:
+        is_exchanged = self._stage is Phase.DRILLING and stage is Phase.INSERTING
+        feed = self.before(entry)
+        self._stage, self._ahead = stage, feed.ahead
+        if stage not in FED:
+            self.feed = NO_FEED
+        else:
+            self.feed = replace(feed, depth=0.0) if is_exchanged else feed
+
+
+def _ahead(effect: Mapping[str, Any]) -> HeadAhead | None:
+    """Return what lay ahead of the guide when it was locked; None of any other effect."""
+    if "ahead" not in effect:
+        return None
+    found = effect["ahead"]
+    names = ("skinMm", "outerMm", "innerMm")
+    return HeadAhead(*(None if found[name] is None else metres(found[name]) for name in names))
+
+
+def metres(value_mm: float) -> float:
+    """Return the number that times 1000 is the given one to the last bit."""
+    near = value_mm / MM_PER_M
+    candidates = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+    return next((each for each in candidates if MM_PER_M * each == value_mm), near)
+
 
 _OVER = frozenset({"registered", "aborted", "attempt"})
 _EFFECTS: Mapping[str, frozenset[str]] = {
