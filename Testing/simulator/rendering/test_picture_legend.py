@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rastrainer_simulator.rendering.picture_legend import INK, bar_mm, paint_scale
+from rastrainer_simulator.rendering.procedure_picture import INK, bar_mm, paint_scale
 
 
 @pytest.mark.parametrize(
