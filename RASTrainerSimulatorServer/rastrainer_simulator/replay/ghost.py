@@ -1,4 +1,4 @@
-"""An earlier trial of the same task as a ghost: where its tool was, as the head stands now."""
+"""x"""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.replay_track import ReplayTrack, read_track
+from rastrainer.protocol import GhostRule, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
 from rastrainer_simulator.robot.kinematics import make_kinematics
+from rastrainer_simulator.state import SimulationState
 
 AFTER_S = 0.5
 """How long after its last touch a ghost stays."""
@@ -108,3 +110,58 @@ class GhostLoading:
     def _check(self) -> None:
         if self._is_canceled:
             raise InputError("Loading the ghost was canceled.")
+
+
+_SHOWN = (Phase.RUNNING, Phase.PAUSED)
+
+
+class TrialGhost:
+    """Loads the ghost of a trial, and shows it by the trial's time.
+
+    Attributes:
+        rule: which trial it is; `GhostRule.OFF` until one is shown.
+    """
+
+    def __init__(self) -> None:
+        self.rule = GhostRule.OFF
+        self._wanted = GhostRule.OFF
+        self._trial_id = ""
+        self._loading: GhostLoading | None = None
+        self._ghost: Ghost | None = None
+
+    def begin(
+        self,
+        rule: GhostRule,
+        journals: Sequence[Path],
+        trial_id: str,
+        setup: SimulationSetup,
+        head_to_world: np.ndarray,
+    ) -> None:
+        """Begin to load the first usable journal for a trial; HeadToWorld as of a `Ghost`."""
+        self.close()
+        self._wanted, self._trial_id = rule, trial_id
+        if rule is not GhostRule.OFF:
+            self._loading = GhostLoading(journals, setup, head_to_world)
+
+    def close(self) -> None:
+        """Show none."""
+        if self._loading is not None:
+            self._loading.cancel()
+        self._loading = self._ghost = None
+        self.rule = GhostRule.OFF
+
+    def has_just_loaded(self) -> bool:
+        """Return whether loading has just ended, true once; `rule` says whether there is one."""
+        if self._loading is None or not self._loading.ghost.done():
+            return False
+        self._ghost, self._loading = self._loading.ghost.result(), None
+        if self._ghost is not None:
+            self.rule = self._wanted
+        return True
+
+    def poses(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
+        """Return the ghost's poses, as of a `Ghost`; None where none is to be seen."""
+        training = now.training
+        if self._ghost is None or training.trial_id != self._trial_id:
+            return None
+        return self._ghost.poses(now.elapsed) if training.phase in _SHOWN else None

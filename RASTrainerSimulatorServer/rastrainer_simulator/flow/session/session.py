@@ -44,7 +44,6 @@ from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.flow.session.screen_sticks import ScreenSticks
 from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
-from rastrainer_simulator.flow.session.trial_ghost import TrialGhost
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
@@ -63,6 +62,7 @@ from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState
 from rastrainer_simulator.vectors import Vector, vector
