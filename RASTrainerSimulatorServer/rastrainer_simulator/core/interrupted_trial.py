@@ -1,4 +1,9 @@
-"""x"""
+"""The trial that was open when a simulator ended, and where to resume it by its journal.
+
+The state machine of the trial is led through the recorded commands again; the arm takes the last
+recorded posture, drill and instrument the last depth. Nothing is simulated, so that it takes no
+time and no version of the arm's mathematics can change it.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""x"""
+"""What a procedure does beside the arm: what lies ahead of the guide, what is fed, alignment."""
 
 from __future__ import annotations
 

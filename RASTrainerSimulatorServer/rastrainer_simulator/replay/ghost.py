@@ -1,4 +1,4 @@
-"""x"""
+"""An earlier trial of the same task as a ghost: where its tool was, as the head stands now."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""x"""
+"""How the robot brings the guide onto a planned line: around the head, by its rough outline."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a procedure's planned line is looked at: along the guide, as its bull's-eye, and from across."""
+"""How a procedure's planned line is looked at: along the guide, and from across."""
 
 from __future__ import annotations
 
