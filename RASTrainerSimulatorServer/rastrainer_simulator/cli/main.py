@@ -23,6 +23,8 @@ SUBCOMMANDS = {
     "delete-trainee": "rastrainer_simulator.cli.delete",
     "scenario": "rastrainer_simulator.cli.scenario",
     "simulator": "rastrainer_simulator.cli.simulator",
+    "board": "rastrainer_simulator.cli.board",
+    "instructor-pin": "rastrainer_simulator.cli.instructor_pin",
     "window": "rastrainer_simulator.cli.window",
     "doctor": "rastrainer_simulator.cli.doctor_command",
     "replay": "rastrainer_simulator.cli.replay",

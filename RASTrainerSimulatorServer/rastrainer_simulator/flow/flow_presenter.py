@@ -10,6 +10,7 @@ import numpy as np
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.operated_view import OperatedView
+from rastrainer_simulator.flow.seat import instruct, seat_of
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.session import FlowServices, TrainingSession
 from rastrainer_simulator.input.bindings import Bindings
@@ -30,6 +31,8 @@ from rastrainer_simulator.net.views.presenter import (
     Feedback,
     Frames,
     Hello,
+    InstructorOrder,
+    Seat,
     TraceGuidance,
     ViewUpdate,
 )
@@ -126,6 +129,18 @@ class FlowPresenter:
         """Return how a trainee who traces the skin is guided; not at all while a trial is shown."""
         is_replayed = self._flow.playback is not None
         return TraceGuidance() if is_replayed else self._session.places.guidance(now)
+
+    def seat(self) -> Seat:
+        """Return what a teacher's board shows of this seat."""
+        count = len(self._control_loop.truth.fiducials)
+        return seat_of(self._session, self.screen, self.control.holder, count)
+
+    def instruct(self, order: InstructorOrder, text: str) -> str:
+        """Do what a teacher wants; return why it cannot be done, "" if it is."""
+        problem = instruct(self._session, self._flow, order, text)
+        self._is_changed = True
+        self._settle()
+        return problem
 
     @property
     def is_tracing_guided(self) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import http.client
-import ipaddress
 import json
 import ssl
 from collections.abc import Sequence
@@ -14,6 +13,7 @@ from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import printable_name
+from rastrainer_simulator.net.loopback import is_loopback
 
 XAPI_VERSION = "1.0.3"
 TIMEOUT_S = 20.0
@@ -70,7 +70,7 @@ class RecordStore:
                 f"{printable_name(url)} is no address of a record store; give one such as "
                 "https://lrs.example.org/xAPI, without a name or password in it."
             )
-        if not self._is_safe and not _is_this_computer(self._host):
+        if not self._is_safe and not is_loopback(self._host):
             raise InputError(
                 "Pseudonyms and the password would be sent in the clear: "
                 f"the address must begin with https://, not {printable_name(url)}."
@@ -145,12 +145,3 @@ class RecordStore:
         if self._is_safe:
             return http.client.HTTPSConnection(self._host, self._port, timeout=TIMEOUT_S)
         return http.client.HTTPConnection(self._host, self._port, timeout=TIMEOUT_S)
-
-
-def _is_this_computer(host: str) -> bool:
-    if host == "localhost":
-        return True
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return False

@@ -15,6 +15,8 @@ from rastrainer_simulator.net.views.presenter import (
     Feedback,
     Frames,
     Hello,
+    InstructorOrder,
+    Seat,
     TraceGuidance,
     ViewUpdate,
 )
@@ -197,6 +199,14 @@ class ReplayPresenter:
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:  # noqa: ARG002
         """Nobody is guided: only what was traced is drawn."""
         return TraceGuidance()
+
+    def seat(self) -> Seat:
+        """Nobody trains here."""
+        return Seat()
+
+    def instruct(self, _order: InstructorOrder, _text: str) -> str:
+        """A recorded trial takes no orders."""
+        return self._texts.say("instructor.nothing runs")
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:  # noqa: ARG002
         """Turn the view."""

@@ -11,7 +11,6 @@ import signal
 from collections.abc import Awaitable, Callable, Iterator, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
-from ipaddress import ip_address
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +33,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
+from rastrainer_simulator.net.loopback import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, TrialLog
 from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import config_folder, log_folder
@@ -127,7 +127,7 @@ class SimulatorServer:
             unless_ready.pop_all()
         self._presenter: RunningPresenter | None = None
         self._scenarios = ScenarioLoader(
-            self._control_loop, self._make_simulation, _is_loopback(_peers_host(options))
+            self._control_loop, self._make_simulation, is_loopback(_peers_host(options))
         )
 
     async def run(self, on_ready: Callable[[str], None]) -> None:
@@ -284,6 +284,7 @@ class SimulatorServer:
             self._config / "certificates" if self._options.has_network else None,
             self._scenarios.picture,
             self._limits.views,
+            self._config,
         )
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:
@@ -344,13 +345,6 @@ def _answered(answer: Answer) -> Future[Answer]:
 def _peers_host(options: ServerOptions) -> str:
     """Return the address by which peers are met."""
     return options.host if options.connect_to is None else options.connect_to[0]
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
 
 
 @contextlib.contextmanager

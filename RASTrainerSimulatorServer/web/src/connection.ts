@@ -1,6 +1,7 @@
 /** Stay connected to the simulator, and reconnect whenever it was away. */
 
 import { SUBPROTOCOL, type Hello, type News, type Role } from "./messages";
+import { streamUrl } from "./served";
 
 const RETRY_MS = 1000;
 /** A view that holds something says so at least this often; the simulator releases it after 0.5 s. */
@@ -68,8 +69,7 @@ export class Connection {
   }
 
   private join(): void {
-    const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/stream`;
-    const socket = new WebSocket(url, SUBPROTOCOL);
+    const socket = new WebSocket(streamUrl("stream"), SUBPROTOCOL);
     this.socket = socket;
     let wasOpen = false;
     socket.onopen = () => {
@@ -129,7 +129,7 @@ let known: Role = "view";
 /** Return what this browser was paired for, null if it is not; a simulator that is away knows everyone. */
 export async function readRole(): Promise<Role | null> {
   try {
-    const answer = await fetch("/role");
+    const answer = await fetch("role");
     if (answer.status === 401) return null;
     if (answer.ok) known = ((await answer.json()) as { role: Role }).role;
   } catch {

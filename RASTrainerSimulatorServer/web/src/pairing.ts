@@ -45,12 +45,26 @@ function label(form: HTMLFormElement): void {
 
 /** Return what is wrong with a code, "" for nothing; `wrong` names the sentence about a wrong one. */
 async function send(code: string, role: Role, wrong: TextName): Promise<string> {
+  const refusal = await exchangeCode(code, role);
+  if (refusal === null) return "";
+  const { problem, seconds } = refusal;
+  return problem === "wrong" ? say(wrong) : say(problem === "away" ? "lost" : "newCode", { seconds });
+}
+
+/** Why a code was not taken; `seconds` until the next may be tried, "" where there is no pause. */
+export interface CodeRefusal {
+  problem: "wrong" | "tooMany" | "away";
+  seconds: string;
+}
+
+/** Exchange a code for the cookie; null where that has worked. */
+export async function exchangeCode(code: string, role: Role): Promise<CodeRefusal | null> {
   try {
-    const answer = await fetch("/pair", { method: "POST", body: JSON.stringify({ code, role }) });
+    const answer = await fetch("pair", { method: "POST", body: JSON.stringify({ code, role }) });
+    if (answer.ok) return null;
     const seconds = answer.headers.get("Retry-After");
-    if (answer.ok) return "";
-    return seconds === null ? say(wrong) : say("newCode", { seconds });
+    return { problem: seconds === null ? "wrong" : "tooMany", seconds: seconds ?? "" };
   } catch {
-    return say("lost");
+    return { problem: "away", seconds: "" };
   }
 }

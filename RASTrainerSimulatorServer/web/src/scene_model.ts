@@ -13,6 +13,7 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 import { batch, ownColor } from "./batch";
+import { served } from "./served";
 import { isTouchError, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "./messages";
 
 const FIDUCIAL = "fiducial_";
@@ -226,7 +227,7 @@ export async function loadScene(
   bodies: readonly string[],
   onProgress: (loaded: number, total: number) => void,
 ): Promise<SceneModel> {
-  const file = await new GLTFLoader().loadAsync(news.url, ({ loaded, total }) => onProgress(loaded, total));
+  const file = await new GLTFLoader().loadAsync(served(news.url), ({ loaded, total }) => onProgress(loaded, total));
   return new SceneModel(file.scene, news, bodies);
 }
 

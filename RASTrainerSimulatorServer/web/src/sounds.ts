@@ -81,7 +81,7 @@ export class Sounds {
   }
 
   private async loadOne(name: string): Promise<void> {
-    const answer = await fetch(`/sounds/${name}.wav`);
+    const answer = await fetch(`sounds/${name}.wav`);
     if (!answer.ok) return;
     this.buffers.set(name, await this.context.decodeAudioData(await answer.arrayBuffer()));
   }

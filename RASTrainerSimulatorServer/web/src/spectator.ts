@@ -2,6 +2,7 @@
 
 import { byId } from "./elements";
 import type { Hello, Screen } from "./messages";
+import { isOnBoard } from "./served";
 import { say } from "./texts";
 
 export const SPECTATOR: Hello = { kind: "spectator", device: "", refreshHz: 0 };
@@ -30,7 +31,7 @@ export function isPairedAgain(): boolean {
 export function showWatching(isWatching: boolean): void {
   const button = byId("take-part") as HTMLButtonElement;
   document.body.toggleAttribute("data-watching", isWatching);
-  button.hidden = !isWatching;
+  button.hidden = !isWatching || isOnBoard();
   button.textContent = say("takePart");
   button.onclick = () => {
     history.replaceState(null, "", AGAIN);

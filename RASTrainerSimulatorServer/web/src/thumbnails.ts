@@ -1,5 +1,7 @@
 /** Small pictures in menus, such as of a head that can be chosen; each is loaded once. */
 
+import { served } from "./served";
+
 const loaded = new Map<string, HTMLImageElement>();
 
 /** Return a picture once it is there, null before; `whenThere` is called when it has come. */
@@ -10,7 +12,7 @@ export function thumbnail(url: string, whenThere: () => void): HTMLImageElement 
     image = new Image();
     loaded.set(url, image);
     image.onload = whenThere;
-    image.src = url;
+    image.src = served(url);
   }
   return image.complete && image.naturalWidth > 0 ? image : null;
 }

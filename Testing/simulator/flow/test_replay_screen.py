@@ -16,7 +16,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input import controls
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.net.views.presenter import Hello
+from rastrainer_simulator.net.views.presenter import Hello, InstructorOrder
 from rastrainer_simulator.net.views.screen import screen_to_json
 from rastrainer_simulator.replay import recorded_trial
 from Testing.simulator.flow.conftest import Outside
@@ -212,6 +212,17 @@ def test_it_is_played_and_sought_by_the_keys_of_the_replay_command(result):
     assert "the worst touch" in result.presenter.screen.instruction.text
     result.hands.key("KeyM")
     result.until_menu("result")
+
+
+def test_a_teacher_has_the_trial_shown_again_and_pauses_it(result):
+    presenter = result.presenter
+    assert presenter.instruct(InstructorOrder.REPLAY, "") == ""
+    result.until(lambda: result.replay is not result.loop.latest, "the replay")
+    assert presenter.instruct(InstructorOrder.REPLAY, "") == ""
+    assert presenter.instruct(InstructorOrder.PAUSE, "") == ""
+    stands = result.replay.tick
+    result.step(50)
+    assert result.replay.tick == stands
 
 
 def test_sticks_and_touches_do_nothing_to_the_arm_meanwhile(result):

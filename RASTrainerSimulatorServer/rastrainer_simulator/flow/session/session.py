@@ -438,10 +438,10 @@ class TrainingSession:
         path = self._services.config / BINDINGS_FILE
         self._save(lambda: write_bindings(path, bindings))
 
-    def notice(self, text: str, tone: Tone = Tone.PLAIN) -> None:
+    def notice(self, text: str, tone: Tone = Tone.PLAIN, seconds: float = NOTICE_S) -> None:
         """Show a sentence for some seconds."""
         self._notices = [each for each in self._notices if each[1].text != text]
-        self._notices.append((self._time + NOTICE_S, ScreenMessage(text, tone)))
+        self._notices.append((self._time + seconds, ScreenMessage(text, tone)))
 
     def complain(self, text: str) -> None:
         """Say what went wrong."""

@@ -1,68 +1,16 @@
-"""Connections of views: how many there may be and for how long, and the keys that pair them."""
+"""Connections of any kind: how many there may be, how long they may hesitate, what is logged."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import hashlib
-import hmac
 import logging
-import secrets
 import socket
-from collections import deque
-from collections.abc import Mapping
-from enum import Enum
 
 from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
-KEY_BYTES = 32
-SHORTEST_KEY = 32
-LONGEST_KEY = 200
-
-
-class ViewRole(str, Enum):
-    """What somebody was paired for."""
-
-    VIEW = "view"
-    """To see and to drive."""
-    SPECTATOR = "spectator"
-    """To see everything and to drive nothing."""
-
-
-class Sessions:
-    """The keys that were given out, by their hashes."""
-
-    def __init__(self, most: Mapping[ViewRole, int]) -> None:
-        """Remember so many keys of each role; then the oldest of that role is forgotten."""
-        self._hashes = {role: deque[bytes](maxlen=most[role]) for role in ViewRole}
-
-    def open(self, role: ViewRole = ViewRole.VIEW) -> str:
-        """Return a new key."""
-        key = secrets.token_urlsafe(KEY_BYTES)
-        self._hashes[role].append(_hash(key))
-        return key
-
-    def admit(self, key: str) -> None:
-        """Accept a view's key that was agreed on before the simulator was started."""
-        self._hashes[ViewRole.VIEW].append(_hash(key))
-
-    def role(self, key: str) -> ViewRole | None:
-        """Return what a key was given out for, None for no key; it takes the same time for all."""
-        if not SHORTEST_KEY <= len(key) <= LONGEST_KEY:
-            return None
-        wanted = _hash(key)
-        found = None
-        for role, hashes in self._hashes.items():
-            matches = [hmac.compare_digest(wanted, known) for known in hashes]
-            if any(matches):
-                found = role
-        return found
-
-
-def _hash(key: str) -> bytes:
-    return hashlib.sha256(key.encode(errors="replace")).digest()
-
+from rastrainer_simulator.net.views.sessions import ViewRole
 
 KEEP_ALIVE_S = 75.0
 
@@ -84,8 +32,8 @@ class Connections:
     """Makes who talks to each new connection; a protocol factory for `loop.create_server`.
 
     Where there are as many as may be, the oldest that has shown no key yields to a new one, and
-    where all have, the oldest of a spectator: whoever takes places and does not even read what was
-    asked for keeps nobody out, and spectators keep out nobody who takes part.
+    where all have, the oldest that only watches: whoever takes places and does not even read what
+    was asked for keeps nobody out, and who watches keeps out nobody who takes part.
     """
 
     def __init__(self, most: int, first_request_s: float) -> None:
@@ -126,7 +74,7 @@ class Connections:
         if len(there) - len(self._sent_away) < self._most:
             return True
         may_yield = [each for each in there if each not in self._sent_away]
-        for role in (None, ViewRole.SPECTATOR):
+        for role in (None, ViewRole.SPECTATOR, ViewRole.BOARD):
             oldest = next((each for each in may_yield if self._paired.get(each) is role), None)
             if oldest is not None:
                 break

@@ -21,54 +21,38 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import one_of, text
 from rastrainer.protocol import decode_json_object
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
-from rastrainer_simulator.net.views.connections import Sessions, ViewRole
+from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
+from rastrainer_simulator.ops.instructor_pin import WRONG_GUESSES, GuessLimit
 
 _log = logging.getLogger(__name__)
 
 DIGITS = 6
-WRONG_CODES = 5
-FIRST_PAUSE_S = 1.0
-LONGEST_PAUSE_S = 300.0
 WRONG = "This is not the pairing code that the simulator shows."
 TOO_MANY = "There were too many wrong codes: wait, then use the new code that the simulator shows."
 
 
 class PairingCode:
-    """The present code. After five wrong ones there is a new one, and a pause that grows.
-
-    So nobody gets far by guessing: at five guesses in five minutes, one in two years is right.
-    """
+    """The present code. After five wrong ones there is a new one, and a pause that grows."""
 
     def __init__(self, clock: Callable[[], float], on_new: Callable[[str], None]) -> None:
         """Make a code; `on_new` is given each one after it, to be shown."""
-        self._clock = clock
         self._on_new = on_new
-        self._wrong = 0
-        self._pause = FIRST_PAUSE_S
-        self._open_from = -float("inf")
+        self._limit = GuessLimit(clock)
         self.code = _new_code()
         """What a person types; never logged."""
 
     def seconds_to_wait(self) -> float:
         """Return how long no code is looked at; 0 where one may be tried."""
-        return max(0.0, self._open_from - self._clock())
+        return self._limit.seconds_to_wait()
 
     def accepts(self, code: str) -> bool:
         """Compare a code, in the same time for every one, and count the wrong ones."""
-        if hmac.compare_digest(code.encode(), self.code.encode()):
-            self._wrong, self._pause = 0, FIRST_PAUSE_S
-            return True
-        self._wrong += 1
-        if self._wrong >= WRONG_CODES:
-            self._renew()
-        return False
-
-    def _renew(self) -> None:
-        _log.warning("%d wrong pairing codes were tried; there is a new one.", self._wrong)
-        self._open_from = self._clock() + self._pause
-        self._wrong, self._pause = 0, min(2.0 * self._pause, LONGEST_PAUSE_S)
-        self.code = _new_code()
-        self._on_new(self.code)
+        is_right = hmac.compare_digest(code.encode(), self.code.encode())
+        if self._limit.guessed(is_right):
+            _log.warning("%d wrong pairing codes were tried; there is a new one.", WRONG_GUESSES)
+            self.code = _new_code()
+            self._on_new(self.code)
+        return is_right
 
 
 def _new_code() -> str:
@@ -78,8 +62,8 @@ def _new_code() -> str:
 COOKIE = "rastrainer-view"
 PAIR_FIRST = "Pair first: POST /pair with the code that the simulator shows."
 NOT_A_CODE = (
-    f'Send {{"code": "…"}} with the {DIGITS} digits that the simulator shows, and for a spectator '
-    f'also {{"role": "{ViewRole.SPECTATOR.value}"}}.'
+    f'Send {{"code": "…"}} with the {DIGITS} digits that the simulator shows, and for who only '
+    f'watches also {{"role": "{ViewRole.SPECTATOR.value}"}} or "{ViewRole.BOARD.value}".'
 )
 BODY_S = 5.0
 _BEARER = "Bearer "

@@ -32,7 +32,10 @@ WORN = "worn"
 
 HEADSET = "headset"
 SPECTATOR = "spectator"
-VIEW_KINDS = ("desktop", "page", HEADSET, SPECTATOR)
+BOARD = "board"
+ONLY_WATCH = (SPECTATOR, BOARD)
+"""The kinds that may send nothing but that they are alive."""
+VIEW_KINDS = ("desktop", "page", HEADSET, *ONLY_WATCH)
 MAX_AXES = 16
 MAX_BUTTONS = 32
 # Pads go a little beyond their end; what is farther out is no position of a stick.

@@ -12,8 +12,8 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_VIEW_PORT
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.state_feed import StateSource
-from rastrainer_simulator.net.views.connections import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.net.views.presenter import Presenter
+from rastrainer_simulator.net.views.sessions import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.desktop_process import VIEW_KEY_VARIABLE
 
@@ -27,6 +27,7 @@ async def open_views(
     certificates: Path | None = None,
     scenario_picture: Callable[[str], Path | None] = lambda _name: None,
     limits: ViewLimits | None = None,
+    config: Path | None = None,
 ) -> ViewServer:
     """Return a server that listens on this computer; `tell` is given what people must know.
 
@@ -38,18 +39,19 @@ async def open_views(
     the same one to a window.
 
     `scenario_picture` returns the picture of a scenario by its name; `limits` are those of
-    `ViewLimits` unless a site has its own.
+    `ViewLimits` unless a site has its own. `config` is the folder of the settings, which keeps the
+    keys of teachers' boards.
 
     Raises:
-        InputError: the port cannot be listened on, the key is no key, or the certificate cannot be
-            kept.
+        InputError: the port cannot be listened on, the key is no key, the certificate cannot be
+            kept, or the keys of boards cannot be read.
     """
 
     def tell_new_code(code: str) -> None:
         tell(f"has a new pairing code for views: {code}")
 
     server = ViewServer(
-        source, presenter, tell_new_code, robot_meshes, limits, scenario_picture=scenario_picture
+        source, presenter, tell_new_code, robot_meshes, limits, scenario_picture, config
     )
     agreed = os.environ.get(VIEW_KEY_VARIABLE)
     if agreed is not None:

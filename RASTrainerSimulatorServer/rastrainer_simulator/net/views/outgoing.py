@@ -32,6 +32,7 @@ EVENT = "event"
 CONTROL = "control"
 PAIRING = "pairing"
 TRACE = "trace"
+SEAT = "seat"
 
 BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand", "plan")
 GHOST_LINKS = (7,)
@@ -146,6 +147,11 @@ def trace(known: int, new: Sequence[Sequence[float]], guidance: TraceGuidance) -
     shown = None if place is None else {"positionMm": place.position, "normal": place.normal}
     covered_mm = guidance.covered_mm
     return _text(TRACE, known=known, points=new, coveredMm=covered_mm, next=shown)
+
+
+def seat(**members: Any) -> str:
+    """Return what a teacher's board shows of a seat."""
+    return _text(SEAT, **members)
 
 
 def control(now: Control, view: int) -> str:

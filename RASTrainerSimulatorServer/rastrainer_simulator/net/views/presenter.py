@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 from typing import Any, Protocol
 
 import numpy as np
@@ -18,7 +19,7 @@ class Hello:
     """What a view says of itself when it joins.
 
     Attributes:
-        kind: "desktop", "page", "headset" or "spectator".
+        kind: "desktop", "page", "headset", "spectator" or "board".
         device: model of the headset or name of the browser; "" where unknown.
         refresh_hz: of its display; 0 where unknown.
     """
@@ -96,6 +97,45 @@ class TraceGuidance:
     next_place: SkinPlace | None = None
 
 
+class InstructorOrder(str, Enum):
+    """What a teacher can have done at a seat."""
+
+    PAUSE = "pause"
+    SAY = "say"
+    """Show the trainee a sentence."""
+    REPLAY = "replay"
+    """Show the scored trial again, at the seat."""
+
+
+@dataclass(frozen=True)
+class Seat:
+    """What a teacher's board shows of a seat beside the trial's state.
+
+    Attributes:
+        trainee: whose trial it is, or whose ID is entered; "" for nobody.
+        task: title of the open trial's task, "" without one.
+        count: points of this task; 0 without a trial.
+        screen: title of the open menu, "" while the trainee works.
+        instruction: what the trainee is told to do.
+        warnings: what is wrong, as the trainee reads it.
+        score: the trainee's latest, 0 to 100; None before the first.
+        holder: what drives the arm, "" for nothing.
+        slicer: whether a Slicer is connected.
+        language: BCP 47 tag of the texts.
+    """
+
+    trainee: str = ""
+    task: str = ""
+    count: int = 0
+    screen: str = ""
+    instruction: str = ""
+    warnings: tuple[str, ...] = ()
+    score: float | None = None
+    holder: str = ""
+    slicer: bool = False
+    language: str = "en"
+
+
 class Presenter(Protocol):
     """The flow and the controls, as the view server sees them.
 
@@ -123,6 +163,15 @@ class Presenter(Protocol):
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:
         """Return how a trainee who traces the skin is guided in a state."""
+
+    def seat(self) -> Seat:
+        """Return what a teacher's board shows of this seat."""
+
+    def instruct(self, order: InstructorOrder, text: str) -> str:
+        """Do what a teacher who knows the PIN wants; return why it cannot be done, "" if it is.
+
+        `text` is the sentence of `InstructorOrder.SAY`, else "".
+        """
 
     def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
         """Have `listener` called with each new screen, feedback and holder of the control.

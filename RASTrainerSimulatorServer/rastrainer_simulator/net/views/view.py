@@ -17,7 +17,15 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views import messages
 from rastrainer_simulator.net.views.messages import Received, Worn, check_message
 from rastrainer_simulator.net.views.news import Mirror
-from rastrainer_simulator.net.views.outgoing import CONTROL, PAIRING, SCENE, SCREEN, STATE, WELCOME
+from rastrainer_simulator.net.views.outgoing import (
+    CONTROL,
+    PAIRING,
+    SCENE,
+    SCREEN,
+    SEAT,
+    STATE,
+    WELCOME,
+)
 from rastrainer_simulator.net.views.presenter import Frames, Hello, Presenter
 
 _log = logging.getLogger(__name__)
@@ -27,7 +35,7 @@ TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
 ONLY_WATCHES = f"A spectator drives nothing: it may send {messages.ALIVE} and nothing else."
 MAX_KEYS = 32
-_BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING)
+_BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING, SEAT)
 
 
 class View:
@@ -68,7 +76,12 @@ class View:
     @property
     def is_spectator(self) -> bool:
         """Whether it only watches: the flow, which counts who sees a trial, is never told of it."""
-        return self.hello.kind == messages.SPECTATOR
+        return self.hello.kind in messages.ONLY_WATCH
+
+    @property
+    def is_board(self) -> bool:
+        """Whether it is told of the seat only, and of no pose."""
+        return self.hello.kind == messages.BOARD
 
     async def serve(self) -> None:
         """Send and receive until either side ends it."""

@@ -9,27 +9,21 @@ import socket
 import ssl
 from collections import Counter
 from collections.abc import Callable
-from ipaddress import ip_address
 from pathlib import Path
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import NOT_BUILT, asset_path, page_folder
-from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.listener import Listener
+from rastrainer_simulator.net.loopback import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, StateSource
-from rastrainer_simulator.net.views.connections import (
-    KEEP_ALIVE_S,
-    Connections,
-    Sessions,
-    ViewRole,
-    http_log,
-)
-from rastrainer_simulator.net.views.gate import ROLE, Gate, PairingCode, add_security_headers
-from rastrainer_simulator.net.views.messages import HELLO, SPECTATOR, SUBPROTOCOL, check_message
+from rastrainer_simulator.net.views.gate import ROLE, PairingCode
+from rastrainer_simulator.net.views.guarded_server import GuardedServer
+from rastrainer_simulator.net.views.instructor_orders import InstructorOrders
+from rastrainer_simulator.net.views.messages import HELLO, ONLY_WATCH, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.presenter import Hello, Presenter
+from rastrainer_simulator.net.views.sessions import BOARDS_FILE, Sessions, ViewRole
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.net.views.views import Views
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
@@ -38,9 +32,7 @@ FOREVER = "private, max-age=31536000, immutable"
 FULL_SIZE = "X-File-Size"
 FULL = "The maximum number of views is connected."
 HELLO_FIRST = "The first message of a view must be a hello."
-ONLY_WATCHES = f"This key is a spectator's: the kind of the view must be {SPECTATOR}."
-LARGEST_BODY = 1024
-SHUTDOWN_S = 1.0
+ONLY_WATCHES = f"This key only watches: the kind of the view must be {' or '.join(ONLY_WATCH)}."
 
 
 class ViewServer:
@@ -61,6 +53,7 @@ class ViewServer:
         robot_meshes: Path | None = None,
         limits: ViewLimits | None = None,
         scenario_picture: Callable[[str], Path | None] = lambda _name: None,
+        config: Path | None = None,
     ) -> None:
         """Make a server, in the event loop's thread; nothing listens yet.
 
@@ -71,6 +64,11 @@ class ViewServer:
             robot_meshes: those that the setups are loaded with.
             limits: what views may cost.
             scenario_picture: returns the picture of a scenario by its name.
+            config: folder of the settings, with the keys of boards and the instructor's PIN; None
+                keeps no boards, and takes no orders from a teacher.
+
+        Raises:
+            InputError: the file with the keys of boards cannot be read.
         """
         self._scenario_picture = scenario_picture
         self._source = source
@@ -83,22 +81,19 @@ class ViewServer:
             {
                 ViewRole.VIEW: self._limits.sessions,
                 ViewRole.SPECTATOR: self._limits.spectator_sessions,
-            }
+                ViewRole.BOARD: self._limits.spectator_sessions,
+            },
+            None if config is None else config / BOARDS_FILE,
         )
+        self._instructor = InstructorOrders(config, presenter, asyncio.get_running_loop().time)
         self.port = 0
         self._scenes = SceneFiles(cache_folder(), robot_meshes)
         self._views = Views(source, presenter, self._scenes, self._limits)
         self._streams: Counter[ViewRole] = Counter()
         self._page = page_folder()
-        self._connections = Connections(self._limits.connections, self._limits.first_message_s)
-        self._runner = web.AppRunner(
-            self._application(),
-            access_log=None,
-            logger=http_log(),
-            keepalive_timeout=KEEP_ALIVE_S,
-            shutdown_timeout=SHUTDOWN_S,
+        self._http = GuardedServer(
+            self.sessions, self.code, self._limits, self._routes(), self._page
         )
-        self._listeners: list[Listener] = []
         self._unsubscribe: Callable[[], None] = lambda: None
 
     async def listen(self, host: str, port: int) -> int:
@@ -107,10 +102,8 @@ class ViewServer:
         Raises:
             InputError: the address cannot be listened on.
         """
-        self.port = await self._open(host, port, None)
+        self.port = await self._http.listen(host, port)
         self.announce(f"http://{host}:{self.port}")
-        await self._runner.setup()
-        self._connections.server = self._runner.server
         feed = StateFeed(self._views.is_due, self._views.tell, asyncio.get_running_loop())
         self._unsubscribe = self._source.subscribe(feed)
         return self.port
@@ -121,7 +114,7 @@ class ViewServer:
         Raises:
             InputError: the port cannot be listened on.
         """
-        return await self._open("0.0.0.0", port, tls)
+        return await self._http.listen("0.0.0.0", port, tls)
 
     def announce(self, *addresses: str) -> None:
         """Send this computer's views where else browsers find the page."""
@@ -131,49 +124,24 @@ class ViewServer:
     async def close(self) -> None:
         """Close the views and stop listening."""
         self._unsubscribe()
-        for listener in self._listeners:
-            listener.close()
+        self._http.stop_listening()
         await self._views.close()
-        await self._runner.cleanup()
+        await self._http.close()
 
     def _renewed(self, code: str) -> None:
         self._on_new_code(code)
         self._views.tell_pairing(code, self.addresses)
 
-    async def _open(self, host: str, port: int, tls: ssl.SSLContext | None) -> int:
-        listener = Listener(
-            self._connections,
-            self._limits.new_connections_per_s,
-            tls,
-            self._limits.first_message_s,
-        )
-        try:
-            found = await listener.listen(host, port)
-        except (OSError, OverflowError) as error:
-            raise InputError(f"Views cannot be served on {host}:{port}: {error}.") from None
-        self._listeners.append(listener)
-        return found
-
-    def _application(self) -> web.Application:
-        rate_limiter = AsyncRateLimiter(self._limits.requests_per_s)
-        connections = self._connections
-        gate = Gate(self.sessions, self.code, connections.note, connections.note_key, rate_limiter)
-        app = web.Application(middlewares=[gate.check], client_max_size=LARGEST_BODY)
-        app.on_response_prepare.append(add_security_headers)
-        app.add_routes(
-            [
-                web.get("/", self._send_page),
-                web.post("/pair", gate.pair),
-                web.get("/scene/{sha256:[0-9a-f]{64}}.glb", self._send_scene),
-                web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_sound),
-                web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_picture),
-                web.get("/role", _send_role),
-                web.get("/stream", self._stream),
-            ]
-        )
-        if self._page is not None:
-            app.add_routes([web.static("/", self._page)])
-        return app
+    def _routes(self) -> list[web.RouteDef]:
+        return [
+            web.get("/", self._send_page),
+            web.get("/scene/{sha256:[0-9a-f]{64}}.glb", self._send_scene),
+            web.get("/sounds/{name:[a-z-]{1,32}}.wav", self._send_sound),
+            web.get("/scenarios/{name:[a-z0-9-]{1,40}}.png", self._send_picture),
+            web.get("/role", _send_role),
+            web.post("/instructor", self._instructor.take),
+            web.get("/stream", self._stream),
+        ]
 
     async def _send_page(self, _request: web.Request) -> web.StreamResponse:
         if self._page is None:
@@ -222,16 +190,15 @@ class ViewServer:
         if stream.can_prepare(request).protocol != SUBPROTOCOL:
             raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
         role = request[ROLE]
-        most = {ViewRole.VIEW: self._limits.views, ViewRole.SPECTATOR: self._limits.spectators}[
-            role
-        ]
-        if self._streams[role] >= most:
+        if self._streams[role] >= (
+            self._limits.spectators if role.only_watches else self._limits.views
+        ):
             raise web.HTTPServiceUnavailable(text=FULL)
         self._streams[role] += 1
         try:
             await stream.prepare(request)
             self._keep_little_waiting(request)
-            await self._serve(stream, role, _is_local(request))
+            await self._serve(stream, role, is_loopback(request.remote or ""))
         finally:
             self._streams[role] -= 1
         return stream
@@ -257,7 +224,7 @@ class ViewServer:
         if received.type != HELLO:
             raise InputError(HELLO_FIRST)
         hello = Hello(*received.values)
-        if role is ViewRole.SPECTATOR and hello.kind != SPECTATOR:
+        if role.only_watches and hello.kind not in ONLY_WATCH:
             raise InputError(ONLY_WATCHES)
         return hello
 
@@ -280,11 +247,3 @@ class ViewServer:
 async def _send_role(request: web.Request) -> web.Response:
     """Tell a browser, which cannot read its cookie, what it was paired for."""
     return web.json_response({"role": request[ROLE].value}, headers={"Cache-Control": "no-store"})
-
-
-def _is_local(request: web.Request) -> bool:
-    """Tell whether a request comes from this computer; a headset on its cable does, too."""
-    try:
-        return ip_address(request.remote or "").is_loopback
-    except ValueError:
-        return False

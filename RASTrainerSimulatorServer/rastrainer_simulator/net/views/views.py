@@ -14,6 +14,7 @@ from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.boards import Boards
 from rastrainer_simulator.net.views.messages import HEADSET
 from rastrainer_simulator.net.views.news import Mirror, TraceNews
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Presenter, ViewUpdate
@@ -44,6 +45,7 @@ class Views:
         self._scenes = scenes
         self._limits = limits
         self._views: dict[int, View] = {}
+        self._boards = Boards()
         self._numbers = itertools.count(1)
         self._pacer = Pacer(limits.state_hz)
         self._setup: SimulationSetup | None = None
@@ -61,7 +63,10 @@ class Views:
         return next(self._numbers)
 
     async def serve(self, view: View) -> None:
-        """Have a view take part, or a spectator watch, until it leaves."""
+        """Have a view take part, or a spectator or a board watch, until it leaves."""
+        if view.is_board:
+            await self._boards.serve(view, self._source.latest, self._presenter.seat())
+            return
         self._views[view.number] = view
         try:
             if not view.is_spectator:
@@ -91,14 +96,19 @@ class Views:
         for task in tasks:
             task.cancel()
         closings = [view.close(ENDING) for view in self._views.values()]
+        closings.append(self._boards.close(ENDING))
         await asyncio.gather(*tasks, *closings, return_exceptions=True)
 
     def is_due(self, _state: SimulationState) -> bool:
         """Return whether the views are due for what moves, by wall-clock time."""
-        return bool(self._views) and self._pacer.is_due(time.monotonic())
+        return bool(self._views or self._boards) and self._pacer.is_due(time.monotonic())
 
     def tell(self, now: SimulationState) -> None:
         """Send what moves, and look whether it needs another scene."""
+        if self._boards.is_due(time.monotonic()):
+            self._boards.tell(now, self._presenter.seat())
+        if not self._views:
+            return
         self._look_for_scene(now)
         text = self._state_text(now)
         for view in self._views.values():

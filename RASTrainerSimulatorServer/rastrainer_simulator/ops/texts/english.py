@@ -155,6 +155,11 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "unseen.left": "Paused: the view that showed the trial was closed or lost.",
         "unseen.unplugged": "Paused: the gamepad was unplugged.",
         "unseen.hidden": "Paused: the trial was out of sight.",
+        "unseen.instructor": "Paused by your instructor.",
+        "instructor.says": "Your instructor: {text}",
+        "instructor.nothing runs": "Nothing is running at this seat that could be paused.",
+        "instructor.no result": "A replay can be shown while the result of a trial is on "
+        "the screen of the seat.",
         "unseen.still": "Paused: the picture stood still for some seconds, because this computer "
         "was too busy to draw it. If that happens again, close other programs.",
         # The simulator's menus.

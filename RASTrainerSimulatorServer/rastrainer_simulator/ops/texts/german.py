@@ -263,6 +263,11 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "unseen.left": "Angehalten: Die Ansicht des Versuchs wurde geschlossen oder ging verloren.",
         "unseen.unplugged": "Pause: Das Gamepad wurde abgesteckt.",
         "unseen.hidden": "Angehalten: Der Versuch war nicht zu sehen.",
+        "unseen.instructor": "Angehalten von der Lehrperson.",
+        "instructor.says": "Deine Lehrperson: {text}",
+        "instructor.nothing runs": "An diesem Platz läuft nichts, das angehalten werden könnte.",
+        "instructor.no result": "Eine Wiederholung kann gezeigt werden, solange am Platz das "
+        "Ergebnis eines Versuchs zu sehen ist.",
         "unseen.still": "Angehalten: Das Bild stand einige Sekunden still, weil dieser Rechner zu "
         "beschäftigt war. Geschieht das wieder, so schließ andere Programme.",
         # The simulator's menus.

@@ -5,14 +5,15 @@ from __future__ import annotations
 import asyncio
 import json
 from contextlib import suppress
+from pathlib import Path
 
 import aiohttp
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.connections import ViewRole
-from rastrainer_simulator.net.views.presenter import Control, TraceGuidance
+from rastrainer_simulator.net.views.presenter import Control, Seat, TraceGuidance
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.viewpoint.orbit import CameraPose
 from rastrainer_simulator.viewpoint.view_control import Pictures
@@ -30,6 +31,8 @@ class RecordingPresenter:
         self.screen = Screen()
         self.control = Control()
         self.guidance = TraceGuidance()
+        self.told_of_seat = Seat()
+        self.problem = ""
         self.calls = []
         self._listeners = []
 
@@ -46,6 +49,14 @@ class RecordingPresenter:
 
     def trace_guidance(self, _now):
         return self.guidance
+
+    def seat(self):
+        return self.told_of_seat
+
+    def instruct(self, order, text):
+        """Note what a teacher wants, and do it unless there is a `problem`."""
+        self.calls.append(("instruct", order.value, text))
+        return self.problem
 
     def tell(self, *news):
         for one in news:
@@ -68,7 +79,14 @@ class ServedViews:
         pictures: files of the scenarios' pictures by the scenarios' names.
     """
 
-    def __init__(self, thread: LoopThread, control_loop: ControlLoop, port: int = 0, **limits):
+    def __init__(
+        self,
+        thread: LoopThread,
+        control_loop: ControlLoop,
+        port: int = 0,
+        config: Path | None = None,
+        **limits,
+    ):
         self.thread = thread
         self.presenter = RecordingPresenter()
         self.new_codes = []
@@ -81,6 +99,7 @@ class ServedViews:
             self.new_codes.append,
             limits=ViewLimits(**limits),
             scenario_picture=self.pictures.get,
+            config=config,
         )
         self.port = thread.run(self.server.listen(HOST, port))
         self.url = f"http://{HOST}:{self.port}"
@@ -195,15 +214,16 @@ async def _session() -> aiohttp.ClientSession:
 
 def request(url: str, path: str, method: str = "GET", **arguments) -> tuple[int, dict, bytes]:
     """Return status, headers and body of one request."""
+    return asyncio.run(answered(url, path, method, **arguments))
 
-    async def ask():
-        async with (
-            aiohttp.ClientSession(cookie_jar=aiohttp.DummyCookieJar()) as session,
-            session.request(method, url + path, **arguments) as response,
-        ):
-            return response.status, response.headers, await response.read()
 
-    return asyncio.run(ask())
+async def answered(url: str, path: str, method: str = "GET", **arguments) -> tuple:
+    """Return status, headers and body of one request, in an event loop that is there."""
+    async with (
+        aiohttp.ClientSession(cookie_jar=aiohttp.DummyCookieJar()) as session,
+        session.request(method, url + path, **arguments) as response,
+    ):
+        return response.status, response.headers, await response.read()
 
 
 def raw_request(port: int, head: str) -> bytes:

@@ -4,8 +4,8 @@ import logging
 import pytest
 
 from rastrainer_simulator.net.views import view_server as view_server_module
-from rastrainer_simulator.net.views.connections import Sessions, ViewRole
 from rastrainer_simulator.net.views.gate import COOKIE, PairingCode
+from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 from Testing.simulator.net.views.served import SUBPROTOCOL, raw_request, request
 
 UPGRADE = {
@@ -227,7 +227,7 @@ def test_no_path_leads_out_of_the_page(served, path):
 
 
 def test_the_oldest_key_is_forgotten_when_there_are_too_many():
-    sessions = Sessions({ViewRole.VIEW: 2, ViewRole.SPECTATOR: 2})
+    sessions = Sessions(dict.fromkeys(ViewRole, 2))
     keys = [sessions.open() for _ in range(3)]
     assert [sessions.role(key) for key in keys] == [None, ViewRole.VIEW, ViewRole.VIEW]
     assert len(set(keys)) == 3
@@ -235,7 +235,7 @@ def test_the_oldest_key_is_forgotten_when_there_are_too_many():
 
 
 def test_spectators_make_no_key_of_a_view_forgotten():
-    sessions = Sessions({ViewRole.VIEW: 1, ViewRole.SPECTATOR: 2})
+    sessions = Sessions({**dict.fromkeys(ViewRole, 2), ViewRole.VIEW: 1})
     key = sessions.open()
     watching = [sessions.open(ViewRole.SPECTATOR) for _ in range(3)]
     assert sessions.role(key) is ViewRole.VIEW

@@ -5,11 +5,11 @@ import json
 import aiohttp
 import pytest
 
-from rastrainer_simulator.net.views.connections import ViewRole
 from rastrainer_simulator.net.views.messages import ALIVE, MEMBERS, Worn
 from rastrainer_simulator.net.views.news import Mirror
 from rastrainer_simulator.net.views.presenter import Control, Feedback
 from rastrainer_simulator.net.views.screen import Screen, ScreenMessage
+from rastrainer_simulator.net.views.sessions import ViewRole
 from Testing.security.stream_attack import MESSAGES
 from Testing.simulator.net.views.served import HELLO
 
@@ -21,10 +21,10 @@ TOLD = {"eyes": EYES, "left": None, "right": HAND}
 NOTHING_ELSE = (1008, "A spectator drives nothing: it may send alive and nothing else.")
 
 
-def watch(served, connect, role=ViewRole.SPECTATOR):
-    """Return a spectator that has joined."""
+def watch(served, connect, role=ViewRole.SPECTATOR, kind="spectator"):
+    """Return a spectator, or a board, that has joined."""
     spectator = connect(served, role)
-    spectator.join(kind="spectator")
+    spectator.join(kind=kind)
     return spectator
 
 
@@ -51,12 +51,15 @@ def test_there_is_an_example_of_every_message_of_the_protocol():
     assert EXAMPLES.keys() == MEMBERS.keys()
 
 
-@pytest.mark.parametrize("role", ViewRole)
+@pytest.mark.parametrize(
+    ("role", "watcher"),
+    [*((role, "spectator") for role in ViewRole), (ViewRole.BOARD, "board")],
+)
 @pytest.mark.parametrize("kind", [kind for kind in MEMBERS if kind != ALIVE])
-def test_a_spectator_that_sends_anything_is_closed_and_nothing_has_happened(
-    served, connect, kind, role
+def test_who_only_watches_and_sends_anything_is_closed_and_nothing_has_happened(
+    served, connect, kind, role, watcher
 ):
-    spectator = watch(served, connect, role)
+    spectator = watch(served, connect, role, watcher)
     spectator.send(EXAMPLES[kind])
     assert spectator.closing() == NOTHING_ELSE
     assert served.presenter.calls == []
@@ -71,11 +74,12 @@ def test_a_spectator_that_is_alive_goes_on_watching(served, connect):
     assert served.presenter.calls == []
 
 
+@pytest.mark.parametrize("role", [ViewRole.SPECTATOR, ViewRole.BOARD])
 @pytest.mark.parametrize("kind", ["desktop", "page", "headset"])
-def test_the_key_of_a_spectator_lets_no_view_join(served, connect, kind):
-    spectator = connect(served, ViewRole.SPECTATOR)
+def test_the_key_of_who_only_watches_lets_no_view_join(served, connect, kind, role):
+    spectator = connect(served, role)
     spectator.send({**HELLO, "kind": kind})
-    reason = "This key is a spectator's: the kind of the view must be spectator."
+    reason = "This key only watches: the kind of the view must be spectator or board."
     assert spectator.closing() == (1008, reason)
     assert served.presenter.calls == []
 

@@ -1,0 +1,1 @@
+"""A teacher's board: live tiles of several simulators."""

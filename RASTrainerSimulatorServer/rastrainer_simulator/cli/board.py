@@ -1,0 +1,74 @@
+"""`rastrainer board`: a teacher's page of live tiles of several simulators."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import DEFAULT_HOST
+
+DEFAULT_BOARD_PORT = 18955
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the subcommand to the parser of `rastrainer`."""
+    parser = subparsers.add_parser(
+        "board",
+        help="watch several simulators in one page of live tiles",
+        description=(
+            "Serves a teacher's board to browsers on this computer until Ctrl-C: who trains where, "
+            "task, point, time, contact and last score of each seat, and each seat's scene. The "
+            "seats' addresses and keys stay on this computer."
+        ),
+    )
+    parser.add_argument(
+        "--port",
+        type=int,
+        default=DEFAULT_BOARD_PORT,
+        help="for browsers on this computer, 0 for any free one (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve the board until it is stopped, and return the exit status.
+
+    Raises:
+        InputError: the list of seats cannot be read, or the port cannot be listened on.
+    """
+    if not 0 <= arguments.port < 65536:
+        raise InputError("--port must be a number from 0 to 65535.")
+    from rastrainer_simulator.ops.folders import config_folder
+
+    asyncio.run(_serve(arguments.config or config_folder(), arguments.port))
+    return 0
+
+
+async def _serve(config: Path, port: int) -> None:
+    from rastrainer_simulator.board.board_server import BoardServer
+    from rastrainer_simulator.board.seat_client import SeatClient
+    from rastrainer_simulator.server.server import stop_on_signals
+
+    stop = asyncio.Event()
+    async with SeatClient() as client:
+        board = BoardServer(
+            config, client, lambda code: _tell(f"has a new pairing code for browsers: {code}")
+        )
+        try:
+            with stop_on_signals(asyncio.get_running_loop(), stop):
+                found = await board.listen(DEFAULT_HOST, port)
+                address = f"http://{DEFAULT_HOST}:{found}"
+                code = board.code.code
+                _tell(f"is on {address}, pairing code {code}; open {address}/#code={code}")
+                await stop.wait()
+        finally:
+            await board.close()
+
+
+def _tell(what: str) -> None:
+    print(f"RASTrainer board {what}", flush=True)

@@ -1,0 +1,57 @@
+"""The seat as a teacher's board sees it, and what a teacher can have done there."""
+
+from __future__ import annotations
+
+from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, Phase
+from rastrainer_simulator.flow.flow import Flow
+from rastrainer_simulator.flow.pages.replay import ReplayPage
+from rastrainer_simulator.flow.pages.result import ResultPage
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.net.views.presenter import InstructorOrder, Seat
+from rastrainer_simulator.net.views.screen import Screen, Tone
+
+_WRONG = (Tone.WARNING, Tone.ERROR)
+SENTENCE_S = 20.0
+"""How long the trainee sees a teacher's sentence: longer than a notice, since nobody expects it."""
+
+
+def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -> Seat:
+    """Return what a board shows of a seat; `count` is how many points its trial has."""
+    training = session.training
+    is_open = training.phase in OPEN_PHASES
+    trainee = training.trainee if is_open else session.trainee.strip()
+    scores = [trial.score for trial in session.history.of(trainee) if not trial.is_aborted]
+    return Seat(
+        trainee=trainee,
+        task=session.task_title(training.task) if is_open else "",
+        count=count if is_open else 0,
+        screen="" if screen.menu is None else screen.menu.title,
+        instruction=screen.instruction.text,
+        warnings=tuple(each.text for each in screen.warnings if each.tone in _WRONG),
+        score=scores[-1] if scores else None,
+        holder=holder,
+        slicer=session.is_slicer_connected(),
+        language=screen.language,
+    )
+
+
+def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text: str) -> str:
+    """Do what a teacher wants; return why it cannot be done, "" if it is."""
+    if order is InstructorOrder.SAY:
+        said = session.texts.say("instructor.says", text=text)
+        session.notice(said, seconds=SENTENCE_S)
+        return ""
+    if order is InstructorOrder.PAUSE:
+        is_shown = flow.playback is not None
+        is_running = session.training.phase in (Phase.RUNNING, *PROCEDURE_PHASES)
+        if not is_shown and not (is_running or session.tutorial is not None):
+            return session.texts.say("instructor.nothing runs")
+        flow.pause("unseen.instructor")
+        return ""
+    page = session.pages.top
+    if isinstance(page, ReplayPage):
+        return ""
+    if not isinstance(page, ResultPage):
+        return session.texts.say("instructor.no result")
+    page.accept("replay")
+    return ""

@@ -1,0 +1,110 @@
+"""The instructor's PIN: kept as a slow hash, and asked for a few times only."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import hmac
+import re
+import secrets
+from collections.abc import Callable
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import read_json
+from rastrainer.files.writing import keep_others_out, make_private_folder, write_json
+
+PIN_FILE = "instructor.json"
+PIN_WORDS = "6 to 12 digits"
+WRONG_GUESSES = 5
+FIRST_PAUSE_S = 1.0
+LONGEST_PAUSE_S = 300.0
+_PIN = re.compile(r"[0-9]{6,12}")
+_MAX_BYTES = 1000
+_SALT_BYTES = 16
+# 16 MB and about 50 ms for each guess (RFC 7914).
+_COST = {"n": 2**14, "r": 8, "p": 1}
+
+
+class GuessLimit:
+    """Lets a secret be guessed five times, and then only after a pause, which doubles each time.
+
+    At five guesses in five minutes, one of a million codes is found in two years.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        """Begin without a pause; `clock` returns s."""
+        self._clock = clock
+        self._wrong = 0
+        self._pause = FIRST_PAUSE_S
+        self._open_from = -float("inf")
+
+    def seconds_to_wait(self) -> float:
+        """Return how long no guess is looked at; 0 where one may be made."""
+        return max(0.0, self._open_from - self._clock())
+
+    def guessed(self, is_right: bool) -> bool:
+        """Take note of a guess; return whether it was one too many, so that a pause begins."""
+        if is_right:
+            self._wrong, self._pause = 0, FIRST_PAUSE_S
+            return False
+        self._wrong += 1
+        if self._wrong < WRONG_GUESSES:
+            return False
+        self._open_from = self._clock() + self._pause
+        self._wrong, self._pause = 0, min(2.0 * self._pause, LONGEST_PAUSE_S)
+        return True
+
+
+class InstructorPin:
+    """The PIN of one seat, in a file of its settings folder."""
+
+    def __init__(self, config: Path) -> None:
+        """Use the file in a folder; it need not exist."""
+        self._path = config / PIN_FILE
+
+    @property
+    def is_set(self) -> bool:
+        """Whether there is a PIN."""
+        return self._path.exists()
+
+    def accepts(self, pin: str) -> bool:
+        """Return whether a PIN is the right one; takes about 50 ms.
+
+        Raises:
+            InputError: the file cannot be read or is no PIN's.
+        """
+        values = read_json(self._path, _MAX_BYTES)
+        try:
+            salt, known = (base64.b64decode(values[name]) for name in ("salt", "hash"))
+        except (TypeError, KeyError, ValueError):
+            raise InputError(
+                f"{self._path} does not hold an instructor's PIN; set a new one with "
+                "rastrainer instructor-pin."
+            ) from None
+        return hmac.compare_digest(_hash(pin, salt), known)
+
+    def set(self, pin: str) -> None:
+        """Set a new PIN, or none with "".
+
+        Raises:
+            InputError: it is no PIN, or the file cannot be written.
+        """
+        if not pin:
+            self._path.unlink(missing_ok=True)
+            return
+        if _PIN.fullmatch(pin) is None:
+            raise InputError(f"A PIN has {PIN_WORDS}.")
+        salt = secrets.token_bytes(_SALT_BYTES)
+        hashed = _hash(pin, salt)
+        try:
+            make_private_folder(self._path.parent)
+        except OSError as error:
+            raise InputError(f"The folder of settings cannot be made: {error.strerror}.") from None
+        encoded = {"salt": salt, "hash": hashed}
+        write_json(self._path, {k: base64.b64encode(v).decode() for k, v in encoded.items()})
+        keep_others_out(self._path)
+
+
+def _hash(pin: str, salt: bytes) -> bytes:
+    return hashlib.scrypt(pin.encode(errors="replace"), salt=salt, **_COST)

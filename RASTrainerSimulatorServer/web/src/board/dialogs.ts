@@ -1,0 +1,90 @@
+/** The board's forms: a new seat, a PIN, a sentence, and whether to remove a seat. */
+
+import { byId, element } from "../elements";
+import { say, type BoardText } from "./texts";
+
+export interface Field {
+  name: string;
+  label: BoardText;
+  help?: BoardText;
+  type?: "text" | "password";
+  value?: string;
+  maxLength: number;
+}
+
+export interface Form {
+  title: string;
+  fields?: readonly Field[];
+  /** Running text, and one that is to be compared. */
+  text?: string;
+  fingerprint?: string;
+  accept: BoardText;
+}
+
+/**
+ * Ask in a dialog; return what was entered, null for Cancel. `submit` may return what is wrong with it, which is
+ * shown while the dialog stays; "" closes it.
+ */
+export async function ask(
+  form: Form,
+  submit: (values: Record<string, string>) => Promise<string> = async () => "",
+): Promise<Record<string, string> | null> {
+  const dialog = byId("dialog") as HTMLDialogElement;
+  const shown = dialog.querySelector("form")!;
+  const complaint = document.createElement("output");
+  const title = element("h2", form.title);
+  title.id = "dialog-title";
+  const accept = element("button", say(form.accept));
+  const cancel = element("button", say("cancel"));
+  accept.type = "submit";
+  cancel.type = "button";
+  cancel.className = "second";
+  const doings = document.createElement("div");
+  doings.className = "doings";
+  doings.append(cancel, accept);
+  const parts = (form.fields ?? []).flatMap(rows);
+  const fingerprint = element("output", form.fingerprint ?? "");
+  fingerprint.className = "fingerprint";
+  shown.replaceChildren(title, element("p", form.text ?? ""), ...(form.fingerprint ? [fingerprint] : []), ...parts, complaint, doings);
+  dialog.showModal();
+  shown.querySelector("input")?.focus();
+  const entered = await new Promise<Record<string, string> | null>((done) => {
+    cancel.onclick = () => dialog.close();
+    dialog.onclose = () => done(null);
+    shown.onsubmit = async (event) => {
+      event.preventDefault();
+      const values = Object.fromEntries([...new FormData(shown)].map(([name, value]) => [name, String(value).trim()]));
+      accept.disabled = true;
+      complaint.value = await submit(values);
+      accept.disabled = false;
+      if (complaint.value === "") done(values);
+      else shown.querySelector("input")?.select();
+    };
+  });
+  // The event comes later: the next form must not take it for its own.
+  const closed = new Promise<void>((done) => {
+    if (dialog.open) dialog.onclose = () => done();
+    else done();
+  });
+  dialog.close();
+  await closed;
+  return entered;
+}
+
+function rows({ name, label, help, type, value, maxLength }: Field): HTMLElement[] {
+  const input = document.createElement("input");
+  input.id = `field-${name}`;
+  input.name = name;
+  input.type = type ?? "text";
+  input.value = value ?? "";
+  input.maxLength = maxLength;
+  input.autocomplete = "off";
+  input.required = true;
+  const shown = element("label", say(label));
+  shown.htmlFor = input.id;
+  if (help === undefined) return [shown, input];
+  const words = element("p", say(help));
+  words.id = `${input.id}-help`;
+  input.setAttribute("aria-describedby", words.id);
+  return [shown, input, words];
+}

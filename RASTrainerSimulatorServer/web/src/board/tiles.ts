@@ -1,0 +1,164 @@
+/** One tile a seat: who, task, point, clock, contact, last score, and what the teacher can do. */
+
+import { element } from "../elements";
+import { isTouchError, type TouchStage } from "../messages";
+import { figure, say, type BoardText } from "./texts";
+
+export type Order = "pause" | "say" | "replay";
+export type Phase =
+  | "idle"
+  | "running"
+  | "paused"
+  | "complete"
+  | "verifying"
+  | "aligning"
+  | "drilling"
+  | "inserting"
+  | "registered"
+  | "scored";
+export type Link = "connecting" | "watching" | "away" | "unpaired" | "other certificate";
+
+export interface SeatNews {
+  trainee: string;
+  task: string;
+  count: number;
+  screen: string;
+  instruction: string;
+  warnings: readonly string[];
+  score: number | null;
+  holder: string;
+  slicer: boolean;
+  phase: Phase;
+  touched: number;
+  rejected: number;
+  /** Of the trial, s. */
+  elapsed: number;
+  touch: TouchStage;
+}
+
+export interface TileNews {
+  id: string;
+  name: string;
+  address: string;
+  link: Link;
+  /** Null while the simulator is not watched. */
+  seat: SeatNews | null;
+}
+
+export interface TileActions {
+  order(tile: TileNews, order: Order): void;
+  remove(tile: TileNews): void;
+  repair(tile: TileNews): void;
+}
+
+const WORKING: readonly Phase[] = ["running", "verifying", "aligning", "drilling", "inserting"];
+
+export function isTraining({ seat }: TileNews): boolean {
+  return seat !== null && WORKING.includes(seat.phase);
+}
+
+/** A tile that is changed in place, so that the focus stays on its buttons. */
+export class Tile {
+  readonly element = document.createElement("li");
+  private readonly name = element("b", "");
+  private readonly clock = element("span", "");
+  private readonly who = paragraph("who");
+  private readonly state = paragraph("state");
+  private readonly says = paragraph("says");
+  private readonly progress = document.createElement("progress");
+  private readonly facts = document.createElement("dl");
+  private readonly watch = element("a", say("watch"));
+  private readonly buttons: Record<Order | "repair", HTMLButtonElement>;
+  private news: TileNews;
+
+  constructor(news: TileNews, actions: TileActions) {
+    this.news = news;
+    const head = document.createElement("h2");
+    head.append(this.name, this.clock);
+    this.watch.className = "second";
+    this.watch.target = "_blank";
+    this.progress.setAttribute("aria-label", say("points"));
+    const order = (name: Order) => button(name, () => actions.order(this.news, name));
+    this.buttons = {
+      pause: order("pause"),
+      say: order("say"),
+      replay: order("replay"),
+      repair: button("repair", () => actions.repair(this.news)),
+    };
+    const doings = document.createElement("div");
+    doings.className = "doings";
+    doings.append(this.watch, ...Object.values(this.buttons), button("remove", () => actions.remove(this.news)));
+    this.element.append(head, this.who, this.state, this.progress, this.says, this.facts, doings);
+    this.show(news);
+  }
+
+  show(news: TileNews): void {
+    this.news = news;
+    const { seat } = news;
+    this.name.textContent = news.name;
+    this.watch.href = `seat/${news.id}/`;
+    this.element.dataset.tone = toneOf(news);
+    this.element.dataset.link = news.link;
+    const isOpen = seat !== null && seat.task !== "";
+    this.clock.textContent = isOpen ? clock(seat.elapsed) : "";
+    this.who.textContent = seat === null ? news.address : seat.trainee || say("nobody");
+    this.state.textContent = stateOf(news);
+    this.progress.hidden = !isOpen;
+    this.progress.max = seat?.count || 1;
+    this.progress.value = seat?.touched ?? 0;
+    this.says.textContent = seat === null ? "" : [...seat.warnings, seat.screen || seat.instruction].filter((text) => text !== "").join(" · ");
+    this.facts.replaceChildren(...(seat === null ? [] : factsOf(seat).flatMap(([label, value]) => [element("dt", label), element("dd", value)])));
+    const isThere = seat !== null;
+    this.watch.hidden = !isThere;
+    for (const name of ["pause", "say", "replay"] as const) this.buttons[name].hidden = !isThere;
+    this.buttons.pause.hidden = !isTraining(news);
+    this.buttons.replay.hidden = seat?.phase !== "scored";
+    this.buttons.repair.hidden = news.link !== "unpaired" && news.link !== "other certificate";
+  }
+}
+
+function stateOf({ link, seat }: TileNews): string {
+  if (seat === null) return say(link === "watching" ? "link.connecting" : `link.${link}`);
+  const phase = say(`phase.${seat.phase}`);
+  const doing = seat.task === "" ? phase : `${seat.task}: ${phase}`;
+  return WORKING.includes(seat.phase) ? `${doing}, ${say(`touch.${seat.touch}`)}` : doing;
+}
+
+function toneOf(news: TileNews): string {
+  const { link, seat } = news;
+  if (seat === null) return link === "connecting" ? "" : "error";
+  if (isTraining(news) && isTouchError(seat.touch)) return "error";
+  if (seat.warnings.length > 0 || seat.phase === "paused") return "warning";
+  return isTraining(news) ? "good" : "";
+}
+
+function factsOf(seat: SeatNews): [string, string][] {
+  const facts: [string, string][] = [];
+  if (seat.task !== "") {
+    facts.push([say("points"), `${seat.touched} / ${seat.count}`], [say("refused"), String(seat.rejected)]);
+  }
+  facts.push(
+    [say("score"), seat.score === null ? say("none") : `${figure(seat.score, 1)} / 100`],
+    [say("driven"), seat.holder || say("none")],
+    [say("slicer"), say(seat.slicer ? "connected" : "missing")],
+  );
+  return facts;
+}
+
+function clock(seconds: number): string {
+  return `${String(Math.floor(seconds / 60)).padStart(2, "0")}:${String(seconds % 60).padStart(2, "0")}`;
+}
+
+function paragraph(className: string): HTMLParagraphElement {
+  const made = element("p", "");
+  made.className = className;
+  return made;
+}
+
+function button(name: BoardText, press: () => void): HTMLButtonElement {
+  const made = element("button", say(name));
+  made.type = "button";
+  made.className = "second";
+  made.onclick = press;
+  return made;
+}

@@ -1,0 +1,101 @@
+"""Simulators that only repeat what a real one has told a board, each in a time of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import Sequence
+from multiprocessing.connection import Connection
+
+import aiohttp
+from aiohttp import web
+
+from rastrainer_simulator.net.views.messages import SUBPROTOCOL
+from Testing.end_to_end.simulator_process import ViewedSimulator
+from Testing.simulator.net.views.served import HELLO
+
+HOST = "127.0.0.1"
+WELCOME = json.dumps({"type": "welcome", "protocol": 1, "view": 1, "bodies": []})
+KEY = "k" * 43
+
+Recording = Sequence[tuple[float, str]]
+"""Time since the first, s, and the message."""
+
+
+async def recorded(simulator: ViewedSimulator, seconds: float) -> Recording:
+    """Return what a real simulator tells a board within so many seconds."""
+    async with aiohttp.ClientSession() as session:
+        body = {"code": simulator.code, "role": "board"}
+        answer = await session.post(f"{simulator.url}/pair", json=body)
+        key = (await answer.json())["key"]
+        headers = {"Authorization": f"Bearer {key}"}
+        stream = await session.ws_connect(
+            f"{simulator.url}/stream", protocols=[SUBPROTOCOL], headers=headers
+        )
+        await stream.send_str(json.dumps({**HELLO, "kind": "board"}))
+        found: list[tuple[float, str]] = []
+        begin = time.monotonic()
+        while (now := time.monotonic() - begin) < seconds:
+            try:
+                message = await asyncio.wait_for(stream.receive(), seconds - now)
+            except asyncio.TimeoutError:
+                break
+            if '"type":"seat"' in message.data:
+                found.append((time.monotonic() - begin, message.data))
+        await stream.close()
+    return found
+
+
+def repeat(count: int, recording: Recording, pipe: Connection) -> None:
+    """Serve so many seats; tell the ports, and at the end when each message was sent.
+
+    Each message has its number as `rejected`; times are `time.time`, s, by seat and number.
+    """
+    asyncio.run(_repeat(count, recording, pipe))
+
+
+async def _repeat(count: int, recording: Recording, pipe: Connection) -> None:
+    sent: dict[tuple[int, int], float] = {}
+    ports = []
+    runners = []
+    for seat in range(count):
+        app = web.Application()
+        app.add_routes(
+            [web.post("/pair", _pair), web.get("/stream", _streamer(seat, count, recording, sent))]
+        )
+        runner = web.AppRunner(app, access_log=None)
+        await runner.setup()
+        site = web.TCPSite(runner, HOST, 0)
+        await site.start()
+        ports.append(site._server.sockets[0].getsockname()[1])
+        runners.append(runner)
+    pipe.send(ports)
+    while not pipe.poll():
+        await asyncio.sleep(0.1)
+    pipe.send(sent)
+
+
+async def _pair(_request: web.Request) -> web.Response:
+    return web.json_response({"key": KEY})
+
+
+def _streamer(seat: int, count: int, recording: Recording, sent: dict):
+    async def stream(request: web.Request) -> web.WebSocketResponse:
+        socket = web.WebSocketResponse(protocols=(SUBPROTOCOL,))
+        await socket.prepare(request)
+        await socket.receive()
+        await socket.send_str(WELCOME)
+        # Classes do not begin at the same time.
+        await asyncio.sleep(seat / count)
+        number = 0
+        while not socket.closed:
+            begin = time.monotonic()
+            for due, text in recording:
+                await asyncio.sleep(max(0.0, begin + due - time.monotonic()))
+                number += 1
+                sent[seat, number] = time.time()
+                await socket.send_str(json.dumps({**json.loads(text), "rejected": number}))
+        return socket
+
+    return stream

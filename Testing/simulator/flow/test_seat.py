@@ -1,0 +1,64 @@
+"""What a teacher's board reads of a seat, and what a teacher can have done there."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.flow.seat import SENTENCE_S
+from rastrainer_simulator.net.views.presenter import InstructorOrder
+from rastrainer_simulator.net.views.screen import Tone
+from Testing.simulator.flow.trainee import STEP_S
+
+
+def said(trainee) -> list[str]:
+    return [warning.text for warning in trainee.presenter.screen.warnings]
+
+
+def test_a_board_reads_who_trains_what_and_where_the_trial_stands(trainee, presenter, outside):
+    before = presenter.seat()
+    assert (before.trainee, before.task, before.count, before.score) == ("", "", 0, None)
+    assert before.screen == presenter.screen.menu.title
+    outside.has_slicer = True
+    trainee.start("task-2", trainee="P11")
+    trainee.step(20)
+    seat = presenter.seat()
+    assert (seat.trainee, seat.task, seat.count) == ("P11", "Task 2", 15)
+    assert (seat.screen, seat.slicer) == ("", True)
+    assert seat.instruction == presenter.screen.instruction.text
+    # A notice is none of the warnings.
+    assert presenter.instruct(InstructorOrder.SAY, "Well done.") == ""
+    trainee.until(lambda: said(trainee), "the sentence")
+    assert presenter.seat().warnings == ()
+    outside.has_slicer = False
+    trainee.until(lambda: presenter.seat().warnings, "the warning of the lost Slicer")
+
+
+def test_a_teacher_s_sentence_is_read_and_goes_after_its_time(trainee, presenter):
+    assert presenter.instruct(InstructorOrder.SAY, "Look from the side <b>.") == ""
+    trainee.until(lambda: said(trainee), "the sentence")
+    (warning,) = presenter.screen.warnings
+    assert warning.text == "Your instructor: Look from the side <b>."
+    assert warning.tone is Tone.PLAIN
+    trainee.step(round((SENTENCE_S + 0.5) / STEP_S))
+    assert said(trainee) == []
+
+
+def test_a_teacher_pauses_a_trial_and_the_trainee_reads_who_did(trainee, presenter):
+    nothing = "Nothing is running at this seat that could be paused."
+    assert presenter.instruct(InstructorOrder.PAUSE, "") == nothing
+    trainee.start("task-1")
+    assert presenter.instruct(InstructorOrder.PAUSE, "") == ""
+    trainee.until_menu("trial")
+    assert "Paused by your instructor." in said(trainee)
+    assert presenter.instruct(InstructorOrder.PAUSE, "") == nothing
+    trainee.choose("resume")
+    trainee.until_menu(None)
+    assert "Paused by your instructor." not in said(trainee)
+
+
+@pytest.mark.parametrize("is_running", [False, True])
+def test_a_replay_needs_a_result_on_the_screen(trainee, presenter, is_running):
+    if is_running:
+        trainee.start("task-1")
+    sentence = presenter.instruct(InstructorOrder.REPLAY, "")
+    assert sentence.startswith("A replay can be shown while the result of a trial is on the screen")

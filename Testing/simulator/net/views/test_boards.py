@@ -1,0 +1,173 @@
+"""A simulator tells boards of its seat, remembers their keys, and takes orders with its PIN."""
+
+from __future__ import annotations
+
+import json
+import stat
+
+import pytest
+
+from rastrainer_simulator.net.views.presenter import Seat
+from rastrainer_simulator.net.views.sessions import BOARDS_FILE, Sessions, ViewRole
+from rastrainer_simulator.ops.instructor_pin import PIN_FILE, GuessLimit, InstructorPin
+from Testing.simulator.net.views.served import request
+
+PIN = "271828"
+
+
+def order(served, key, **values):
+    """Return status, headers and sentence of an order."""
+    status, headers, body = request(
+        served.url,
+        "/instructor",
+        "POST",
+        headers={"Authorization": f"Bearer {key}"},
+        data=json.dumps({"pin": PIN, "order": "pause", "text": "", **values}),
+    )
+    return status, headers, body.decode()
+
+
+@pytest.fixture
+def guarded(serve, tmp_path):
+    InstructorPin(tmp_path).set(PIN)
+    return serve(config=tmp_path)
+
+
+def test_a_board_is_told_of_the_seat_only_and_only_when_it_has_changed(served, connect):
+    served.presenter.told_of_seat = Seat("P07", "Task 1", 15, score=80.0)
+    board = connect(served, ViewRole.BOARD)
+    board.join(kind="board")
+    first = board.next()
+    shown = (first["type"], first["trainee"], first["task"], first["score"], first["phase"])
+    assert shown == ("seat", "P07", "Task 1", 80.0, "idle")
+    served.presenter.told_of_seat = Seat("P08")
+    # Between the two there is no state, no screen and no other seat.
+    second = board.next()
+    assert (second["type"], second["trainee"], second["score"]) == ("seat", "P08", None)
+    assert served.presenter.calls == []
+
+
+def test_a_board_s_key_outlives_the_simulator_and_others_do_not(tmp_path):
+    path = tmp_path / BOARDS_FILE
+    first = Sessions(dict.fromkeys(ViewRole, 2), path)
+    keys = {role: first.open(role) for role in ViewRole}
+    again = Sessions(dict.fromkeys(ViewRole, 2), path)
+    assert {role: again.role(key) for role, key in keys.items()} == {
+        ViewRole.VIEW: None,
+        ViewRole.SPECTATOR: None,
+        ViewRole.BOARD: ViewRole.BOARD,
+    }
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert keys[ViewRole.BOARD] not in path.read_text(encoding="utf-8")
+
+
+def test_the_oldest_board_is_forgotten_when_there_are_too_many(tmp_path):
+    sessions = Sessions(dict.fromkeys(ViewRole, 2), tmp_path / BOARDS_FILE)
+    keys = [sessions.open(ViewRole.BOARD) for _ in range(3)]
+    again = Sessions(dict.fromkeys(ViewRole, 2), tmp_path / BOARDS_FILE)
+    assert [again.role(key) for key in keys] == [None, ViewRole.BOARD, ViewRole.BOARD]
+
+
+@pytest.mark.parametrize("content", ["{}7", "[1]", '["ab"]', f'["{"x" * 64}"]', "7"])
+def test_a_damaged_file_of_boards_is_named(tmp_path, content):
+    path = tmp_path / BOARDS_FILE
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(ValueError, match=BOARDS_FILE):
+        Sessions(dict.fromkeys(ViewRole, 2), path)
+
+
+@pytest.mark.parametrize("role", [ViewRole.VIEW, ViewRole.SPECTATOR])
+def test_only_a_board_gives_orders(guarded, role):
+    status, _headers, sentence = order(guarded, guarded.new_key(role))
+    assert (status, sentence) == (403, "Only a teacher's board may instruct: pair as one.")
+    assert guarded.presenter.calls == []
+
+
+def test_without_a_pin_nobody_gives_orders(serve, tmp_path):
+    for served in (serve(config=tmp_path), serve()):
+        status, _headers, sentence = order(served, served.new_key(ViewRole.BOARD))
+        assert (status, "set a PIN there" in sentence) == (409, True)
+        assert served.presenter.calls == []
+
+
+def test_five_wrong_pins_make_a_pause_in_which_the_right_one_is_refused_too(guarded):
+    key = guarded.new_key(ViewRole.BOARD)
+    statuses = [order(guarded, key, pin=f"{n:06}")[0] for n in range(5)]
+    assert statuses == [403] * 4 + [429]
+    status, headers, sentence = order(guarded, key)
+    assert (status, sentence) == (429, "There were too many wrong PINs: wait.")
+    assert headers["Retry-After"] == "1"
+    assert guarded.presenter.calls == []
+
+
+def test_an_order_with_the_pin_is_carried_out_or_says_why_not(guarded):
+    key = guarded.new_key(ViewRole.BOARD)
+    assert order(guarded, key, order="say", text=" Slowly. ")[0] == 200
+    guarded.presenter.problem = "Nothing is running."
+    assert order(guarded, key, order="replay")[::2] == (409, "Nothing is running.")
+    assert guarded.presenter.calls == [("instruct", "say", "Slowly."), ("instruct", "replay", "")]
+
+
+NO_SENTENCE = "text must be printable text of 1 to 200 characters."
+
+
+@pytest.mark.parametrize(
+    ("values", "sentence"),
+    [
+        ({"order": "drive"}, "order must be one of pause, say, replay."),
+        ({"order": None}, "order must be one of pause, say, replay."),
+        ({"pin": 271828}, "pin must be printable text of 1 to 12 characters."),
+        ({"pin": "2" * 13}, "pin must be printable text of 1 to 12 characters."),
+        (
+            {"order": "say", "text": "x" * 201},
+            "text must be printable text of 1 to 200 characters.",
+        ),
+        ({"order": "say", "text": "  "}, "text must say something."),
+        ({"order": "say", "text": "a\x1b"}, NO_SENTENCE),
+    ],
+)
+def test_an_order_that_is_none_says_what_would_be_right(guarded, values, sentence):
+    key = guarded.new_key(ViewRole.BOARD)
+    assert order(guarded, key, **values)[::2] == (400, sentence)
+    assert guarded.presenter.calls == []
+
+
+def test_a_pin_is_kept_as_a_slow_hash_that_only_its_owner_reads(tmp_path):
+    pin = InstructorPin(tmp_path / "config")
+    assert not pin.is_set
+    pin.set(PIN)
+    path = tmp_path / "config" / PIN_FILE
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert PIN not in path.read_text(encoding="utf-8")
+    assert [pin.accepts(guess) for guess in (PIN, "271829", "")] == [True, False, False]
+    pin.set("")
+    assert not pin.is_set
+
+
+@pytest.mark.parametrize("wrong", ["12345", "1234567890123", "12345a", "١٢٣٤٥٦"])
+def test_what_is_no_pin_is_refused(tmp_path, wrong):
+    with pytest.raises(ValueError, match="A PIN has 6 to 12 digits"):
+        InstructorPin(tmp_path).set(wrong)
+    assert not InstructorPin(tmp_path).is_set
+
+
+@pytest.mark.parametrize("content", ["{}", "[]", '{"salt": "!", "hash": 7}', "7"])
+def test_a_damaged_pin_file_lets_nobody_in(serve, tmp_path, content):
+    (tmp_path / PIN_FILE).write_text(content, encoding="utf-8")
+    served = serve(config=tmp_path)
+    status, _headers, sentence = order(served, served.new_key(ViewRole.BOARD))
+    assert status in (403, 409)
+    assert "instructor-pin" in sentence
+    assert served.presenter.calls == []
+
+
+def test_guesses_are_allowed_again_after_the_pause_and_a_right_one_forgets_the_wrong_ones():
+    now = [0.0]
+    limit = GuessLimit(lambda: now[0])
+    assert [limit.guessed(False) for _ in range(5)] == [False] * 4 + [True]
+    assert limit.seconds_to_wait() == 1.0
+    now[0] = 1.0
+    assert limit.seconds_to_wait() == 0.0
+    assert not limit.guessed(True)
+    assert [limit.guessed(False) for _ in range(5)][-1]
+    assert limit.seconds_to_wait() == 1.0

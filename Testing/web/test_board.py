@@ -1,0 +1,160 @@
+"""A teacher's board in a browser: a seat is added, watched, given orders, and removed."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.net.views.presenter import Seat
+from rastrainer_simulator.net.views.screen import Screen, ScreenMessage
+from rastrainer_simulator.ops.instructor_pin import InstructorPin
+from Testing.simulator.board.conftest import PIN, BoardClient, WatchedSimulator
+from Testing.simulator.net.views.served import ServedViews
+from Testing.web.chromium import PATIENCE_MS, accessibility_checker, draw_nothing, wait_for
+from Testing.web.test_page_access import SIZES, VIOLATIONS
+
+AT_WORK = Seat("P07", "Task 2", 15, instruction="Touch 3", score=71.5, holder="gamepad")
+LONG = Seat(
+    "A-trainee-whose-pseudonym-is-as-long-as-one-may-be-0123456789012345",
+    "Zielpunkte am Hinterkopf und an der Schläfe",
+    15,
+    warnings=("Die Verbindung zu 3D Slicer ist unterbrochen; alles wird nachgeliefert.",),
+    score=100.0,
+    holder="headset's controllers",
+    slicer=True,
+)
+CUT_OFF = """() => [...document.querySelectorAll("body *")]
+  .filter((part) => part.checkVisibility() && part.clientWidth > 0)
+  .filter((part) => part.matches(":not(input)") && getComputedStyle(part).display !== "inline")
+  .filter((part) => part.scrollWidth > part.clientWidth + 1
+    || part.getBoundingClientRect().right > innerWidth + 1)
+  .map((part) => `${part.tagName} ${part.textContent} is cut off`)"""
+
+
+@pytest.fixture
+def simulator(loop, loop_thread, tmp_path):
+    config = tmp_path / "seat"
+    config.mkdir()
+    InstructorPin(config).set(PIN)
+    served = ServedViews(loop_thread, loop, config=config)
+    yield WatchedSimulator(served, config, tmp_path / "certificates")
+    served.close()
+
+
+@pytest.fixture
+def board(loop_thread, tmp_path):
+    board = BoardClient(loop_thread, tmp_path / "teacher")
+    yield board
+    board.close()
+
+
+def open_board(browser, board, locale: str = "en-US"):
+    """Return the board's page, paired by the code in its address."""
+    context = browser.new_context(viewport={"width": 1280, "height": 720}, locale=locale)
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    page.problems = []
+    page.on("pageerror", lambda error: page.problems.append(str(error)))
+    page.goto(f"{board.url}/#code={board.server.code.code}")
+    page.wait_for_selector("#add:not([hidden])")
+    return page
+
+
+def press(page, name: str) -> None:
+    page.get_by_role("button", name=name, exact=True).click()
+
+
+def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_removes_it(
+    browser, board, simulator
+):
+    presenter = simulator.served.presenter
+    presenter.told_of_seat = AT_WORK
+    page = open_board(browser, board)
+    assert page.locator("#empty").is_visible()
+    page.focus("#add")
+    page.keyboard.press("Enter")
+    page.keyboard.type("Window 3")
+    page.keyboard.press("Tab")
+    page.keyboard.type(simulator.address)
+    page.keyboard.press("Tab")
+    page.keyboard.type(simulator.served.code)
+    page.keyboard.press("Enter")
+    page.wait_for_selector("dialog output.fingerprint")
+    assert page.inner_text("dialog output.fingerprint") == simulator.fingerprint
+    press(page, "They are the same")
+    tile = page.locator("#seats > li")
+    page.wait_for_selector("#seats > li[data-link=watching] .who:has-text('P07')")
+    assert "71.5 / 100" in tile.inner_text()
+    assert page.inner_text("#count") == "1 of 1 seats connected, 0 training"
+    presenter.told_of_seat = Seat("<img src=x onerror=alert(1)>")
+    page.wait_for_selector("#seats .who:has-text('<img src=x')")
+
+    press(page, "Send a sentence")
+    page.fill("[name=text]", "Look from the side.")
+    press(page, "Send")
+    page.fill("[name=pin]", "000000")
+    press(page, "Send")
+    page.wait_for_selector("dialog output:has-text('This is not the PIN of this seat.')")
+    page.fill("[name=pin]", PIN)
+    press(page, "Send")
+    page.wait_for_selector("#notice[data-tone=good]:has-text('Window 3: done.')")
+    assert presenter.calls == [("instruct", "say", "Look from the side.")]
+
+    press(page, "Remove")
+    page.locator("dialog").get_by_role("button", name="Cancel").click()
+    assert tile.count() == 1
+    press(page, "Remove")
+    page.locator("dialog").get_by_role("button", name="Remove").click()
+    page.wait_for_selector("#empty:not([hidden])")
+    assert page.problems == []
+    page.context.close()
+
+
+def test_a_seat_is_watched_live_from_the_board(browser, board, simulator):
+    board.add(simulator)
+    page = open_board(browser, board)
+    with page.context.expect_page() as opened:
+        page.get_by_role("link", name="Watch").click()
+    live = opened.value
+    draw_nothing(live)
+    live.reload()
+    live.wait_for_selector("body[data-watching][data-scene]")
+    simulator.served.tell(Screen(instruction=ScreenMessage("Touch 3")))
+    live.wait_for_selector("#instruction:has-text('Touch 3')")
+    wait_for(live, "page.state !== null")
+    assert live.locator("#take-part").is_hidden()
+    live.keyboard.press("Space")
+    live.evaluate("page.connection.send('press', { control: 'touch' })")
+    assert live.evaluate("page.connection.isConnected")
+    assert simulator.served.presenter.calls == []
+    page.context.close()
+
+
+@pytest.mark.parametrize("locale", [pytest.param("en-US", marks=pytest.mark.soak), "de-DE"])
+def test_the_board_breaks_no_rule_of_accessibility_and_fits_every_size(
+    browser, board, simulator, locale
+):
+    simulator.served.presenter.told_of_seat = LONG
+    for name in ("Window 3", "A place whose name is as long as may be..."[:40]):
+        board.add(simulator, name)
+    page = open_board(browser, board, locale)
+    page.wait_for_selector("#seats > li[data-link=watching]")
+    page.evaluate(accessibility_checker())
+    assert page.locator("html").get_attribute("lang") == locale[:2]
+    found = []
+
+    def look(what: str) -> None:
+        for size, (width, height) in SIZES.items():
+            page.set_viewport_size({"width": width, "height": height})
+            wrong = page.evaluate(CUT_OFF)
+            wrong += page.evaluate(VIOLATIONS) if size in ("narrowest", "laptop") else []
+            found.extend(f"{what}, {size}: {each}" for each in wrong)
+
+    look("tiles")
+    page.click("#add")
+    look("form")
+    page.keyboard.press("Escape")
+    simulator.served.close()
+    page.wait_for_selector("#seats > li[data-link=away]")
+    look("away")
+    page.context.close()
+    assert found == []
