@@ -7,8 +7,8 @@ from collections.abc import Mapping
 
 from rastrainer.protocol import CommandName
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.flow.pages.session_page import clickable_hint, slow_hint
 from rastrainer_simulator.flow.path_arc import direction_words
-from rastrainer_simulator.flow.session.clickable_hints import clickable_hint, slow_hint
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Hint, ScreenMessage, Tone

@@ -13,11 +13,11 @@ from rastrainer_simulator.flow.pages.procedure_result import (
 )
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, WaitingPage
+from rastrainer_simulator.flow.pages.session_page import clickable_hint
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
 from rastrainer_simulator.flow.pages.tutorial import TutorialDonePage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
-from rastrainer_simulator.flow.session.clickable_hints import clickable_hint
 from rastrainer_simulator.flow.session.obstacles import needs_tutorial
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world

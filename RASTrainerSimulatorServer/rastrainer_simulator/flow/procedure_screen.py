@@ -9,7 +9,7 @@ from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.pages.procedure import ProcedurePage
-from rastrainer_simulator.flow.session.clickable_hints import stick_hints
+from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.session.plan_marks import checkpoint_marks, depth_ruler, plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen

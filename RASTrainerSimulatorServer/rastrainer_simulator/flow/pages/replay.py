@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.session.clickable_hints import clickable_hint
+from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
 from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlContext, ControlName

@@ -1,12 +1,15 @@
-"""A page of the menus."""
+"""What every page of the menus has: the session, its texts, and hints that press a control."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from rastrainer_simulator.flow.session.open_pages import Page
+from rastrainer_simulator.flow.session.screen_sticks import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.net.views.screen import ItemKind, MenuItem
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.net.views.screen import PRESS, Hint, ItemKind, MenuItem
 
 
 class SessionPage(Page):
@@ -30,3 +33,33 @@ class SessionPage(Page):
     def choice(self, name: str, value: str, **others: Any) -> MenuItem:
         """Return a choice; its label is the page's text of that name."""
         return self.button(name, kind=ItemKind.CHOICE, value=value, **others)
+
+
+def clickable_hint(session: TrainingSession, control: ControlName, key: str) -> Hint:
+    """Return the hint of a control that is pressed once; `key` is of what it does."""
+    return Hint(session.label(control), session.texts.say(key), PRESS + control.value)
+
+
+def slow_hint(session: TrainingSession) -> Hint:
+    """Return the hint of slow motion, which is held, or by a mouse switched on and off."""
+    say = session.texts.say
+    if not session.steers_by_mouse:
+        return Hint(session.label(ControlName.FINE), say("hint.fine"))
+    key = "hint.on" if session.screen_sticks.is_slow else "hint.off"
+    return clickable_hint(session, ControlName.FINE, key)
+
+
+def stick_hints(session: TrainingSession, can_tilt: bool = False) -> tuple[Hint, ...]:
+    """Return what shows the sticks on the screen to who clicks, and hides them again.
+
+    Where the tool can be tilted, the right stick does it, or lifts and lowers the tool.
+    """
+    say, sticks = session.texts.say, session.screen_sticks
+    if not session.is_typing_possible((SourceKind.MOUSE,)):
+        return ()
+    action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
+    hints = [Hint(say("hint.mouse"), action, PRESS + SHOW)]
+    if can_tilt and sticks.is_shown:
+        key = "hint.tilt" if sticks.is_tilting else "hint.up_and_down"
+        hints.append(Hint(say("hint.right stick"), say(key), PRESS + TILT))
+    return tuple(hints)
