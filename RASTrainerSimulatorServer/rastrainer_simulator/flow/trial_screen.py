@@ -16,11 +16,10 @@ from rastrainer.protocol import (
     StepKind,
 )
 from rastrainer.study.protocol.study_step import StudyStep
-from rastrainer_simulator.flow.arm_screen import ArmScreen
+from rastrainer_simulator.flow.arm_screen import BACK_WITHIN, FARTHEST, ArmScreen, PathArc, in_m
 from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
-from rastrainer_simulator.flow.path_arc import BACK_WITHIN, FARTHEST, PathArc, in_m
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import SourceKind

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rastrainer_simulator.flow.arm_screen import ArmScreen
+from rastrainer_simulator.flow.arm_screen import ArmScreen, in_m
 from rastrainer_simulator.flow.homing import Homing
 from rastrainer_simulator.flow.pages.errors import error_arrow, error_tone
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, stick_hints
 from rastrainer_simulator.flow.pages.tutorial import TutorialPage
-from rastrainer_simulator.flow.path_arc import in_m
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.tutorial.steps import TutorialObservation, TutorialStep
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from rastrainer_simulator.flow.path_arc import BACK_WITHIN, FARTHEST
+from rastrainer_simulator.flow.arm_screen import BACK_WITHIN, FARTHEST
 
 CENTER = np.array([0.47, 0.0, 0.215])
 """Where a head is on the stand, World, m: every trial turns and moves it a little."""
