@@ -11,9 +11,12 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.method_task import method_of, playable_methods
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.questionnaire import QuestionnairePage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.pages.trainee_id import ClickedIdPage, KeyboardPage
+from rastrainer_simulator.flow.pages.trainee_id import (
+    ClickedIdPage,
+    KeyboardPage,
+    QuestionnairePage,
+)
 from rastrainer_simulator.flow.session.obstacles import (
     needs_tutorial,
     obstacle,
