@@ -216,8 +216,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
 
 def _lines(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.procedure_plan import measure_procedures
-    from rastrainer_simulator.cli.line_table import line_table
+    from rastrainer_simulator.authoring.procedure_plan import line_table, measure_procedures
 
     measured = measure_procedures(arguments.folder, _procedure_of(arguments))
     print("\n".join(line_table(measured)))
