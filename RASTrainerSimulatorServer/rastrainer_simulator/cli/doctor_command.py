@@ -44,10 +44,16 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _findings(arguments: argparse.Namespace) -> list[CheckResult]:
-    from rastrainer_simulator.cli.doctor.files import check_folders, check_journals, check_settings
     from rastrainer_simulator.cli.doctor.graphics import check_gamepad, check_graphics
     from rastrainer_simulator.cli.doctor.software import check_page, check_python, check_slicer
-    from rastrainer_simulator.cli.doctor.system import check_clock, check_ports, check_real_time
+    from rastrainer_simulator.cli.doctor.system import (
+        check_clock,
+        check_folders,
+        check_journals,
+        check_ports,
+        check_real_time,
+        check_settings,
+    )
     from rastrainer_simulator.ops.folders import config_folder, log_folder
 
     config = arguments.config

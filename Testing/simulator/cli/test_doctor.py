@@ -10,12 +10,18 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer_simulator.cli.doctor import files, software
+from rastrainer_simulator.cli.doctor import software, system
 from rastrainer_simulator.cli.doctor.check_result import CheckStatus
-from rastrainer_simulator.cli.doctor.files import check_folders, check_journals, check_settings
 from rastrainer_simulator.cli.doctor.graphics import check_gamepad, check_graphics
 from rastrainer_simulator.cli.doctor.software import check_python, check_slicer
-from rastrainer_simulator.cli.doctor.system import check_clock, check_ports, check_real_time
+from rastrainer_simulator.cli.doctor.system import (
+    check_clock,
+    check_folders,
+    check_journals,
+    check_ports,
+    check_real_time,
+    check_settings,
+)
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.end_to_end.virtual_display import VirtualDisplay
@@ -190,7 +196,7 @@ def test_a_folder_is_judged_by_whether_it_can_be_written_to_and_by_its_room(tmp_
         (9000, CheckStatus.OK),
     ):
         usage = lambda _path, free=megabytes: type("Usage", (), {"free": free * 10**6})  # noqa: E731
-        monkeypatch.setattr(files.shutil, "disk_usage", usage)
+        monkeypatch.setattr(system.shutil, "disk_usage", usage)
         (finding,) = check_folders({"trials": tmp_path})
         assert finding.verdict is verdict
 

@@ -1,21 +1,28 @@
-"""The computer's clocks, its scheduler and its ports."""
+"""x"""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import socket
 import sys
+import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
+from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
+from rastrainer_simulator.core.interrupted_trial import find_interrupted
+from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE, read_preferences
+from rastrainer_simulator.input.bindings import BINDINGS_FILE, read_bindings
 from rastrainer_simulator.loop.precise_clock import is_real_time_permitted
+from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.listener import listening_socket
-from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive
 
 COARSEST_S = 0.001
 EARLIEST = datetime(2025, 1, 1, tzinfo=timezone.utc)
@@ -146,3 +153,88 @@ def _listening(port: int) -> Iterator[str]:
 def _command(process: Path) -> str:
     words = (process / "cmdline").read_bytes().decode(errors="replace").split("\0")
     return " ".join(Path(word).name for word in words[:4] if word) or "a program"
+
+
+MEGABYTE = 1_000_000
+TRIAL_MB = 6.0
+"""A journal of a long trial."""
+PROBLEM_MB = 100.0
+WARNING_MB = 1000.0
+
+
+def check_folders(folders: Mapping[str, Path]) -> Iterator[CheckResult]:
+    """Check writing to each folder, by purpose; a missing one is checked by its parent."""
+    for purpose, folder in folders.items():
+        yield _check(purpose, folder)
+
+
+def _check(purpose: str, folder: Path) -> CheckResult:
+    existing = _existing(folder)
+    try:
+        if existing != folder and not existing.is_dir():
+            raise NotADirectoryError(20, f"{existing} is a file")
+        with tempfile.TemporaryFile(dir=existing):
+            pass
+        free_mb = shutil.disk_usage(existing).free / MEGABYTE
+    except OSError as error:
+        return CheckResult(
+            "folders",
+            CheckStatus.PROBLEM,
+            f"The folder of the {purpose}, {folder}, cannot be written to: {error.strerror}.",
+            f"Allow writing to {existing}, or choose another folder: rastrainer simulator --help",
+        )
+    room = f"The folder of the {purpose}, {folder}, can be written to; {free_mb:,.0f} MB are free"
+    if free_mb < PROBLEM_MB:
+        return CheckResult("folders", CheckStatus.PROBLEM, f"{room}: too few.", "Free some space.")
+    if free_mb < WARNING_MB:
+        trials = int(free_mb / TRIAL_MB)
+        sentence = f"{room}, enough for about {trials} trials."
+        return CheckResult("folders", CheckStatus.WARNING, sentence, "Free some space.")
+    return CheckResult("folders", CheckStatus.OK, f"{room}.")
+
+
+def _existing(folder: Path) -> Path:
+    """Return the folder, or the nearest one above it that exists."""
+    with contextlib.suppress(OSError):
+        for candidate in (folder, *folder.absolute().parents):
+            if candidate.exists():
+                return candidate
+    return folder
+
+
+def check_settings(config: Path) -> Iterator[CheckResult]:
+    """Read each existing file of the settings."""
+    try:
+        read_limits(config)
+    except InputError as error:
+        remedy = "Fix the file, or delete it to use the default limits."
+        yield CheckResult("settings", CheckStatus.PROBLEM, f"No simulator starts: {error}", remedy)
+    readers = {PREFERENCES_FILE: read_preferences, BINDINGS_FILE: read_bindings}
+    for name, read in readers.items():
+        try:
+            if (config / name).exists():
+                read(config / name)
+        except InputError as error:
+            remedy = "Choose them again in the trainee's menu, which rewrites the file."
+            yield CheckResult(
+                "settings", CheckStatus.WARNING, f"The defaults are used: {error}", remedy
+            )
+
+
+KEEP_IT = "Keep the file unchanged; `rastrainer verify` and its path show how far it can be read."
+
+
+def check_journals(records: Path) -> Iterator[CheckResult]:
+    """Read the journals that a simulator reads when it starts: those to deliver, and the newest."""
+    archive = TrialArchive(records)
+    problems = dict.fromkeys(archive.problems)
+    try:
+        find_interrupted(records)
+    except InputError as error:
+        problems[str(error)] = None
+    for problem in problems:
+        yield CheckResult("journals", CheckStatus.WARNING, problem, KEEP_IT)
+    if not problems:
+        waiting = len(archive.unacknowledged())
+        sentence = f"Every journal that is needed can be read; {waiting} trials wait for Slicer."
+        yield CheckResult("journals", CheckStatus.OK, sentence)
