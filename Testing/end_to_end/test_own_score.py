@@ -22,7 +22,7 @@ from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.submission import registration_arguments, score_arguments
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_alone, score_alone
-from rastrainer_simulator.flow.session.score_history import ScoreHistory
+from rastrainer_simulator.flow.session.trainee_history import ScoreHistory
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello

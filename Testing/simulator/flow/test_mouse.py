@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.session.progress import DoneTasks
+from rastrainer_simulator.flow.session.trainee_history import DoneTasks
 from rastrainer_simulator.input.control_name import ControlName
 from Testing.simulator.flow.mouse import VIEW, Mouse
 from Testing.simulator.flow.trainee import Trainee

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rastrainer.journal.journal_file import NO_LINE, encode_line
-from rastrainer_simulator.flow.session.progress import DoneTasks
+from rastrainer_simulator.flow.session.trainee_history import DoneTasks
 
 HEAD = "colin27"
 ORDER = ("trial-run", "task-1", "task-2")

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.flow.session.progress import DoneTasks
-from rastrainer_simulator.flow.session.score_history import ScoreHistory
+from rastrainer_simulator.flow.session.trainee_history import DoneTasks, ScoreHistory
 from Testing.simulator.flow.scored_journals import (
     SCORES,
     TRAINEE,

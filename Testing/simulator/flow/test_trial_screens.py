@@ -12,7 +12,7 @@ from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen
-from rastrainer_simulator.flow.session.progress import DoneTasks
+from rastrainer_simulator.flow.session.trainee_history import DoneTasks
 from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.german import GERMAN
 from rastrainer_simulator.ops.texts.texts import Texts

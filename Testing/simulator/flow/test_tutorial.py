@@ -13,7 +13,7 @@ from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW
-from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
+from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome

@@ -8,7 +8,7 @@ import pytest
 from rastrainer.journal.journal_file import read_journal
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
+from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import SourceKind

@@ -39,13 +39,15 @@ from rastrainer_simulator.flow.session.preferences import (
     faded_guidance,
     write_preferences,
 )
-from rastrainer_simulator.flow.session.progress import DoneTasks
-from rastrainer_simulator.flow.session.score_history import ScoreHistory
 from rastrainer_simulator.flow.session.screen_sticks import ScreenSticks
 from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
+from rastrainer_simulator.flow.session.trainee_history import (
+    DoneTasks,
+    FinishedTutorials,
+    ScoreHistory,
+)
 from rastrainer_simulator.flow.session.trial_view import TrialView
-from rastrainer_simulator.flow.tutorial.finished_tutorials import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import (
     BINDINGS_FILE,

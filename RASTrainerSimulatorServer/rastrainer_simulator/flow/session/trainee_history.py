@@ -1,0 +1,242 @@
+"""What is known of each trainee by the simulator's own files: tasks, tutorials, scores."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import re
+import uuid
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.files.json_fields import read_fields
+from rastrainer.files.reading import failure_reason
+from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
+from rastrainer.journal.folder import TUTORIAL_SUFFIX, journals_of
+from rastrainer.journal.journal_file import (
+    MAX_LINE_BYTES,
+    NO_LINE,
+    DamagedLineError,
+    decode_line,
+)
+from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import SCORE_VERSION
+from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.ops.stamps import file_stamp, iso
+from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+
+_REGISTERED = b'"kind":"registered"'
+_PRACTICED = (
+    f'"phase":"{Phase.COMPLETE.value}"'.encode(),
+    f'"reason":"{AbortReason.PRACTICE_OVER.value}"'.encode(),
+)
+
+
+class DoneTasks:
+    """Counts a task as done when it was registered.
+
+    The trial run also counts when all its points were touched, or when it was ended after its time
+    was over, as the paper's procedure has it (figure 4).
+
+    Attributes:
+        journals: of each trainee, oldest first; only those that were there at the beginning.
+    """
+
+    def __init__(self, records: Path) -> None:
+        """Look through the folder's journals: at the first line and the end of each."""
+        self.journals: dict[str, list[Path]] = defaultdict(list)
+        self._done: dict[tuple[str, str], set[str]] = defaultdict(set)
+        for path in sorted(records.glob("*.journal")):
+            self._take(path)
+
+    def note(self, trainee: str, scenario: str, task: str) -> None:
+        """Take note of a scenario's task that was done."""
+        self._done[trainee, scenario].add(task)
+
+    def has_done(self, trainee: str, scenario: str, task: str) -> bool:
+        """Return whether a trainee has done a scenario's task."""
+        return task in self._done.get((trainee, scenario), ())
+
+    def latest_trainees(self, count: int) -> tuple[str, ...]:
+        """Return so many trainees at most, who trained last first."""
+        known = (trainee for trainee, journals in self.journals.items() if journals)
+        latest = sorted(known, key=lambda trainee: self.journals[trainee][-1].name, reverse=True)
+        return tuple(latest[:count])
+
+    def missing_before(
+        self, trainee: str, scenario: str, task: str, order: Sequence[str]
+    ) -> str | None:
+        """Return the first task that has to be done before another; None where none is missing."""
+        done = self._done.get((trainee, scenario), ())
+        return next((name for name in order[: order.index(task)] if name not in done), None)
+
+    def _take(self, path: Path) -> None:
+        """Take note of a journal; one that cannot be read counts for nothing."""
+        try:
+            with path.open("rb") as file:
+                header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
+                file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
+                tail = file.read(_TAIL_BYTES)
+            what = header["trainee"], header["scenario"]["name"], header["task"]
+        except (OSError, KeyError, TypeError, DamagedLineError):
+            return
+        if not all(isinstance(word, str) for word in what):
+            return
+        self.journals[what[0]].append(path)
+        is_practiced = header["task"] == TRIAL_RUN and any(mark in tail for mark in _PRACTICED)
+        if _REGISTERED in tail or is_practiced:
+            self.note(*what)
+
+
+_COUNTS_FOR = {
+    kind.value: (kind.value, SourceKind.KEYBOARD.value)
+    for kind in (SourceKind.GAMEPAD, SourceKind.MOUSE)
+}
+"""Keys also type an ID and go through menus: who has learned another device may come with them."""
+
+
+class FinishedTutorials:
+    """Knows the devices that each trainee has finished the tutorial with."""
+
+    def __init__(self, records: Path) -> None:
+        """Look through the folder; a file that cannot be used counts for nothing."""
+        self._records = records
+        self._devices: dict[str, set[str]] = defaultdict(set)
+        self._latest: dict[str, TutorialOutcome] = {}
+        for path in sorted(records.glob(f"*{TUTORIAL_SUFFIX}")):
+            with contextlib.suppress(InputError, OSError):
+                self._note(TutorialOutcome.of(read_fields(path)))
+
+    def has_done(self, trainee: str, device: SourceKind) -> bool:
+        """Return whether a trainee has learned what they now use."""
+        return device.value in self._devices.get(trainee, ())
+
+    def latest(self, trainee: str) -> TutorialOutcome | None:
+        """Return a trainee's latest finished tutorial."""
+        return self._latest.get(trainee)
+
+    def keep(self, outcome: TutorialOutcome) -> None:
+        """Count a finished tutorial, and write its file.
+
+        Raises:
+            InputError: it cannot be written; it counts until the simulator ends.
+        """
+        self._note(outcome)
+        utc = iso(datetime.now(timezone.utc))
+        path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
+        try:
+            make_private_folder(self._records)
+        except OSError as error:
+            raise InputError(
+                f"The folder {self._records} cannot be made: {failure_reason(error)}."
+            ) from None
+        # One line, as a journal's first: by it the file is found when the trainee is deleted.
+        write_text(path, json.dumps({"utc": utc, **outcome.to_json()}) + "\n")
+        keep_others_out(path)
+
+    def _note(self, outcome: TutorialOutcome) -> None:
+        self._devices[outcome.trainee].update(_COUNTS_FOR.get(outcome.device, (outcome.device,)))
+        self._latest[outcome.trainee] = outcome
+
+
+MAX_SHOWN = 20
+"""Scores of a trend: those of the newest trials."""
+_TAIL_BYTES = 1 << 17
+_START = re.compile(
+    rb'\{"n":(\d+),"previous":"([0-9a-f]{64})","kind":"(registered|scored|attempt)"'
+)
+
+
+class ScoreHistory:
+    """Reads a trainee's journals when first asked for them, and one that has grown again."""
+
+    def __init__(self, records: Path, journals: Mapping[str, list[Path]]) -> None:
+        """Prepare; `journals` are those of each trainee that are there already, oldest first."""
+        self._records = records
+        self._journals = {trainee: list(paths) for trainee, paths in journals.items()}
+        self._past: dict[Path, PastTrial | None] = {}
+
+    def changed(self, trainee: str, trial_id: str) -> None:
+        """Take note that a trial of a trainee has begun, ended or been scored."""
+        known = self._journals.setdefault(trainee, [])
+        for path in journals_of(self._records, trial_id) if trial_id else ():
+            self._past.pop(path, None)
+            if path not in known:
+                known.append(path)
+
+    def of(self, trainee: str) -> tuple[PastTrial, ...]:
+        """Return the trainee's scored trials but the trial runs, and the failures, oldest first."""
+        paths = self._journals.get(trainee, ())
+        self._past |= {path: _past_trial(path) for path in paths if path not in self._past}
+        found = (self._past[path] for path in paths)
+        return tuple(trial for trial in found if trial is not None)
+
+    def best(self, trainee: str, task: str) -> tuple[Path, ...]:
+        """Return the journals of a trainee's acceptable trials of a task, the best score first.
+
+        Scores of other versions are left out.
+        """
+        self.of(trainee)
+        found = []
+        for path in self._journals.get(trainee, ()):
+            trial = self._past[path]
+            if trial is None or trial.task != task or not trial.acceptable:
+                continue
+            if trial.score_version == SCORE_VERSION:
+                found.append((trial.score, path))
+        return tuple(path for _score, path in sorted(found, key=lambda each: -each[0]))
+
+    def trend(self, trainee: str, mode: str) -> tuple[float, ...]:
+        """Return the newest scores of a trainee in a mode, all of the present version."""
+        scores = [
+            trial.score
+            for trial in self.of(trainee)
+            if trial.mode == mode and trial.score_version == SCORE_VERSION
+        ]
+        return tuple(scores[-MAX_SHOWN:])
+
+
+def _past_trial(journal: Path) -> PastTrial | None:
+    """Return the scored or failed trial of a journal; None for others and damaged ones."""
+    try:
+        last = {entry["kind"]: entry for entry in _last_entries(journal)}
+        if "attempt" in last:
+            aborted = AbortedTrial.from_json(last["attempt"]["record"])
+            return PastTrial.failed(aborted) if aborted.counts_as_failed else None
+        if "registered" not in last or "scored" not in last:
+            return None
+        record = TrialRecord.from_json(last["registered"]["record"])
+        told = last["scored"]["arguments"]
+        details = told["details"]
+        if record.task == TRIAL_RUN or "scoreVersion" not in details:
+            return None
+        return PastTrial(
+            record.trial_id,
+            record.task,
+            record.mode,
+            record.completion_time_s,
+            float(told["score"]),
+            details["isAccurate"] is True
+            and details.get("isUnbiased") is not False
+            and details["isSafe"] is not False,
+            score_version=str(details["scoreVersion"]),
+        )
+    except (OSError, DamagedLineError, InputError, KeyError, TypeError, ValueError):
+        return None
+
+
+def _last_entries(journal: Path) -> Iterator[dict[str, Any]]:
+    """Yield the entries with a trial's outcome at the end of a journal, each as it was written."""
+    with journal.open("rb") as file:
+        file.seek(max(0, journal.stat().st_size - _TAIL_BYTES))
+        for line in file.read(_TAIL_BYTES).split(b"\n"):
+            found = _START.match(line)
+            if found is not None:
+                yield decode_line(line, int(found[1]), found[2].decode("ascii"))
