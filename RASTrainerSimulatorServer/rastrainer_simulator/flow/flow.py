@@ -7,7 +7,7 @@ from dataclasses import replace
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.procedure_result import (
+from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
     ProcedureLinesPage,
 )

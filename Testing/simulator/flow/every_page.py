@@ -15,7 +15,6 @@ from rastrainer_simulator.flow.pages import (
     experiment,
     introduction,
     procedure,
-    procedure_result,
     result,
     start,
     trainee_id,
@@ -141,8 +140,8 @@ def _pages(session) -> Iterator[SessionPage]:
     session.state = replace(session.state, training=AT_PROCEDURE)
     yield procedure.ProcedurePage(session)
     session.state = replace(session.state, training=PROCEDURE_SCORED)
-    yield procedure_result.ProcedureErrorsPage(session)
-    yield procedure_result.ProcedureLinesPage(session)
+    yield procedure.ProcedureErrorsPage(session)
+    yield procedure.ProcedureLinesPage(session)
     session.state = replace(session.state, training=SCORED)
     yield tutorial.TutorialPage(session)
     yield tutorial.TutorialDonePage(session, LEARNED)

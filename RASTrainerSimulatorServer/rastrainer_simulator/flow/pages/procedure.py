@@ -1,13 +1,41 @@
-"""The menu of a procedure's phase: what leads to the next one. The trial goes on meanwhile."""
+"""The pages of a procedure: the menu of each phase, and after the score its errors and lines."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
+from rastrainer.json_checks import is_number
+from rastrainer.procedure.plan import MAX_TRAJECTORIES
+from rastrainer.procedure.score import (
+    ANGLE_LIMIT_DEG,
+    ENTRY_LIMIT_MM,
+    PLUNGE_LIMIT_MM,
+    TARGET_LIMIT_MM,
+)
 from rastrainer.protocol import CommandName, Phase
+from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.plan_marks import (
+    PLACED,
+    PLANNED,
+    SHOWN,
+    drawn,
+    placed_line,
+)
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.net.views.screen import Menu, MenuItem
+from rastrainer_simulator.net.views.screen import (
+    ErrorArrow,
+    Fact,
+    Menu,
+    MenuItem,
+    Screen,
+    Tone,
+)
+from rastrainer_simulator.procedure_state import PlannedLine
+from rastrainer_simulator.state import TrialResult
 
 STAND_OFF_MM = 30.0
 """Of the guide's tip before the entry where the robot aligns it: near, and clear of the skin."""
@@ -64,3 +92,158 @@ class ProcedurePage(SessionPage):
         waits = name == "accept" and (procedure is None or procedure.registration is None)
         help_ = self.say("procedure.waits" if waits else f"procedure.{name} help")
         return self.button(name, is_enabled=not waits, help=help_)
+
+
+LONGEST_NAME = 60
+_SPLIT = (
+    ("target", "targetMm", "byRegistrationMm", "byHandMm", TARGET_LIMIT_MM),
+    ("entry", "entryMm", "entryByRegistrationMm", "entryByHandMm", ENTRY_LIMIT_MM),
+    ("radial", "radialMm", "radialByRegistrationMm", "radialByHandMm", math.inf),
+    ("depth", "depthMm", "depthByRegistrationMm", "depthByHandMm", math.inf),
+    ("angle", "angleDeg", "angleByRegistrationDeg", "angleByHandDeg", ANGLE_LIMIT_DEG),
+)
+"""An error, its members in what is told of a trajectory, and the limit of the score."""
+
+
+def procedure_details(result: TrialResult | None) -> Mapping[str, Any]:
+    """Return what is told of a trial's procedure; empty where nothing is."""
+    told = None if result is None else result.details.get("procedure")
+    return told if isinstance(told, dict) else {}
+
+
+def procedure_facts(session: TrainingSession, result: TrialResult) -> list[Fact]:
+    """Return the procedure's score and its errors in short; [] in a trial of touches alone."""
+    told, say = procedure_details(result), session.texts.say
+    score = _number(told, "score")
+    if score is None:
+        return []
+    is_good = told.get("acceptable") is True
+    key = "result.of 100" if is_good else "result.unacceptable score"
+    tone = Tone.GOOD if is_good else Tone.WARNING
+    facts = [Fact(say("procedure-errors.score"), say(key, score=score), tone)]
+    parts = ("targetRmsMm", "targetByRegistrationRmsMm", "targetByHandRmsMm")
+    numbers = [_number(told, name) for name in parts]
+    if None not in numbers:
+        values = dict(zip(("error", "registration", "hand"), numbers, strict=True))
+        facts.append(Fact(say("procedure-errors.rms"), say("procedure-errors.split mm", **values)))
+    return facts
+
+
+class ProcedureErrorsPage(SessionPage):
+    """The errors of one trajectory after the other, each split into registration and hand."""
+
+    name = "procedure-errors"
+
+    def __init__(self, session: TrainingSession) -> None:
+        super().__init__(session)
+        self._number = 0
+
+    def menu(self) -> Menu:
+        """Return the table of the chosen trajectory."""
+        each = self._trajectories
+        told = each[self._number] if each else {}
+        several = len(each) > 1
+        choice = (self.choice("trajectory", _name(told)),) if several else ()
+        title = self.say("procedure-errors.title", name=_name(told))
+        items: tuple[MenuItem, ...] = (*choice, self.button("lines"), self.button("back"))
+        texts = (self.say("procedure-errors.text"),)
+        return Menu(self.name, title, texts, tuple(self._facts(told)), items)
+
+    def accept(self, item: str) -> None:
+        """Show the lines on the head, or go back."""
+        if item == "lines":
+            self.session.pages.open(ProcedureLinesPage(self.session))
+        elif item == "back":
+            self.back()
+
+    def step(self, item: str, direction: int) -> None:  # noqa: ARG002
+        """Show another trajectory."""
+        self._number = (self._number + direction) % len(self._trajectories)
+
+    @property
+    def _trajectories(self) -> Sequence[Mapping[str, Any]]:
+        told = procedure_details(self.session.training.result).get("trajectories")
+        listed = told[:MAX_TRAJECTORIES] if isinstance(told, list) else []
+        return [each for each in listed if isinstance(each, dict)]
+
+    def _facts(self, told: Mapping[str, Any]) -> list[Fact]:
+        facts = []
+        for name, whole, registration, hand, limit in _SPLIT:
+            numbers = [_number(told, member) for member in (whole, registration, hand)]
+            if None in numbers:
+                continue
+            values = dict(zip(("error", "registration", "hand"), numbers, strict=True))
+            unit = "deg" if name == "angle" else "mm"
+            text = self.say(f"procedure-errors.split {unit}", **values)
+            facts.append(Fact(self.say(f"procedure-errors.{name}"), text, _tone(numbers[0], limit)))
+        facts += self._drilled(told)
+        return facts
+
+    def _drilled(self, told: Mapping[str, Any]) -> list[Fact]:
+        """Return how deep the drill plunged, and the distance kept to the nearest structure."""
+        plunge, kept = _number(told, "plungeMm"), _number(told, "keptMm")
+        facts = []
+        label = self.say("procedure-errors.plunge")
+        if plunge is None:
+            missed = self.say("procedure-errors.no inner table")
+            facts.append(Fact(label, missed, Tone.WARNING))
+        else:
+            text = self.say("result.mm", error=plunge)
+            facts.append(Fact(label, text, _tone(plunge, PLUNGE_LIMIT_MM)))
+        if kept is not None:
+            nearest = _text(told.get("nearest"))
+            key = "procedure-errors.hit" if kept <= 0.0 else "procedure-errors.kept"
+            tone = Tone.ERROR if kept <= 0.0 else Tone.PLAIN
+            facts.append(Fact(nearest, self.say(key, distance=kept), tone))
+        return facts
+
+
+class ProcedureLinesPage(ErrorsPage):
+    """Shows the planned, the registered and the placed lines in the head, without a menu."""
+
+    name = "procedure-lines"
+
+    def screen(self) -> Screen:
+        """Return the lines; the score has revealed where the head truly is."""
+        session = self.session
+        lines = _lines(session) if session.training.result is not None else ()
+        return replace(super().screen(), errors=lines, is_head_clear=True)
+
+    @property
+    def _title(self) -> str:
+        return self.say("procedure-lines.title")
+
+
+def _lines(session: TrainingSession) -> tuple[ErrorArrow, ...]:
+    procedure = session.training.procedure
+    assert procedure is not None, "the page is opened for a procedure"
+    lines = []
+    planned = session.scenario.procedure(procedure.name).trajectories
+    for plan, trajectory in zip(planned, procedure.trajectories, strict=True):
+        entry, target = session.truly_in_world(plan.entry), session.truly_in_world(plan.target)
+        lines.append(drawn(PlannedLine(plan.name, entry, target), PLANNED))
+        lines.append(drawn(trajectory.line, SHOWN))
+        placed = placed_line(trajectory)
+        if placed is not None:
+            lines.append(drawn(placed, PLACED))
+    return tuple(lines)
+
+
+def _tone(error: float | None, limit: float) -> Tone:
+    if error is None or math.isinf(limit):
+        return Tone.PLAIN
+    return Tone.WARNING if abs(error) > limit else Tone.GOOD
+
+
+def _number(told: Mapping[str, Any], name: str) -> float | None:
+    """Return a number that was told; None for anything else."""
+    value = told.get(name)
+    return float(value) if is_number(value) and math.isfinite(value) else None
+
+
+def _name(told: Mapping[str, Any]) -> str:
+    return _text(told.get("name"))
+
+
+def _text(value: object) -> str:
+    return value[:LONGEST_NAME] if isinstance(value, str) and value.isprintable() else ""

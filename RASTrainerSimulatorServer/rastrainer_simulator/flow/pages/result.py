@@ -14,7 +14,7 @@ from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.trial_feedback import MAX_SHORT
 from rastrainer_simulator.flow.pages.errors import GOOD_MM, POOR_MM, ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.procedure_result import (
+from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
     procedure_details,
     procedure_facts,
