@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.surface_queries import nearest_on_mesh
-from rastrainer.scenario.landmarks import Landmark
+from rastrainer.scenario.tasks import Landmark
 from rastrainer_simulator.assets import asset_path
 
 LANDMARKS = (

@@ -21,11 +21,12 @@ from rastrainer.head.volume import VolumeFile, read_volume_file
 from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
 from rastrainer.procedure.plan import Procedure, read_procedures
 from rastrainer.protocol import WORLD_LIMIT_MM
-from rastrainer.scenario.landmarks import Landmark, read_landmarks
 from rastrainer.scenario.tasks import (
+    Landmark,
     PlannedTarget,
     PlannedTrajectory,
     Task,
+    read_landmarks,
     read_targets,
     read_task,
     read_trajectory,

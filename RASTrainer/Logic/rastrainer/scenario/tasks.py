@@ -1,4 +1,4 @@
-"""The points of a scenario: tasks of fifteen fiducials, planned targets and a trajectory."""
+"""x"""
 
 from __future__ import annotations
 
@@ -149,3 +149,36 @@ def read_trajectory(fields: Fields) -> PlannedTrajectory | None:
     if np.linalg.norm(target - entry) < MIN_TRAJECTORY_MM:
         raise own.error("entryRas", f"at least {MIN_TRAJECTORY_MM:g} mm from targetRas")
     return PlannedTrajectory(own.text("name", 60), entry, target)
+
+
+MAX_LANDMARKS = 15
+
+
+@dataclass(frozen=True)
+class Landmark:
+    """A landmark.
+
+    Attributes:
+        name: such as "Nasion", by which it is asked for.
+        position: (3,) float, RAS mm.
+    """
+
+    name: str
+    position: np.ndarray
+
+
+def read_landmarks(fields: Fields) -> tuple[Landmark, ...]:
+    """Return the optional field `landmarks` of a scenario, in the order of touching.
+
+    Raises:
+        InputError: it is invalid.
+    """
+    if "landmarks" not in fields.names():
+        return ()
+    landmarks: dict[str, Landmark] = {}
+    for entry in fields.list_of_fields("landmarks", 0, MAX_LANDMARKS):
+        name = entry.text("name", 40)
+        if name in landmarks:
+            raise entry.error("name", "another name than that of each landmark before")
+        landmarks[name] = Landmark(name, entry.point("positionRas", RAS_LIMIT_MM))
+    return tuple(landmarks.values())
