@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -11,9 +12,9 @@ import rastrainer
 from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import counted
+from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.report.elements.comparisons import ModeComparison, compare_modes
 from rastrainer.report.elements.markup import bullets, page, paragraph, section
-from rastrainer.report.elements.registration_methods import methods_note, with_one_method
 from rastrainer.report.elements.scores import versions_note, with_ctps, with_one_score_version
 from rastrainer.report.sections.calibration import calibration
 from rastrainer.report.sections.learning import learning
@@ -127,3 +128,33 @@ def _summary(comparisons: list[ModeComparison], gap: str, *left_out: str) -> str
     if gap:
         parts.insert(0, paragraph(f"{gap} What follows is about these trials alone.", "warning"))
     return section("In short", *parts)
+
+
+def compared_method(data: StudyData) -> str:
+    """Return the method whose trials are compared: fiducials, or the one of most trials."""
+    counts = Counter(trial.method for trial in data.trials)
+    fiducials = RegistrationMethod.FIDUCIALS.value
+    return fiducials if fiducials in counts or not counts else counts.most_common(1)[0][0]
+
+
+def with_one_method(data: StudyData) -> StudyData:
+    """Return the study with the trials of the compared method only."""
+    method = compared_method(data)
+    return replace(data, trials=tuple(t for t in data.trials if t.method == method))
+
+
+def methods_note(data: StudyData) -> str:
+    """Return which trials `with_one_method` leaves out; "" if none."""
+    compared = compared_method(data)
+    left_out = Counter(trial.method for trial in data.trials if trial.method != compared)
+    if not left_out:
+        return ""
+    others = " and ".join(
+        f"{counted(count, 'trial')} by {method}" for method, count in sorted(left_out.items())
+    )
+    return (
+        f"Trials by different methods of registration have other points, times and residuals: "
+        f"but for “Methods of registration”, which compares their errors, this report is about "
+        f"those by {compared} and leaves out {others}. trials.csv has all of them, each with its "
+        "method."
+    )
