@@ -14,8 +14,7 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import knownNumber
 from rastrainer.slicer.scene.trace_nodes import forgetTrace, showTrace
-from rastrainer.trial.followed_trace import FollowedTrace, TraceFollower
-from rastrainer.trial.given_points import GivenPoints
+from rastrainer.trial.given_points import FollowedTrace, GivenPoints, TraceFollower
 
 PERIOD_S = 1.0
 """Each time, the whole trace is asked for, and the head is drawn anew."""
