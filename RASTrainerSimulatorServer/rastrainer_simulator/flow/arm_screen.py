@@ -1,4 +1,4 @@
-"""x"""
+"""What a trainee who drives the arm reads, with or without a trial, and the path to the next point."""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""x"""
+"""What several panels do with their widgets, and with texts that others wrote.
+
+A peer, a file or a user may send thousands of characters without a space, or tags: a label shows
+them as they are, wrapped, and the first few hundred of them, never as HTML.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""x"""
+"""The points of a scenario: tasks of fifteen fiducials, landmarks, planned targets, a trajectory."""
 
 from __future__ import annotations
 

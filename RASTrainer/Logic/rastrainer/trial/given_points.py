@@ -1,4 +1,4 @@
-"""x"""
+"""What a trial is registered by: its touches and its trace, and where that trace lies on the head."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""x"""
+"""The computer's clocks, its scheduler, its ports, and whether its folders can be used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How an ID is entered without a keyboard: by a gamepad's buttons, or by clicks alone."""
+"""Who trains: an ID entered by buttons or clicks, and the questionnaires that a study asks."""
 
 from __future__ import annotations
 
