@@ -1,4 +1,4 @@
-"""What a trainee who drives the arm reads, with or without a trial, and the path to the next point."""
+"""What a trainee who drives the arm reads, and how far the tip is from its path."""
 
 from __future__ import annotations
 

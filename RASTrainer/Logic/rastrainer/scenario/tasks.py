@@ -1,4 +1,4 @@
-"""The points of a scenario: tasks of fifteen fiducials, landmarks, planned targets, a trajectory."""
+"""The points of a scenario: tasks of fifteen fiducials, landmarks, targets and a trajectory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a trial is registered by: its touches and its trace, and where that trace lies on the head."""
+"""What a trial is registered by: its touches and its trace, and where that trace lies."""
 
 from __future__ import annotations
 
