@@ -18,8 +18,7 @@ from rastrainer_simulator.procedure_state import (
     ProcedureState,
     Tool,
 )
-from rastrainer_simulator.registration_state import FinalRegistration, TouchState
-from rastrainer_simulator.trace_state import TraceState
+from rastrainer_simulator.registration_state import FinalRegistration, TouchState, TraceState
 from rastrainer_simulator.vectors import Vector, vector
 
 

@@ -22,7 +22,7 @@ from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.scene_view import stand_pose
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.procedure_state import ProcedureState, Tool
-from rastrainer_simulator.registration_state import TouchState
+from rastrainer_simulator.registration_state import TouchState, TracedPoint, TraceState
 from rastrainer_simulator.replay.recorded_procedure import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
@@ -33,7 +33,6 @@ from rastrainer_simulator.state import (
     SimulationState,
     TrainingState,
 )
-from rastrainer_simulator.trace_state import TracedPoint, TraceState
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.vectors import Vector
 

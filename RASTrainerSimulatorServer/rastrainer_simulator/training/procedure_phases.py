@@ -25,9 +25,9 @@ from rastrainer_simulator.registration_state import (
     CheckedPoint,
     FinalRegistration,
     RegistrationAttempt,
+    TraceState,
 )
 from rastrainer_simulator.state import EventKind, TrainingState
-from rastrainer_simulator.trace_state import TraceState
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings

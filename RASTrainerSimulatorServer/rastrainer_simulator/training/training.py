@@ -15,9 +15,8 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.procedure_state import ProcedureState
-from rastrainer_simulator.registration_state import FinalRegistration, TouchState
+from rastrainer_simulator.registration_state import FinalRegistration, TouchState, TraceState
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
-from rastrainer_simulator.trace_state import TraceState
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
 from rastrainer_simulator.training.kept_states import KeptStates

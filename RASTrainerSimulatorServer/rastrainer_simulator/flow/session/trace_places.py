@@ -17,8 +17,8 @@ from rastrainer.trial.given_points import trace_guide
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.registration_state import TraceState
 from rastrainer_simulator.state import SimulationState
-from rastrainer_simulator.trace_state import TraceState
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, add, scale, subtract, unit, vector
 

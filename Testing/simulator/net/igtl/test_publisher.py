@@ -18,9 +18,14 @@ from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
 from rastrainer_simulator.net.state_feed import StateFeed
 from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
-from rastrainer_simulator.registration_state import CheckedPoint, FinalRegistration, TouchState
+from rastrainer_simulator.registration_state import (
+    CheckedPoint,
+    FinalRegistration,
+    TouchState,
+    TracedPoint,
+    TraceState,
+)
 from rastrainer_simulator.state import StepResult, TrainingState
-from rastrainer_simulator.trace_state import TracedPoint, TraceState
 from Testing.simulator.net.igtl.servers import at_rest
 
 TICK_S = 0.004
