@@ -158,8 +158,7 @@ def _play(
     port: int, scenario: Scenario, seed: int, speed: float
 ) -> tuple[list[dict[str, Any]], TrialRecord]:
     """Play the tasks; return the states at their last touches, and the record with a procedure."""
-    from rastrainer_simulator.virtual.scripted_procedure import play_procedure
-    from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+    from rastrainer_simulator.virtual.scripted_trial import play_procedure, play_trial, say_hello
 
     states, records = [], []
     with Client(DEFAULT_HOST, port) as client:
