@@ -1,10 +1,12 @@
-"""The record of a procedure that has just been finished."""
+"""x"""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
 
-from rastrainer.journal.feed_recording import FeedRecording
 from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
 from rastrainer.procedure.record import (
     PlacedInstrument,
@@ -19,6 +21,80 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.procedure_state import ProcedureState, TrajectoryState
 from rastrainer_simulator.registration_state import FinalRegistration, RegistrationAttempt
 from rastrainer_simulator.vectors import Vector, vector
+
+MEANINGFUL_MM = 0.05
+"""The way back after which a feed counts as reversed."""
+_NAMES = {Phase.DRILLING.value: "drill", Phase.INSERTING.value: "instrument"}
+
+
+@dataclass
+class _Feeding:
+    """What one instrument did along one trajectory, over all alignments."""
+
+    path_mm: float = 0.0
+    moving_s: float = 0.0
+    fastest_mm_s: float = 0.0
+    reversals: int = 0
+    # Since the last reversal: which way, and the farthest on it.
+    way: float = 0.0
+    farthest_mm: float = 0.0
+
+    def move(self, depth_mm: float, step_mm: float, time_s: float) -> None:
+        if step_mm == 0.0:
+            return
+        self.path_mm += abs(step_mm)
+        self.moving_s += time_s
+        self.fastest_mm_s = max(self.fastest_mm_s, abs(step_mm) / time_s)
+        direction = 1.0 if step_mm > 0.0 else -1.0
+        if self.way == 0.0:
+            self.way, self.farthest_mm = direction, depth_mm
+        elif self.way * (depth_mm - self.farthest_mm) >= 0.0:
+            self.farthest_mm = depth_mm
+        elif abs(depth_mm - self.farthest_mm) > MEANINGFUL_MM:
+            self.reversals += 1
+            self.way, self.farthest_mm = -self.way, depth_mm
+
+
+class FeedRecording:
+    """Collects the samples of drill and instrument; `metrics` are those of a trajectory so far."""
+
+    def __init__(self) -> None:
+        self._trajectory = 0
+        self._tool = ""
+        self._last: tuple[float, float] | None = None
+        self._feedings: dict[tuple[int, str], _Feeding] = defaultdict(_Feeding)
+
+    def add(self, entry: Mapping[str, Any]) -> None:
+        """Add one entry."""
+        if entry["kind"] == "sample" and "feedMm" in entry:
+            self._add_sample(entry["simTime"], entry["feedMm"])
+        elif entry["kind"] == "phase" and "procedure" in entry:
+            self._trajectory = entry["procedure"]["trajectory"]
+            self._tool = _NAMES.get(entry["procedure"]["stage"], "")
+            self._last = None
+        elif entry["kind"] == "continued":
+            self._last = None
+
+    def metrics(self, trajectory: int) -> dict[str, float]:
+        """Return the metrics of a trajectory, counted from 0: names with numbers of mm, s, mm/s."""
+        found: dict[str, float] = {}
+        for tool in _NAMES.values():
+            feeding = self._feedings[trajectory, tool]
+            found[f"{tool}_path_mm"] = feeding.path_mm
+            found[f"{tool}_moving_s"] = feeding.moving_s
+            found[f"{tool}_fastest_mm_s"] = feeding.fastest_mm_s
+            found[f"{tool}_reversals"] = feeding.reversals
+        return found
+
+    def _add_sample(self, sim_time: float, depth_mm: float) -> None:
+        feeding = self._feedings[self._trajectory, self._tool]
+        if self._last is None:
+            # Another hole begins, or the same one after a pause: no way is reversed by that.
+            feeding.way = 0.0
+        else:
+            time, depth = self._last
+            feeding.move(depth_mm, depth_mm - depth, sim_time - time)
+        self._last = sim_time, depth_mm
 
 
 def procedure_record(

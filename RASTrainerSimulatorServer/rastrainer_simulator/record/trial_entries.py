@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.journal.feed_recording import FeedRecording
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
@@ -22,7 +21,7 @@ from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.procedure_state import Tool
-from rastrainer_simulator.record.procedure_entries import procedure_record
+from rastrainer_simulator.record.procedure_entries import FeedRecording, procedure_record
 from rastrainer_simulator.record.recorded_setup import versions
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.record.view_report import (

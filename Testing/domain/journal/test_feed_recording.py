@@ -2,7 +2,7 @@
 
 import pytest
 
-from rastrainer.journal.feed_recording import FeedRecording
+from rastrainer_simulator.record.procedure_entries import FeedRecording
 
 
 def phase(stage, trajectory=0):

@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
-from rastrainer.journal.feed_recording import FeedRecording
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.meshes import read_procedure_meshes
 from rastrainer.procedure.score import ProcedureMeasures, reference_duration_s, score_procedure
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.procedure_entries import procedure_record
+from rastrainer_simulator.record.procedure_entries import FeedRecording, procedure_record
 from Testing.simulator.core.test_procedure_simulation import IN, Surgeon
 
 SEED = 11
