@@ -11,12 +11,14 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.surface_path import SurfaceGraph
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.scenario.complexity import Complexity, complexity, is_hidden
 from rastrainer_simulator.authoring.touch_order import (
+    Complexity,
     Transitions,
     arc_lengths,
+    complexity,
     crossing_order,
     easiest_order,
+    is_hidden,
     transitions_between,
 )
 

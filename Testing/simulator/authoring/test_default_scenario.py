@@ -13,12 +13,12 @@ from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
 from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import expected_tre
-from rastrainer.scenario.complexity import complexity
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.planning_setup import touchable
 from rastrainer_simulator.authoring.task_proposal import target_spread
+from rastrainer_simulator.authoring.touch_order import complexity
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
