@@ -9,8 +9,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.markups import read_points, write_markups
-from rastrainer.files.point_cloud import read_point_cloud, write_point_cloud
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, read_point_cloud, write_point_cloud
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_cloud import read_point_cloud
-from rastrainer.files.point_list import COORDINATE_LIMIT_MM, PointList
+from rastrainer.files.point_list import COORDINATE_LIMIT_MM, PointList, read_point_cloud
 from rastrainer.files.reading import number_in, read_json, read_rows
 from rastrainer.files.writing import write_text
 from rastrainer.json_checks import numbers
