@@ -16,7 +16,7 @@ from rastrainer.finite_json import decode_finite_json
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import read_parts
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent
-from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.screen_reader import screen_from_json
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.messages import HELLO, SUBPROTOCOL

@@ -13,7 +13,7 @@ from typing import Any
 from rastrainer.finite_json import decode_finite_json
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.glb_parts import Part
-from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.screen import Screen
 

@@ -20,7 +20,7 @@ from rastrainer_simulator.desktop.panels.procedure_gauges import (
     paint_bulls_eye,
     paint_gauge,
 )
-from rastrainer_simulator.desktop.panels.sprite import Side, Sprite
+from rastrainer_simulator.desktop.panels.sprite import Side, Sprite, Thumbnail
 from rastrainer_simulator.desktop.panels.stick import (
     StickLook,
     knob_box,
@@ -28,7 +28,6 @@ from rastrainer_simulator.desktop.panels.stick import (
     paint_stick,
     stick_boxes,
 )
-from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
 from rastrainer_simulator.desktop.panels.tip_guides import (
     REACH,
     STEP_DEG,

@@ -8,7 +8,7 @@ from rastrainer_simulator.desktop.panels import strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.item_row import Look, text_color
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
-from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.panels.tip_guides import target_arrow
 from rastrainer_simulator.net.views.screen import (
     Fact,

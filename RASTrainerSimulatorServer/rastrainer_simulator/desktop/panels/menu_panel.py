@@ -11,7 +11,7 @@ from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad, draw_keyboard
 from rastrainer_simulator.desktop.panels.item_row import Look, draw_item, draw_trend, trend_height
-from rastrainer_simulator.desktop.panels.thumbnail import Thumbnail
+from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.net.views.screen import Menu
 
 SHRINK = 0.94

@@ -1,10 +1,12 @@
-"""Painted pictures on the screen, to the pixel, and those of one color: scrim, frame and glow."""
+"""Painted pictures on the screen, to the pixel: sprites, pictures of one color, thumbnails."""
 
 from __future__ import annotations
 
+import io
 from enum import Enum
 
 import numpy as np
+import pygame
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkFloatArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
@@ -15,6 +17,7 @@ from vtkmodules.vtkRenderingCore import (
     vtkTexturedActor2D,
 )
 
+from rastrainer.errors import InputError
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.theme import Color
 
@@ -113,3 +116,34 @@ def glow(thickness: int, color: Color, side: Side) -> np.ndarray:
     pixels[..., :3] = np.round(255.0 * np.array(color[:3]))
     pixels[..., 3] = np.round(255.0 * color[3] * fade)[:, None]
     return np.rot90(pixels, list(Side).index(side))
+
+
+class Thumbnail:
+    """A picture that can be had in any size; two are the same only if they are one."""
+
+    def __init__(self, surface: pygame.Surface):
+        self._surface = surface
+
+    @classmethod
+    def from_png(cls, content: bytes) -> Thumbnail:
+        """Return the picture of a PNG file.
+
+        Raises:
+            InputError: it is none.
+        """
+        try:
+            surface = pygame.image.load(io.BytesIO(content), "picture.png")
+        except pygame.error as error:
+            raise InputError(f"A picture of the simulator cannot be read: {error}.") from None
+        # Of 24 bits, whatever the file has.
+        plain = pygame.Surface(surface.get_size(), depth=24)
+        plain.blit(surface, (0, 0))
+        return cls(plain)
+
+    def fitted(self, width: int, height: int) -> np.ndarray:
+        """Return it as large as fits, (height, width, 3) uint8, the top row first."""
+        across, down = self._surface.get_size()
+        factor = min(width / across, height / down)
+        size = (max(1, round(factor * across)), max(1, round(factor * down)))
+        scaled = pygame.transform.smoothscale(self._surface, size)
+        return pygame.surfarray.array3d(scaled).transpose(1, 0, 2)
