@@ -1,4 +1,11 @@
-"""Find the order in which fiducials are touched: one smooth path, or back and forth."""
+"""Find the order in which fiducials are touched, and how demanding it is: an index of difficulties.
+
+index = L / 100 mm + T / 90° + H + R / 90°
+
+L is the length in mm of the path over the surface from the first to the last fiducial; T the total
+turning of the path at the fiducials between, in degrees; H the number of fiducials hidden in the
+default (close-up) view; R the total rotation of the tool to stay normal to the skin, in degrees.
+"""
 
 from __future__ import annotations
 
