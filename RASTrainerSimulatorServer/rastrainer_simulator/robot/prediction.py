@@ -26,9 +26,8 @@ from rastrainer_simulator.robot.canonical_arm import (
     inside,
     tip,
 )
-from rastrainer_simulator.robot.closure import close_at
 from rastrainer_simulator.robot.elbow_circle import elbow_circle
-from rastrainer_simulator.robot.elbow_slide import LEAP, self_motion, squared_motion
+from rastrainer_simulator.robot.elbow_slide import LEAP, close_at, self_motion, squared_motion
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.vectors import ZERO, Vector, scale, subtract, unit
 

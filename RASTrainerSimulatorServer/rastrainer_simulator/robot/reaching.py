@@ -10,9 +10,8 @@ from typing import NamedTuple
 
 from rastrainer_simulator.robot.branches import TURN, fit, joint_angles, nearest_branch
 from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, chain, tilt_range
-from rastrainer_simulator.robot.closure import close
 from rastrainer_simulator.robot.elbow_circle import elbow_circle
-from rastrainer_simulator.robot.elbow_slide import with_least_motion
+from rastrainer_simulator.robot.elbow_slide import close, with_least_motion
 from rastrainer_simulator.robot.fabrik_passes import backward, forward, settle
 from rastrainer_simulator.robot.goal import Goal
 from rastrainer_simulator.vectors import Vector, dot
