@@ -28,7 +28,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import feedback_event, touch_feedback
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LocalizedText
-from rastrainer_simulator.record.view_report import GhostReport, GuidanceReport
+from rastrainer_simulator.record.beside_the_trial import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
 

@@ -38,7 +38,7 @@ from rastrainer_simulator.net.views.presenter import (
 )
 from rastrainer_simulator.net.views.screen import PRESS, Screen, ScreenMessage, Tone
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
-from rastrainer_simulator.record.view_report import DisplayReport
+from rastrainer_simulator.record.beside_the_trial import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
 from rastrainer_simulator.state import Answer, SimulationState, StepResult
 from rastrainer_simulator.viewpoint.view_control import Pictures

@@ -9,7 +9,7 @@ from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.input.inputs import Source, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorInput
-from rastrainer_simulator.record.view_report import ViewReport
+from rastrainer_simulator.record.beside_the_trial import ViewReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.axes import AxesChoice

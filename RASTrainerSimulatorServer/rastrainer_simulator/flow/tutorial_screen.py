@@ -15,7 +15,7 @@ from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent, feedback_event
 from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, ScreenMessage, Tone
-from rastrainer_simulator.record.tutorial_outcome import GUIDED_TOUCHES
+from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
 from rastrainer_simulator.vectors import Vector

@@ -21,16 +21,16 @@ from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.procedure_state import Tool
-from rastrainer_simulator.record.procedure_entries import FeedRecording, procedure_record
-from rastrainer_simulator.record.recorded_setup import versions
-from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
-from rastrainer_simulator.record.view_report import (
+from rastrainer_simulator.record.beside_the_trial import (
     DisplayReport,
     DisplayUse,
     GhostReport,
     GuidanceReport,
     NotedReport,
 )
+from rastrainer_simulator.record.procedure_entries import FeedRecording, procedure_record
+from rastrainer_simulator.record.recorded_setup import versions
+from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
 from rastrainer_simulator.state import (
     Event,
     EventKind,

@@ -13,11 +13,11 @@ from rastrainer.protocol import AbortReason, CommandName, Phase
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.stamps import file_stamp, stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
+from rastrainer_simulator.record.beside_the_trial import NotedReport
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
-from rastrainer_simulator.record.view_report import NotedReport
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 

@@ -28,7 +28,7 @@ from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
-from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
 
 QUESTIONNAIRE = StudyStep("P07", "questionnaire", 2, 19, questionnaire="nasa-tlx")

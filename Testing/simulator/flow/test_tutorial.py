@@ -16,7 +16,7 @@ from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW
 from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.state import TOUCH_ERRORS
 from Testing.simulator.flow.learner import FlowLearner
 from Testing.tutorial_player import TutorialPlayer

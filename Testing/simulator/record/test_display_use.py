@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rastrainer_simulator.record.view_report import DisplayReport, DisplayUse
+from rastrainer_simulator.record.beside_the_trial import DisplayReport, DisplayUse
 
 
 def test_the_record_names_the_last_view_all_frames_and_the_aids():

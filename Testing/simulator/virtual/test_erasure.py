@@ -11,8 +11,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
+from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.record.journal import Journal
-from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
 
 

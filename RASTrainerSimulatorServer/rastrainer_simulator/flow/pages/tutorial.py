@@ -10,7 +10,7 @@ from rastrainer_simulator.flow.session.obstacles import obstacle, tutorial_rule
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.net.views.screen import Fact, Menu
-from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 
 
 class TutorialPage(SessionPage):

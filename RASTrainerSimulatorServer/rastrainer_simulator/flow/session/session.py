@@ -63,7 +63,7 @@ from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
 from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
-from rastrainer_simulator.record.tutorial_outcome import TutorialOutcome
+from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState

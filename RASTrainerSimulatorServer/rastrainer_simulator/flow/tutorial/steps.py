@@ -10,7 +10,7 @@ from enum import Enum
 from rastrainer.protocol import Mode
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.record.tutorial_outcome import GUIDED_TOUCHES
+from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.teleoperation.axes import Axes
 from rastrainer_simulator.vectors import Vector, distance, dot, subtract

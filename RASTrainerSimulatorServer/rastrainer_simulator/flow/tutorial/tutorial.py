@@ -17,7 +17,7 @@ from rastrainer_simulator.flow.tutorial.steps import (
 from rastrainer_simulator.flow.tutorial.touch_practice import TouchPractice
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.record.tutorial_outcome import GUIDED_TOUCHES, TutorialOutcome
+from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES, TutorialOutcome
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.training import TrainingReply
 from rastrainer_simulator.vectors import Vector, vector
