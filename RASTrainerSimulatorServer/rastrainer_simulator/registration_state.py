@@ -1,4 +1,4 @@
-"""x"""
+"""What was touched and traced, and how it was registered: values of the trial's state, m and s."""
 
 from __future__ import annotations
 

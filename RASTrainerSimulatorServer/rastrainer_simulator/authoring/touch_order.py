@@ -1,10 +1,13 @@
-"""Find the order in which fiducials are touched, and how demanding it is: an index of difficulties.
+"""The order in which fiducials are touched, and how demanding it is: one index of difficulty.
 
 index = L / 100 mm + T / 90° + H + R / 90°
 
 L is the length in mm of the path over the surface from the first to the last fiducial; T the total
 turning of the path at the fiducials between, in degrees; H the number of fiducials hidden in the
 default (close-up) view; R the total rotation of the tool to stay normal to the skin, in degrees.
+
+Each unit is about one more action: a hand's width of travel, one corner, one change of the view,
+one quarter turn of the tool. The weights of 1 are a convention, not a measured effort.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""x"""
+"""What a trial's journal holds of a procedure: its record, and how drill and instrument went in."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""x"""
+"""A trial, and its procedure, by a scripted trainee over OpenIGTLink, as any client could."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""x"""
+"""Points in mm: lists, labeled or not, how two are paired, and clouds as PLY."""
 
 from __future__ import annotations
 
