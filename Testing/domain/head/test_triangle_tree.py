@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rastrainer.head.followed_points import FollowedPoints
 from rastrainer.head.surface_queries import nearest_on_mesh
 from rastrainer.head.triangle_tree import TriangleTree
 from Testing.domain.head.spheres import sphere_mesh
@@ -27,12 +28,24 @@ def test_the_nearest_points_are_those_of_the_search_for_one(head, off_mm):
     assert (found.positions <= corners.max(axis=1) + 1e-9).all()
 
 
-def test_a_wrong_guess_changes_nothing(head):
+def test_points_that_are_followed_have_the_nearest_points_of_a_new_search(head):
     random = np.random.default_rng(2)
-    points = head.vertices[:40] + random.normal(0.0, 2.0, (40, 3))
-    guess = random.integers(0, len(head.triangles), 40)
-    found, guessed = head.tree.nearest(points), head.tree.nearest(points, guess)
-    assert np.array_equal(found.positions, guessed.positions)
+    points = head.vertices[random.integers(0, len(head.vertices), 60)] + random.normal(
+        0, 3, (60, 3)
+    )
+    followed = FollowedPoints(head.tree, points, 0.0)
+    assert np.array_equal(followed.nearest.positions, head.tree.nearest(points).positions)
+    for step, size in enumerate((20.0, 3.0, 0.8, 0.5, 0.3, 0.01)):
+        moves = random.normal(0.0, size, points.shape)
+        points = points + moves
+        # Some move farther than was foretold.
+        found = followed.move(points, 0.7 * np.linalg.norm(moves, axis=1))
+        again = head.tree.nearest(points)
+        assert np.allclose(found.distances, again.distances, atol=1e-12)
+        assert np.allclose(found.positions, again.positions, atol=1e-9)
+        kept = np.delete(np.arange(len(points)), step)
+        followed.keep(kept)
+        points = points[kept]
 
 
 def test_one_triangle_and_triangles_without_area_have_nearest_points():

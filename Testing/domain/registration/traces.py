@@ -20,10 +20,17 @@ def colin27() -> HeadMesh:
 
 
 def places(mesh: HeadMesh, where: str) -> np.ndarray:
-    """The vertices, as indices, of a region of Colin27's skin."""
-    y, z = mesh.vertices.T[1:]
+    """The vertices, as indices, of a region of the skin: that of Colin27, scaled to a head's box.
+
+    `side` is the right half of the head, from temple to behind the ear.
+    """
+    own = colin27()
+    lowest = own.middle - own.size / 2.0
+    x, y, z = ((mesh.vertices - mesh.vertices.min(axis=0)) * (own.size / mesh.size) + lowest).T
     if where == "face":
         return np.flatnonzero((y > 30) & (z > -55) & (z < 60) & (mesh.vertex_normals[:, 1] > 0.1))
+    if where == "side":
+        return np.flatnonzero((x > 45) & (y > -80) & (y < 60) & (z > -55) & (z < 60))
     if where == "crown":
         return np.flatnonzero(z > 85)
     raise ValueError(where)

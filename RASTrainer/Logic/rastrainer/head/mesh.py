@@ -81,6 +81,11 @@ class HeadMesh:
         """(3,) float: the center of the box around the head, RAS mm."""
         return (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2.0
 
+    @cached_property
+    def size(self) -> np.ndarray:
+        """(3,) float: of the box around the head, mm."""
+        return np.asarray(np.ptp(self.vertices, axis=0))
+
     @property
     def euler_characteristic(self) -> int:
         """Vertices − edges + triangles: 2 for one closed body without a tunnel."""

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rastrainer.head.triangle_sides import TriangleSides, least_of_each
+
 LEAF = 8
 """Triangles in a box of the lowest level."""
 TOP_LEVEL = 5
-POOR_GUESS_MM = 2.0
-REPRESENTED_LEVEL = 9
+REPRESENTED_LEVEL = 7
 """Boxes of this level are told apart by the middle of one lowest box within each."""
 
 
@@ -38,73 +39,75 @@ class TriangleTree:
 
     Args:
         corners: (m, 3, 3) float, mm, the corners of at least one triangle.
+
+    Attributes:
+        sides: The triangles, in the tree's order; the last is there several times.
     """
 
     def __init__(self, corners: np.ndarray) -> None:
         levels = max(int(np.ceil(np.log2(max(len(corners) / LEAF, 1.0)))), 0)
         self._order = _halved(corners.mean(axis=1), levels)
-        self._place = np.empty(len(corners), dtype=np.int64)
-        self._place[self._order] = np.arange(len(self._order))
         ordered = np.asarray(corners, dtype=float)[self._order]
-        self._sides = _Sides.of(ordered)
+        self.sides = TriangleSides.of(ordered)
         lows, highs = ordered.min(axis=1), ordered.max(axis=1)
-        self._triangle_boxes = lows, highs
+        self._triangle_boxes = np.hstack([lows, highs])
         lows = lows.reshape(-1, LEAF, 3).min(axis=1)
         highs = highs.reshape(-1, LEAF, 3).max(axis=1)
         self._middles = (lows + highs) / 2.0
-        self._boxes = [(lows, highs)]
+        self._boxes = [np.hstack([lows, highs])]
         for _ in range(levels):
             lows = lows.reshape(-1, 2, 3).min(axis=1)
             highs = highs.reshape(-1, 2, 3).max(axis=1)
-            self._boxes.insert(0, (lows, highs))
+            self._boxes.insert(0, np.hstack([lows, highs]))
 
-    def nearest(self, points: np.ndarray, guess: np.ndarray | None = None) -> NearestPoints:
-        """Return the nearest point of the surface for each point (n, 3).
+    def nearest(self, points: np.ndarray) -> NearestPoints:
+        """Return the nearest point of the surface for each point (n, 3), finite, mm."""
+        points = np.asarray(points, dtype=float)
+        # A box as far away as what is known may hold it.
+        who, triangle = self.nearby(points, self.reach(points) * (1.0 + 1e-9) + 1e-12)
+        squares, v, w = self.sides.taken(triangle).nearest(points[who])
+        best = least_of_each(squares, np.searchsorted(who, np.arange(len(points))), who)
+        return self.found(points, triangle[best], v[best], w[best])
+
+    def found(
+        self, points: np.ndarray, places: np.ndarray, v: np.ndarray, w: np.ndarray
+    ) -> NearestPoints:
+        """Return nearest points by the places (n,) int of their triangles in `sides`, v and w."""
+        positions = self.sides.taken(places).at(v, w)
+        distances = np.linalg.norm(positions - points, axis=1)
+        return NearestPoints(positions, distances, self._order[places])
+
+    def nearby(self, points: np.ndarray, squares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return pairs of point and triangle, sorted by point: all within a squared distance.
 
         Args:
-            points: (n, 3) float, finite, mm.
-            guess: (n,) int, a triangle that is near each point, which saves time; the answer does
-                not depend on it.
+            points: (n, 3) float, mm.
+            squares: (n,) float, mm², at least that to the nearest triangle.
+
+        Returns:
+            The points (p,) int, and the places (p,) int of the triangles in `sides`; some pairs
+            are farther apart, none that are near is missing.
         """
-        points = np.asarray(points, dtype=float)
-        if guess is None:
-            reach = self._reach(points)
-        else:
-            of, along = self._place[guess], np.arange(len(points))
-            reach = self._sides.nearest(points, along, of)[0]
-            poor = np.flatnonzero(reach > POOR_GUESS_MM**2)
-            reach[poor] = np.minimum(reach[poor], self._reach(points[poor]))
-        # A box as far away as what is known may hold it.
-        reach = reach * (1.0 + 1e-9) + 1e-12
-        who, leaf = self._leaves_within(points, reach)
+        who, leaf = self._leaves_within(points, squares)
         who = np.repeat(who, LEAF)
         triangle = (leaf[:, None] * LEAF + np.arange(LEAF)).ravel()
-        kept = _is_within(self._triangle_boxes, triangle, points[who], reach[who])
-        who, triangle = who[kept], triangle[kept]
-        squares, v, w = self._sides.nearest(points, who, triangle)
-        starts = np.searchsorted(who, np.arange(len(points)))
-        least = np.minimum.reduceat(squares, starts)
-        ties = np.flatnonzero(squares == least[who])
-        best = ties[np.searchsorted(who[ties], np.arange(len(points)))]
-        chosen = triangle[best]
-        positions = self._sides.at(chosen, v[best], w[best])
-        distances = np.linalg.norm(positions - points, axis=1)
-        return NearestPoints(positions, distances, self._order[chosen])
+        boxes = self._triangle_boxes.take(triangle, axis=0)
+        kept = _is_within(boxes, points[who], squares[who])
+        return who[kept], triangle[kept]
 
-    def _reach(self, points: np.ndarray) -> np.ndarray:
-        """Return squared distances (n,) to a triangle that is near each point in most cases."""
+    def reach(self, points: np.ndarray) -> np.ndarray:
+        """Return squared distances (n,), mm², to a triangle that is near in most cases."""
         level = min(REPRESENTED_LEVEL, len(self._boxes) - 1)
         middles = self._middles.reshape(2**level, -1, 3)
-        # |m|² − 2 m·p: as |m − p|², without what all boxes share.
         entry = middles[:, middles.shape[1] // 2]
+        # |m|² − 2 m·p: as |m − p|², without what all boxes share.
         box = (np.sum(entry**2, axis=1) - 2.0 * points @ entry.T).argmin(axis=1)
-        away = np.sum((middles[box] - points[:, None]) ** 2, axis=2)
+        own = middles[box]
+        away = np.einsum("nki,nki->nk", own, own) - 2.0 * np.einsum("nki,ni->nk", own, points)
         box = box * middles.shape[1] + away.argmin(axis=1)
-        who = np.repeat(np.arange(len(points)), LEAF)
-        squares, _, _ = self._sides.nearest(
-            points, who, (box[:, None] * LEAF + np.arange(LEAF)).ravel()
-        )
-        return squares.reshape(-1, LEAF).min(axis=1)
+        tried = (box[:, None] * LEAF + np.arange(LEAF)).ravel()
+        squares, _, _ = self.sides.taken(tried).nearest(np.repeat(points, LEAF, axis=0))
+        return np.asarray(squares.reshape(-1, LEAF).min(axis=1))
 
     def _leaves_within(
         self, points: np.ndarray, squares: np.ndarray
@@ -112,94 +115,22 @@ class TriangleTree:
         """Return pairs of point and lowest box within its squared distance, sorted by point."""
         last = len(self._boxes) - 1
         level = min(TOP_LEVEL, last)
-        count = len(self._boxes[level][0])
-        who = np.repeat(np.arange(len(points)), count)
-        box = np.tile(np.arange(count), len(points))
-        while True:
-            kept = _is_within(self._boxes[level], box, points[who], squares[who])
-            who, box = who[kept], box[kept]
-            if level == last:
-                return who, box
+        near = _is_within(self._boxes[level][None], points[:, None], squares[:, None])
+        who, box = np.nonzero(near)
+        while level < last:
             level += 1
             who = np.repeat(who, 2)
             box = (box[:, None] * 2 + np.arange(2)).ravel()
+            kept = _is_within(self._boxes[level].take(box, axis=0), points[who], squares[who])
+            who, box = who[kept], box[kept]
+        return who, box
 
 
-@dataclass(frozen=True)
-class _Sides:
-    """Triangles as a corner and two sides, with the products that the search needs."""
-
-    corner: np.ndarray
-    to_b: np.ndarray
-    to_c: np.ndarray
-    products: np.ndarray
-
-    @classmethod
-    def of(cls, corners: np.ndarray) -> _Sides:
-        a = corners[:, 0]
-        to_b, to_c = corners[:, 1] - a, corners[:, 2] - a
-        bb, bc, cc = (
-            np.einsum("ij,ij->i", one, other)
-            for one, other in ((to_b, to_b), (to_b, to_c), (to_c, to_c))
-        )
-        return cls(a, to_b, to_c, np.stack([bb, bc, cc], axis=1))
-
-    def at(self, rows: np.ndarray, v: np.ndarray, w: np.ndarray) -> np.ndarray:
-        """Return the points corner + v·b + w·c of triangles, (n, 3)."""
-        return self.corner[rows] + v[:, None] * self.to_b[rows] + w[:, None] * self.to_c[rows]
-
-    def nearest(
-        self, points: np.ndarray, who: np.ndarray, rows: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return squared distance, v and w, each (p,), of the nearest point for p pairs.
-
-        The squared distance is a square in v and w: its minimum lies inside or on a side.
-        """
-        offset = points[who] - self.corner[rows]
-        along_b = np.einsum("ij,ij->i", offset, self.to_b[rows])
-        along_c = np.einsum("ij,ij->i", offset, self.to_c[rows])
-        bb, bc, cc = self.products[rows].T
-        determinant = bb * cc - bc * bc
-        # Without area, there is no inside: the nearest point lies on a side.
-        safe = np.where(determinant > 1e-12 * bb * cc, determinant, np.inf)
-        v, w = (cc * along_b - bc * along_c) / safe, (bb * along_c - bc * along_b) / safe
-        outside = np.flatnonzero((v < 0) | (w < 0) | (v + w > 1) | np.isinf(safe))
-        gain = 2 * (v * along_b + w * along_c) - v * v * bb - 2 * v * w * bc - w * w * cc
-        if len(outside):
-            sides = (bb[outside], bc[outside], cc[outside])
-            v[outside], w[outside], gain[outside] = _on_sides(
-                along_b[outside], along_c[outside], *sides
-            )
-        squares = np.einsum("ij,ij->i", offset, offset) - gain
-        return np.maximum(squares, 0.0), v, w
-
-
-def _is_within(
-    boxes: tuple[np.ndarray, np.ndarray], rows: np.ndarray, points: np.ndarray, squares: np.ndarray
-) -> np.ndarray:
-    """Return which boxes (p,) bool are within a squared distance (p,) of points (p, 3)."""
-    lows, highs = boxes
-    outside = np.maximum(lows[rows] - points, points - highs[rows])
+def _is_within(boxes: np.ndarray, points: np.ndarray, squares: np.ndarray) -> np.ndarray:
+    """Return which boxes (…, 6) of lowest and highest corner are within √squares (…) of points."""
+    outside = np.maximum(boxes[..., :3] - points, points - boxes[..., 3:])
     np.maximum(outside, 0.0, out=outside)
-    return np.einsum("ij,ij->i", outside, outside) <= squares
-
-
-def _on_sides(
-    along_b: np.ndarray, along_c: np.ndarray, bb: np.ndarray, bc: np.ndarray, cc: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return v, w and how much nearer than the corner: the best of the three sides."""
-    tiny = 1e-30
-    on_b = np.clip(along_b / np.maximum(bb, tiny), 0.0, 1.0)
-    on_c = np.clip(along_c / np.maximum(cc, tiny), 0.0, 1.0)
-    opposite = np.maximum(bb - 2 * bc + cc, tiny)
-    share = np.clip((along_c - along_b + bb - bc) / opposite, 0.0, 1.0)
-    zero = np.zeros_like(on_b)
-    v = np.stack([on_b, zero, 1.0 - share])
-    w = np.stack([zero, on_c, share])
-    gain = 2 * (v * along_b + w * along_c) - v * v * bb - 2 * v * w * bc - w * w * cc
-    best = gain.argmax(axis=0)
-    columns = np.arange(len(best))
-    return v[best, columns], w[best, columns], gain[best, columns]
+    return np.asarray(np.einsum("...i,...i->...", outside, outside) <= squares)
 
 
 def _halved(centers: np.ndarray, levels: int) -> np.ndarray:

@@ -112,7 +112,7 @@ def check_surface(mesh: HeadMesh) -> None:
     Raises:
         InputError: it is open, or not as large as a head in mm.
     """
-    extent = float(np.ptp(mesh.vertices, axis=0).max())
+    extent = float(mesh.size.max())
     least, most = HEAD_EXTENT_MM
     if not least <= extent <= most:
         raise InputError(
@@ -173,7 +173,7 @@ def slide_of(
     noise = max(rms_mm, LEAST_NOISE_MM)
     center = places.mean(axis=0)
     rows = np.concatenate([normals, np.cross(places - center, normals)], axis=1)
-    half = np.ptp(mesh.vertices, axis=0) / 2.0
+    half = mesh.size / 2.0
     prior = (noise / _LOOSEST_MM) ** 2 * np.diag([1.0] * 3 + [float(half.max()) ** 2] * 3)
     covariance = noise**2 * np.linalg.inv(rows.T @ rows + prior)
     found = []

@@ -1,9 +1,11 @@
 """The fit of points to a surface from several starts, by the true nearest points, trimmed.
 
 The sum of the squared distances to the nearest points on the triangles is minimized by the method
-of Levenberg and Marquardt. A distance grows along the line to its nearest point, so each step is
-that of point-to-plane ICP (Chen and Medioni 1992), with that line as the plane's normal. Points far
-outside of the spread of all are left out anew in each step (trimmed ICP, Chetverikov 2002).
+of Gauss and Newton. A distance grows along the line to its nearest point, so each step is that of
+point-to-plane ICP (Chen and Medioni 1992), with that line as the plane's normal. Where it leads
+up, since other triangles are nearest there, it is shortened to the minimum of the parabola through
+both costs and the slope. Points far outside of the spread of all are left out anew in each step
+(trimmed ICP, Chetverikov 2002).
 """
 
 from __future__ import annotations
@@ -12,17 +14,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rastrainer.head.followed_points import FollowedPoints
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.triangle_tree import NearestPoints
 
 MAX_ITERATIONS = 60
 STEP_MM = 10.0
 """No step moves a point of the trace farther: the nearest points are others there."""
+FOLLOWED_MM = 1.0
+"""After a step that moves no point farther, the triangles nearby are kept for the next ones."""
 GATE = 3.5
 """A point counts up to this many standard deviations, estimated from the median distance."""
 LEAST_GATE_MM = 1.0
 _NORMAL_PER_MEDIAN = 1.4826
 _DAMPING = 1e-7
-_MOST_DAMPING = 1e4
+"""Of the curvature's trace: a direction that the points leave open is not followed far."""
+_LEAST_SHARE = 1e-4
+"""A step is shortened no further: the nearest points change on the spot."""
+_SHORTENED = 0.1, 0.6
+"""To which share of the last step, at least and at most."""
 
 
 @dataclass(frozen=True)
@@ -85,32 +95,39 @@ def fit_to_surface(
         points: (n, 3) float, World mm.
         mesh: The surface, RAS mm.
         starts: (s, 4, 4) float, rigid, World→RAS.
-        tolerance_mm: A start has converged when a step moves no point farther.
+        tolerance_mm: A start has converged when its next whole step would move no point farther.
         trimmed: Whether points far outside of the spread are left out.
         max_iterations: For each start.
     """
-    now = _placed(points, mesh, starts, None)
-    size = len(starts)
+    size, count = len(starts), len(points)
+    followed = FollowedPoints(mesh.tree, transforms_of(starts, points).reshape(-1, 3), 0.0)
+    now = _placed(starts, followed.nearest)
     converged, iterations = np.zeros(size, dtype=bool), np.zeros(size, dtype=int)
-    damping = np.full(size, _DAMPING)
+    share = np.ones(size)
     active = np.arange(size)
     for _ in range(max_iterations):
-        if not len(active):
-            break
         here = now.taken(active)
         gate = gates(here.distances_mm, trimmed)
-        moved = _stepped(points, mesh, here, gate, damping[active])
-        next_ = _placed(points, mesh, moved, here.triangles)
+        step = _step(points, mesh, here, gate)
+        moved, places, longest = step.taken_by(share[active], here, points)
+        # After a small step, all that follow are hardly longer together; after a long one, far more
+        # triangles would have to be kept than are found anew.
+        slack = np.where(longest < FOLLOWED_MM, longest, 0.0)
+        next_ = _placed(moved, followed.move(places.reshape(-1, 3), np.repeat(slack, count)))
         iterations[active] += 1
-        better = costs(next_.distances_mm, gate) <= costs(here.distances_mm, gate)
-        longest = _longest_move(points, here.matrices, moved)
-        damping[active] = np.where(
-            better, np.maximum(damping[active] / 10.0, _DAMPING), damping[active] * 100.0
-        )
+        before, after = costs(here.distances_mm, gate), costs(next_.distances_mm, gate)
+        better = after <= before
+        # `longest` is that of a share of the whole step.
+        done = (longest < tolerance_mm * share[active]) | (share[active] < _LEAST_SHARE)
+        share[active] = _next_share(share[active], before, after, step.slope * share[active])
         _replace(now, active[better], next_.taken(np.flatnonzero(better)))
-        done = (longest < tolerance_mm) | (damping[active] > _MOST_DAMPING)
         converged[active[done]] = True
         active = active[~done]
+        if not len(active):
+            break
+        if done.any():
+            rows = np.arange(len(done) * count).reshape(-1, count)
+            followed.keep(rows[~done].ravel())
     return SurfaceFit(
         now.matrices, now.distances_mm, now.nearest_mm, now.triangles, converged, iterations
     )
@@ -141,7 +158,7 @@ def transforms_of(matrices: np.ndarray, points: np.ndarray) -> np.ndarray:
 def rotations(vectors: np.ndarray) -> np.ndarray:
     """Return the rotations (s, 3, 3) about vectors (s, 3) by their lengths in rad (Rodrigues)."""
     angles = np.linalg.norm(vectors, axis=1)
-    cross = np.cross(vectors[:, None, :], np.eye(3))
+    cross = _cross(vectors[:, None, :], np.eye(3))
     safe = np.where(angles > 1e-12, angles, 1.0)
     first = np.where(angles > 1e-12, np.sin(safe) / safe, 1.0)
     second = np.where(angles > 1e-12, (1.0 - np.cos(safe)) / safe**2, 0.5)
@@ -150,19 +167,15 @@ def rotations(vectors: np.ndarray) -> np.ndarray:
     return np.eye(3) + first[:, None, None] * cross + second[:, None, None] * cross @ cross
 
 
-def _placed(
-    points: np.ndarray, mesh: HeadMesh, matrices: np.ndarray, guess: np.ndarray | None
-) -> SurfaceFit:
-    places = transforms_of(matrices, points)
-    nearest = mesh.tree.nearest(places.reshape(-1, 3), None if guess is None else guess.ravel())
-    shape = places.shape[:2]
+def _placed(matrices: np.ndarray, nearest: NearestPoints) -> SurfaceFit:
+    size = len(matrices)
     return SurfaceFit(
         np.array(matrices, dtype=float),
-        nearest.distances.reshape(shape),
-        nearest.positions.reshape(*shape, 3),
-        nearest.triangles.reshape(shape),
-        np.zeros(len(matrices), dtype=bool),
-        np.zeros(len(matrices), dtype=int),
+        nearest.distances.reshape(size, -1),
+        nearest.positions.reshape(size, -1, 3),
+        nearest.triangles.reshape(size, -1),
+        np.zeros(size, dtype=bool),
+        np.zeros(size, dtype=int),
     )
 
 
@@ -173,34 +186,68 @@ def _replace(now: SurfaceFit, rows: np.ndarray, other: SurfaceFit) -> None:
     now.triangles[rows] = other.triangles
 
 
-def _stepped(
-    points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray, damping: np.ndarray
-) -> np.ndarray:
-    """Return the matrices (s, 4, 4) after one step of Levenberg and Marquardt."""
+@dataclass(frozen=True)
+class _WholeStep:
+    """The whole steps of s starts.
+
+    Attributes:
+        shifts: (s, 3) float, mm, of the trace's center.
+        turns: (s, 3) float, rad, about it.
+        centers: (s, 3) float, RAS mm.
+        slope: (s,) float, mm², by how much the cost changes along the step, to first order.
+    """
+
+    shifts: np.ndarray
+    turns: np.ndarray
+    centers: np.ndarray
+    slope: np.ndarray
+
+    def taken_by(
+        self, share: np.ndarray, here: SurfaceFit, points: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return matrices, the points' places, and the longest move after a share (s,) of it."""
+        turn = rotations(share[:, None] * self.turns)
+        moved = np.zeros_like(here.matrices)
+        moved[:, :3, :3] = turn @ here.matrices[:, :3, :3]
+        from_center = here.matrices[:, :3, 3] - self.centers
+        moved[:, :3, 3] = (turn @ from_center[..., None])[..., 0] + self.centers
+        moved[:, :3, 3] += share[:, None] * self.shifts
+        moved[:, 3, 3] = 1.0
+        places = transforms_of(moved, points)
+        moves = places - transforms_of(here.matrices, points)
+        return moved, places, np.sqrt(np.einsum("sni,sni->sn", moves, moves).max(axis=1))
+
+
+def _step(points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray) -> _WholeStep:
+    """Return the steps of Gauss and Newton."""
     places = transforms_of(here.matrices, points)
     center = places.mean(axis=1)
     arms = places - center[:, None]
     # Rotations are counted in mm at the trace's own extent, so that all parameters are alike.
     extent = np.sqrt(np.mean(np.sum(arms**2, axis=2), axis=1))
     normals = plane_normals(mesh, here, points)
-    rows = np.concatenate([normals, np.cross(arms, normals) / extent[:, None, None]], axis=2)
-    weights = (here.distances_mm <= gate[:, None]).astype(float)[..., None]
-    hessian = np.swapaxes(rows * weights, 1, 2) @ rows
-    gradient = np.einsum("sni,sn->si", rows * weights, here.distances_mm)
-    scale = np.trace(hessian, axis1=1, axis2=2) * damping + 1e-12
-    hessian = hessian + scale[:, None, None] * np.eye(6)
-    step = -np.linalg.solve(hessian, gradient[..., None])[..., 0]
+    rows = np.concatenate([normals, _cross(arms, normals) / extent[:, None, None]], axis=2)
+    weighted = rows * (here.distances_mm <= gate[:, None])[..., None]
+    hessian = np.swapaxes(weighted, 1, 2) @ rows
+    gradient = np.einsum("sni,sn->si", weighted, here.distances_mm)
+    scale = np.trace(hessian, axis1=1, axis2=2) * _DAMPING + 1e-12
+    step = -np.linalg.solve(hessian + scale[:, None, None] * np.eye(6), gradient[..., None])[..., 0]
     reach = np.linalg.norm(step[:, :3], axis=1) + np.linalg.norm(step[:, 3:], axis=1)
     step *= np.minimum(1.0, STEP_MM / np.maximum(reach, 1e-12))[:, None]
-    turn = rotations(step[:, 3:] / extent[:, None])
-    moved = np.zeros_like(here.matrices)
-    moved[:, :3, :3] = turn @ here.matrices[:, :3, :3]
-    from_center = here.matrices[:, :3, 3] - center
-    moved[:, :3, 3] = (turn @ from_center[..., None])[..., 0] + center + step[:, :3]
-    moved[:, 3, 3] = 1.0
-    return moved
+    slope = 2.0 * np.einsum("si,si->s", gradient, step)
+    return _WholeStep(step[:, :3], step[:, 3:] / extent[:, None], center, slope)
 
 
-def _longest_move(points: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
-    moves = transforms_of(after, points) - transforms_of(before, points)
-    return np.linalg.norm(moves, axis=2).max(axis=1)
+def _next_share(
+    share: np.ndarray, before: np.ndarray, after: np.ndarray, change: np.ndarray
+) -> np.ndarray:
+    """Return which shares (s,) of the next steps to take, by costs and the foretold change."""
+    lowest = -change / np.maximum(2.0 * (after - before - change), 1e-30)
+    shorter = share * np.clip(lowest, *_SHORTENED)
+    return np.where(after <= before, np.minimum(1.0, 2.0 * share), shorter)
+
+
+def _cross(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the cross products (…, 3), for few at a time faster than numpy's."""
+    (a, b, c), (x, y, z) = np.moveaxis(one, -1, 0), np.moveaxis(other, -1, 0)
+    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)

@@ -9,6 +9,7 @@ from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.registration.starts_aside import starts_aside
 from rastrainer.registration.surface_checks import (
     MatchMeasures,
     SurfaceSlide,
@@ -33,9 +34,9 @@ from rastrainer.registration.warnings import RegistrationWarning
 STARTS = 8
 START_SD_MM, START_SD_DEG = 5.0, 5.0
 """Of the starts about the given one, on each axis: what three landmarks leave open."""
-COARSE_POINTS, COARSE_ITERATIONS = 60, 20
+COARSE_POINTS, COARSE_ITERATIONS = 40, 20
 COARSE_TOLERANCE_MM = 0.05
-TOLERANCE_MM = 2e-3
+MIDDLE_TOLERANCE_MM, TOLERANCE_MM = 0.02, 1e-3
 HOPELESS = 4.0
 """A minimum whose coarse cost is this many times the best one's is followed no further."""
 RIVAL_COST = 2.0
@@ -129,7 +130,8 @@ def match_surface(
         mesh: The head's closed surface, RAS.
         start: (4, 4) float, rigid, World→RAS, as from three landmarks: within about 10 mm and 10°.
         seed: Of the further starts about it.
-        starts: Number of starts, the given one included.
+        starts: Number of starts, the given one included; if there is only one, lower minima next
+            to its own are not looked for either.
         trimmed: Whether points far off are left out of the fit.
 
     Raises:
@@ -171,7 +173,8 @@ def _fit(
 ) -> tuple[SurfaceFit, np.ndarray, np.ndarray]:
     """Return the fits, best first; the matrices of hopeless ones; how many starts ended in each.
 
-    All starts are first followed with some of the points; those that meet go on as one.
+    All starts are first followed with some of the points; those that meet go on as one, and the
+    best of them also from both of its sides.
     """
     few = thinned(points, COARSE_POINTS)
     coarse = fit_to_surface(
@@ -180,11 +183,17 @@ def _fit(
     first, which = _minima(coarse, mesh, points, trimmed)
     score = costs(coarse.distances_mm, _common_gate(coarse, trimmed))[first]
     hopeful = first[score <= HOPELESS * score[0] + 1e-6]
-    fine = fit_to_surface(points, mesh, coarse.matrices[hopeful], TOLERANCE_MM, trimmed=trimmed)
-    fine = replace(fine, iterations=coarse.iterations[hopeful] + fine.iterations)
-    kept, again = _minima(fine, mesh, points, trimmed)
+    begun = coarse.matrices[hopeful]
+    if len(starts) > 1:
+        begun = np.concatenate([begun, starts_aside(few, mesh, coarse, first[0])])
+    middle = fit_to_surface(points, mesh, begun, MIDDLE_TOLERANCE_MM, trimmed=trimmed)
+    lowest, again = _minima(middle, mesh, points, trimmed)
+    again = again[: len(hopeful)]
+    fine = fit_to_surface(points, mesh, middle.matrices[lowest], TOLERANCE_MM, trimmed=trimmed)
+    fine = replace(fine, iterations=middle.iterations[lowest] + fine.iterations)
+    kept, finally_ = _minima(fine, mesh, points, trimmed)
     # The hopeless ones keep their places after the others.
-    number = np.concatenate([again, len(kept) + np.arange(len(first) - len(hopeful))])
+    number = np.concatenate([finally_[again], len(kept) + np.arange(len(first) - len(hopeful))])
     others = coarse.matrices[first[len(hopeful) :]]
     return fine.taken(kept), others, np.bincount(number[which], minlength=len(kept))
 
