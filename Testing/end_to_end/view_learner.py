@@ -34,9 +34,11 @@ class ViewLearner:
         while not is_done():
             trainee.approach(label, 0.02)
             if trainee.lower_onto(label):
+                refused = trainee.refused
+                is_answered = lambda r=refused: is_done() or trainee.refused > r  # noqa: E731
                 trainee.hands.tap("touch")
                 with suppress(AssertionError):
-                    wait_until(is_done, f"touch {label}", trainee.again_s)
+                    wait_until(is_answered, f"touch {label}", trainee.again_s)
 
     def resume(self):
         self.trainee.choose("resume")

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.desktop.gl_window import ARM, ICON_SIZE, SKIN, window_icon
 from rastrainer_simulator.desktop.panels import strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.item_row import Look, text_color
@@ -99,6 +100,15 @@ def test_a_long_text_hides_no_choice(size):
     assert len(paint(menu, size).rows) == len(items)
 
 
+@pytest.mark.parametrize("size", SIZES[:4])
+def test_the_menu_of_the_tasks_is_whole_without_being_wider(size):
+    items = tuple(MenuItem(f"row{n}", f"Row {n}", help="So many words. " * 8) for n in range(14))
+    tasks = Menu("experiment", "Experiment", items=items, focus="row13")
+    picture, few = paint(tasks, size), paint(replace(tasks, items=items[:3]), size)
+    assert picture.rows.keys() == {item.name for item in items}
+    assert picture.pixels.shape[1] <= few.pixels.shape[1]
+
+
 def test_a_click_finds_the_item_in_whose_row_it_is():
     picture = paint(MENU, (1920, 1080))
     for name, row in picture.rows.items():
@@ -145,6 +155,14 @@ def test_long_sentences_and_many_hints_stay_in_their_room(size):
         strips.hints((hints, ""), brush, room),
     )
     assert max(pixels.shape[1] for pixels in painted) <= room
+
+
+def test_the_window_has_an_icon_of_its_own_with_a_head_and_the_robot():
+    icon = window_icon()
+    assert icon.shape == (ICON_SIZE, ICON_SIZE, 4)
+    for color in (SKIN, ARM):
+        is_that = np.abs(icon[..., :3] - 255.0 * np.array(color[:3])).max(axis=2) < 8
+        assert is_that.sum() > 100
 
 
 def test_tones_are_told_by_color():

@@ -16,7 +16,8 @@ from rastrainer_simulator.net.views.screen import Menu
 
 SHRINK = 0.94
 SMALLEST = 0.84
-_ROW_GAP = 1.25 * theme.STEP
+_ROWS, _CLOSE_ROWS = (theme.ROW_HEIGHT, 1.25 * theme.STEP), (5.75 * theme.STEP, 0.5 * theme.STEP)
+"""How high a row is, and how far from the next."""
 _FACT_HEIGHT = 5.5 * theme.STEP
 _PICTURE_HEIGHT = 0.75
 """Of a thumbnail as large as its column is wide."""
@@ -50,19 +51,21 @@ def menu_panel(
 
     The item `hovered` is under the mouse; `thumbnail` belongs to the one that has the focus.
 
-    What is too high is set smaller, down to what is still readable, then wider, and then with its
-    text beside its rows; beyond that the rows scroll with the focus.
+    What is too high is set smaller, down to what is still readable, then with closer rows, wider,
+    and with its text beside its rows; beyond that the rows scroll with the focus.
     """
-    factor, width, widths = 1.0, theme.PANEL_WIDTH, [theme.BROAD_PANEL_WIDTH]
+    factor, width, widths, rows = 1.0, theme.PANEL_WIDTH, [theme.BROAD_PANEL_WIDTH], _ROWS
     if menu.paragraphs:
         widths.insert(0, theme.WIDE_PANEL_WIDTH)
-    layout = _Layout(menu, Brush(scale), room, width)
-    while layout.height > room[1] and (factor > SMALLEST or widths):
+    layout = _Layout(menu, Brush(scale), room, width, rows)
+    while layout.height > room[1] and (factor > SMALLEST or rows is _ROWS or widths):
         if factor > SMALLEST:
             factor *= SHRINK
+        elif rows is _ROWS:
+            rows = _CLOSE_ROWS
         else:
             width = widths.pop()
-        layout = _Layout(menu, Brush(scale * factor), room, width)
+        layout = _Layout(menu, Brush(scale * factor), room, width, rows)
     return layout.paint(hovered, thumbnail)
 
 
@@ -73,9 +76,17 @@ class _Layout:
     A trend has the text under it.
     """
 
-    def __init__(self, menu: Menu, brush: Brush, room: tuple[int, int], width: int):
+    def __init__(
+        self,
+        menu: Menu,
+        brush: Brush,
+        room: tuple[int, int],
+        width: int,
+        rows: tuple[float, float],
+    ):
         self._menu = menu
         self._brush = brush
+        self._row, self._gap = (brush.px(units) for units in rows)
         self._pad = brush.px(theme.PANEL_PAD)
         has_picture = (
             bool(menu.picture) or menu.trend is not None or any(item.picture for item in menu.items)
@@ -113,14 +124,6 @@ class _Layout:
         self._shown = self._rows_in_sight(min(len(menu.items), fitting))
         shown = above + self._rows_height(len(self._shown)) + below
         self._height = min(self.height, max(shown, least))
-
-    @property
-    def _row(self) -> int:
-        return self._brush.px(theme.ROW_HEIGHT)
-
-    @property
-    def _gap(self) -> int:
-        return self._brush.px(_ROW_GAP)
 
     def _rows_height(self, count: int) -> int:
         return count * (self._row + self._gap) - self._gap if count else 0
