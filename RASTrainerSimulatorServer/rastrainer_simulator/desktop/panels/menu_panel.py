@@ -16,7 +16,8 @@ from rastrainer_simulator.net.views.screen import Menu
 
 SHRINK = 0.94
 SMALLEST = 0.84
-_ROWS, _CLOSE_ROWS = (theme.ROW_HEIGHT, 1.25 * theme.STEP), (5.75 * theme.STEP, 0.5 * theme.STEP)
+_ROWS: tuple[float, float] = (theme.ROW_HEIGHT, 1.25 * theme.STEP)
+_CLOSE_ROWS: tuple[float, float] = (5.75 * theme.STEP, 0.5 * theme.STEP)
 """How high a row is, and how far from the next."""
 _FACT_HEIGHT = 5.5 * theme.STEP
 _PICTURE_HEIGHT = 0.75
