@@ -17,6 +17,10 @@ simulator: .venv/installed page
 	$(BIN)/python tools/system_packages.py simulator
 	$(BIN)/rastrainer simulator $(if $(or $(DISPLAY),$(filter Windows_NT,$(OS)),$(filter Darwin,$(UNAME))),--desktop)
 
+# OpenBLAS computes in one thread: several in each of many processes only wait for one another, which
+# took three times the processors' time.
+ONE_THREAD := OPENBLAS_NUM_THREADS=1
+
 # A test that hangs says where and ends the run, and so does a worker that crashes: xdist would wait
 # for the rest of its file for ever. Python keeps what it has compiled, whatever the environment says:
 # hundreds of processes start.
@@ -24,13 +28,13 @@ ENDING := --max-worker-restart=0 -o faulthandler_timeout=900 -o faulthandler_exi
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ENDING) -q
+	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ENDING) -q
 
 # What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
 soak: .venv/soak-installed page
 	$(BIN)/python tools/system_packages.py test
 	$(BIN)/python tools/system_packages.py soak
-	$(BIN)/python -m pytest -m soak -q
+	$(ONE_THREAD) $(BIN)/python -m pytest -m soak -q
 
 bench: .venv/bench-installed page
 	$(BIN)/python tools/system_packages.py test
