@@ -261,7 +261,7 @@ def test_a_trainee_whose_server_and_slicer_are_killed_at_once_resumes_and_loses_
     tmp_path, simulators, slicer_sides
 ):
     lab = Lab(tmp_path, simulators, slicer_sides)
-    player = kill_both_in_play(lab, kills=4, seed=8)
+    player = kill_both_in_play(lab, kills=2, seed=8)
     assert player.resumed >= 1
     check_study(lab, player)
 

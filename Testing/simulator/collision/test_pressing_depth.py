@@ -15,7 +15,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.state import EventKind
+from rastrainer_simulator.state import EventKind, Motion
 from Testing.simulator.virtual.cheating_trainees import press
 
 DT = 0.004
@@ -46,7 +46,8 @@ def rest(simulation, ticks):
 
 def move(simulation, place_mm, speed=300.0):
     do(simulation, CommandName.MOVE_TIP_TO, positionMm=list(place_mm), speedMmS=speed)
-    rest(simulation, 1000)
+    while simulation.state.motion is not Motion.NONE:
+        rest(simulation, 1)
 
 
 def tip_mm(simulation):

@@ -400,7 +400,7 @@ def test_a_whole_trial_is_played_by_moves_and_every_touch_is_where_its_fiducial_
     for number in range(1, 16):
         fiducial, outside = hover(truth, str(number))
         trial.move_to(outside)
-        assert trial.move_to(fiducial, speed=200.0) == "reached"
+        assert trial.move_to(fiducial) == "reached"
         assert trial.do(CommandName.CAPTURE).ok
         trial.move_to(outside)
         trial.move_to(above)

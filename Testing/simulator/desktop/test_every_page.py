@@ -56,7 +56,6 @@ def test_every_page_is_shown_the_same_when_it_is_opened_again(show, presenter): 
         again = show(screen)
         assert np.array_equal(first, again), name
         assert not np.array_equal(first, empty), name
-        show(Screen())
 
 
 def test_the_errors_of_the_touches_are_drawn_in_the_color_of_their_size(show):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import Future
+from unittest import mock
 
 import pytest
 
@@ -15,9 +16,32 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.state import Answer
+from rastrainer_simulator.viewpoint.touch_views import TouchViews
 from Testing.sdl_virtual_gamepad import VirtualGamepad
-from Testing.simulator.flow.trainee import Keys, Pad, Trainee
+from Testing.simulator.flow.trainee import RATE_HZ, Keys, Pad, Trainee
 from Testing.without_tutorial import WITHOUT_TUTORIAL, leave_tutorial_out
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _known_marks():
+    """Look once for where the numbers of a task are on the skin, not for each presenter again."""
+    known, on_skin = {}, TouchViews._on_skin
+
+    def kept(views, task):
+        key = views._scenario.head_mesh, task.fiducials.tobytes()
+        if key not in known:
+            known[key] = on_skin(views, task)
+        return known[key]
+
+    with mock.patch.object(TouchViews, "_on_skin", kept):
+        yield
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _quick_disk():
+    """Let no answer wait for the disk: the loop would tick meanwhile."""
+    with mock.patch("os.fsync"):
+        yield
 
 
 class Outside:
@@ -75,7 +99,7 @@ def outside(tmp_path):
 @pytest.fixture
 def loop(shared, tmp_path):
     put_back(shared)
-    with ControlLoop(shared, tmp_path / "records", speed=None) as loop:
+    with ControlLoop(shared, tmp_path / "records", rate_hz=RATE_HZ, speed=None) as loop:
         yield loop
 
 

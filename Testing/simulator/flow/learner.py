@@ -18,7 +18,7 @@ class FlowLearner:
 
     def turn_view(self):
         self.hands.hold("view_right", True)
-        self.trainee.step(60)
+        self.trainee.step(30)
         self.hands.hold("view_right", False)
         self.trainee.step()
 

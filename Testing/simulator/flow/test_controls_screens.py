@@ -31,7 +31,7 @@ def test_unplugging_the_gamepad_in_use_stops_the_robot_and_the_clock_until_the_t
     pilot.hands.plugged.plug_out()
     pilot.step()
     stopped = tip(pilot)
-    pilot.step(30)
+    pilot.step(15)
     assert np.array_equal(tip(pilot), stopped)
     pilot.until_menu("trial")
     assert "unplugged: the robot stands still" in str(pilot.presenter.screen.warnings)
@@ -262,7 +262,7 @@ def test_arrow_keys_move_the_tool_as_the_letters_do(trainee, key, letter):
     for code in (letter, key):
         before = tip(trainee)
         trainee.presenter.on_key(1, code, True, "")
-        trainee.step(20)
+        trainee.step(10)
         trainee.presenter.on_key(1, code, False, "")
         trainee.step(5)
         moves.append(tip(trainee) - before)

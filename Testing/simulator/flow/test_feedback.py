@@ -57,7 +57,7 @@ def test_touch_undo_proximity_contact_and_finish_are_told_and_felt_exactly_once(
     top = truth.in_world(truth.fiducials["1"]) / MM_PER_M
     outward = (top - center) / np.linalg.norm(top - center)
     pilot.steer_to(top + 0.06 * outward, 0.02)
-    pilot.steer_to(top - 0.02 * outward, 0.001)
+    pilot.steer_to(top - 0.02 * outward, 0.001, fine=True)
     pilot.steer_to(top + 0.06 * outward, 0.02)
     pilot.hands.push(0.0, 0.0, 0.0, False)
     for number in range(1, 16):

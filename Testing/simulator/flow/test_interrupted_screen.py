@@ -12,7 +12,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from Testing.simulator.flow.conftest import put_back
-from Testing.simulator.flow.trainee import Keys, Trainee
+from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
 
 SENTENCES = {
     "en": "P07, this trial was interrupted; 0 of 15 points are kept. Continue with point 1 when "
@@ -27,7 +27,7 @@ def records(shared, tmp_path):
     """A folder with the trial of a simulator that has ended in the middle."""
     put_back(shared)
     folder = tmp_path / "records"
-    with ControlLoop(shared, folder, speed=None) as loop:
+    with ControlLoop(shared, folder, rate_hz=RATE_HZ, speed=None) as loop:
         arguments = check_arguments("StartTask", {"task": "task-2", "trainee": "P07"})
         assert loop.submit(CommandName.START_TASK, arguments).result(30.0).ok
     return folder
@@ -43,7 +43,7 @@ def back(shared, records, outside, language):
     """A trainee at the restarted simulator."""
     reading, interrupted = find_interrupted(records)
     shared.resume_trial(interrupted)
-    with ControlLoop(shared, records, speed=None, interrupted=reading) as loop:
+    with ControlLoop(shared, records, rate_hz=RATE_HZ, speed=None, interrupted=reading) as loop:
         preferences = Preferences(language=language)
         presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
         trainee = Trainee(loop, presenter, Keys)

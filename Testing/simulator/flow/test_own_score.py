@@ -94,7 +94,7 @@ def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_
 def test_while_slicer_is_connected_or_a_study_is_led_the_simulator_scores_nothing(trainee, outside):
     outside.has_slicer = True
     trial = register(trainee)
-    trainee.step(300)
+    trainee.step(150)
     assert trainee.menu.name == "waiting"
     assert "3D Slicer is scoring" in trainee.menu.paragraphs[0]
     trainee.choose("menu")
@@ -103,7 +103,7 @@ def test_while_slicer_is_connected_or_a_study_is_led_the_simulator_scores_nothin
     outside.has_slicer = False
     trial_of_study = register(trainee)
     # Longer than a lost connection is waited for.
-    trainee.step(1000)
+    trainee.step(500)
     assert trainee.menu.name == "waiting"
     assert "it will score them as soon as it is" in trainee.menu.paragraphs[0]
     for one in (trial, trial_of_study):
@@ -115,7 +115,7 @@ def test_a_slicer_that_comes_back_within_seconds_finds_the_trial_unscored(traine
     trainee.step(2)
     outside.has_slicer = False
     trial = register(trainee)
-    trainee.step(300)
+    trainee.step(150)
     assert trainee.menu.name == "waiting"
     assert entries_of(outside, trial, "registration") == []
     trainee.until_menu("result")
@@ -157,7 +157,7 @@ def feed(trainee, to_mm):
         if trainee.state.tool is not tool or 1000 * trainee.state.feed >= to_mm:
             return
         do(trainee, "Feed", velocityMmS=10.0, durationS=2.0)
-        trainee.step(100)
+        trainee.step(50)
     raise AssertionError(f"It is only {1000 * trainee.state.feed:.1f} mm deep.")
 
 
@@ -167,7 +167,7 @@ def test_without_a_slicer_the_simulator_registers_for_a_procedure_and_scores_it(
     # While a Slicer is connected, it is the one that registers.
     outside.has_slicer = True
     trial = to_verifying(trainee)
-    trainee.step(300)
+    trainee.step(150)
     assert not is_in_use(trainee)
     outside.has_slicer = False
     trainee.until(lambda: is_in_use(trainee), "a registration in use")
@@ -184,7 +184,7 @@ def test_without_a_slicer_the_simulator_registers_for_a_procedure_and_scores_it(
     feed(trainee, 60.0)
     do(trainee, "ReleaseInstrument")
     trainee.until_menu("waiting")
-    trainee.step(300)
+    trainee.step(150)
     assert entries_of(outside, trial, "registration") == []
     outside.services.study.take(StudyStep("P07"))
     trainee.until_menu("result")

@@ -30,7 +30,7 @@ from rastrainer_simulator.rendering.procedure_picture import (
 )
 from Testing.read_png import read_png
 from Testing.simulator.flow.conftest import Outside
-from Testing.simulator.flow.trainee import Keys, Trainee
+from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
 from Testing.simulator.planned_procedures import ENTRIES, TARGETS, procedure_setup
 from Testing.without_tutorial import WITHOUT_TUTORIAL
 
@@ -49,7 +49,7 @@ class Operation:
     def keep(self, name: str) -> None:
         """Keep the screen, and what views receive beside it."""
         trainee = self.trainee
-        trainee.step(30)
+        trainee.step(15)
         shown = trainee.presenter.shown.latest
         pictures = trainee.presenter.pictures(shown)
         told = outgoing._procedure(shown, pictures)
@@ -85,7 +85,7 @@ def operation(tmp_path_factory):
     outside = Outside(folder)
     outside.has_slicer = True
     simulation = Simulation(procedure_setup(folder / "scenario"), 3)
-    with ControlLoop(simulation, folder / "records", speed=None) as loop:
+    with ControlLoop(simulation, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
         preferences = Preferences(**{**WITHOUT_TUTORIAL, "order": "any"})
         presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
         trainee = Trainee(loop, presenter, Keys)

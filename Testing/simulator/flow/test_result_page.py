@@ -12,7 +12,7 @@ from rastrainer_simulator.net.views.screen import Tone
 from rastrainer_simulator.ops.texts.german import GERMAN
 from rastrainer_simulator.ops.texts.texts import Texts
 from Testing.simulator.flow.conftest import Outside, put_back
-from Testing.simulator.flow.trainee import Keys, Trainee
+from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
 
 REGISTRATION = {
     "matrix": (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
@@ -32,7 +32,7 @@ def registered(shared, tmp_path_factory):
     """Return a trainee who waits for the score of a trial that was played."""
     folder = tmp_path_factory.mktemp("played")
     put_back(shared)
-    with ControlLoop(shared, folder / "records", speed=None) as loop:
+    with ControlLoop(shared, folder / "records", rate_hz=RATE_HZ, speed=None) as loop:
         presenter = FlowPresenter(loop, Outside(folder).services, DEFAULT_BINDINGS, Preferences())
         trainee = Trainee(loop, presenter, Keys)
         trainee.until_menu("start")
@@ -59,7 +59,7 @@ def result_of(registered):
         told = lambda: registered.state.training.result  # noqa: E731
         registered.until(lambda: told() is not None and told().details == details, "the score")
         registered.until_menu("result")
-        registered.step(100)
+        registered.step(50)
         return registered.menu
 
     return show

@@ -126,7 +126,7 @@ def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monke
     assert trainee.menu.focus == "resume"
     trainee.choose("resume")
     trainee.until_menu(None)
-    trainee.step(50)
+    trainee.step(25)
     assert trainee.menu is None
     trainee.tap("menu")
     trainee.until_menu("practice")
@@ -210,7 +210,7 @@ def test_after_a_refused_touch_the_skin_is_said_again_where_the_tip_has_gone(tra
     center = truth.in_world(truth.target) / MM_PER_M
     trainee.lower_onto(truth.in_world(truth.fiducials["1"]) / MM_PER_M, center)
     trainee.until(lambda: trainee.state.touch == "on skin", "the skin")
-    trainee.step(30)
+    trainee.step(15)
     assert trainee.presenter.screen.instruction.text.startswith("On the skin")
 
 
@@ -235,7 +235,7 @@ def test_guidance_fades_from_task_to_task_unless_the_setting_says_otherwise(
     screen = trainee.presenter.screen
     assert any("mm" in fact for fact in screen.status) is (guidance == "words")
     assert screen.has_arrow is (guidance != "none")
-    trainee.step(30)
+    trainee.step(15)
     trainee.submit("Abort")
     trainee.close()
     trainee.loop.stop()
@@ -294,7 +294,7 @@ def change_the_camera(trainee):
         # From a view that was turned the first press leads to the front.
         if trainee.state.camera == before:
             trainee.tap("camera")
-            trainee.step(100)
+            trainee.step(50)
     assert trainee.state.camera != before
 
 
@@ -316,7 +316,7 @@ def test_what_the_arm_s_settings_would_change_waits_for_the_end_of_a_trial(train
     trainee.focus("fine")
     trainee.tap("right", "right", "left")
     trainee.until(lambda: outside.settings, "the new simulation")
-    trainee.step(300)
+    trainee.step(150)
     assert [settings.teleoperation.fine_speed for settings in outside.settings] == [0.04]
 
 
@@ -395,7 +395,7 @@ def test_a_pressed_tool_is_told_by_its_depth_in_both_languages(pilot):
     pilot.step(20)
     told = len(pilot.watcher.screens)
     assert pilot.submit("Jog", velocityMmS=[0, 0, -10], durationS=0.3).ok
-    pilot.step(60)
+    pilot.step(30)
     depth_mm = round(2000.0 * pilot.state.depth) / 2.0
     assert depth_mm > 1.0
     (warning,) = pilot.presenter.screen.warnings

@@ -71,7 +71,7 @@ def go_to_step(trainee, step):
     tutorial = session_of(trainee).tutorial
     tutorial._done = list(tutorial.steps[: tutorial.steps.index(step)])
     tutorial._measure = None
-    trainee.step(30)
+    trainee.step(15)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, re
 
 def test_a_step_counts_only_the_movement_it_asks_for(learner):
     learner.hands.push(-1.0, 0.0, 1.0, False)
-    learner.step(40)
+    learner.step(20)
     learner.hands.push(0.0, 0.0, 0.0, False)
     learner.step(10)
     assert status(learner)[1:] == ("Step 1 of 14", "0 of 30 mm")
@@ -140,7 +140,7 @@ def test_a_step_counts_only_the_movement_it_asks_for(learner):
 
 def test_what_has_not_been_learned_yet_does_nothing(learner):
     learner.tap("touch", "undo", "best_view")
-    learner.step(100)
+    learner.step(50)
     assert status(learner)[1] == "Step 1 of 14"
     assert learner.presenter.shown.latest.training.next_point is None
     assert session_of(learner).view.control.orbit == TUTORIAL_VIEW
@@ -159,7 +159,7 @@ def test_a_touch_that_does_not_count_says_why(learner):
 def test_the_view_goes_nowhere_by_itself_before_the_guided_touches(learner):
     control = session_of(learner).view.control
     go_to_step(learner, TutorialStep.LOWER)
-    learner.step(200)
+    learner.step(100)
     assert control.orbit == TUTORIAL_VIEW
     go_to_step(learner, TutorialStep.GUIDED)
     learner.until(lambda: control.orbit != TUTORIAL_VIEW, "the best view")
@@ -352,7 +352,7 @@ def test_a_tutorial_that_cannot_be_written_counts_until_the_simulator_ends(learn
 
 
 def test_the_tip_is_in_the_picture_from_the_first_step_on(learner):
-    learner.step(100)
+    learner.step(50)
     view = learner.presenter.pictures(learner.state).main
     eye, middle, up = (np.array(each) for each in (view.position, view.focal_point, view.view_up))
     ahead = (middle - eye) / np.linalg.norm(middle - eye)

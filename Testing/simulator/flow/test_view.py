@@ -67,7 +67,7 @@ def test_the_view_of_the_scenarios_camera_leaves_the_sticks_bit_by_bit_as_they_a
     held = []
     by_hand.presenter._control_loop.hold_sticks = held.append
     by_hand.hands.push(-0.7, 0.0, 0.0, False)
-    by_hand.step(60)
+    by_hand.step(30)
     assert held[-1].translation == (-1.0, 0.0, 0.0)
 
 
@@ -94,11 +94,11 @@ def test_the_view_goes_to_each_next_point_by_itself_and_waits_for_the_sticks(tra
     trainee.start("task-1")
     trainee.hands.push(0.0, 0.0, 0.4, True)
     wait_for_views(trainee)
-    trainee.step(50)
+    trainee.step(25)
     assert orbit(trainee) == FRONT
     trainee.hands.push(0.0, 0.0, 0.0, False)
     trainee.until(lambda: orbit(trainee) != FRONT, "the way to the best view")
-    trainee.step(400)
+    trainee.step(200)
     pictures = trainee.presenter.pictures(trainee.state)
     assert pictures.main.focal_point == pytest.approx(pictures.inset.focal_point)
 
@@ -106,14 +106,14 @@ def test_the_view_goes_to_each_next_point_by_itself_and_waits_for_the_sticks(tra
 def test_the_best_view_comes_by_its_control_where_it_does_not_come_by_itself(by_hand):
     by_hand.start("task-1")
     wait_for_views(by_hand)
-    by_hand.step(100)
+    by_hand.step(50)
     assert orbit(by_hand) == FRONT
     by_hand.tap("best_view")
-    by_hand.step(400)
+    by_hand.step(200)
     pictures = by_hand.presenter.pictures(by_hand.state)
     assert pictures.main.focal_point == pytest.approx(pictures.inset.focal_point)
     by_hand.tap("camera")
-    by_hand.step(400)
+    by_hand.step(200)
     assert orbit(by_hand) == FRONT
 
 
@@ -156,7 +156,7 @@ def test_in_a_study_the_view_follows_only_where_that_is_set(trainee):
 def test_the_journal_says_how_the_view_was_turned_and_whether_it_follows(by_hand, outside):
     by_hand.start("task-1")
     by_hand.presenter.on_orbit(1, 40.0, -5.0, 0.5)
-    by_hand.step(60)
+    by_hand.step(30)
     by_hand.submit("Abort")
     (journal,) = outside.services.records.glob(f"*{SUFFIX}")
     by_hand.until(lambda: '"view"' in journal.read_text(encoding="utf-8"), "the entry")
@@ -173,7 +173,7 @@ def test_a_trial_with_a_view_that_turns_is_simulated_again_bit_by_bit(by_hand, o
         by_hand.presenter.on_orbit(1, around, 3.0, 0.9)
         by_hand.hands.push(0.4, -0.7, 0.2, False)
         by_hand.presenter.on_key(1, "KeyE", True, "")
-        by_hand.step(60)
+        by_hand.step(30)
         by_hand.presenter.on_key(1, "KeyE", False, "")
     by_hand.hands.push(0.0, 0.0, 0.0, False)
     by_hand.submit("Abort")
@@ -181,4 +181,4 @@ def test_a_trial_with_a_view_that_turns_is_simulated_again_bit_by_bit(by_hand, o
     by_hand.until(lambda: '"aborted"' in journal.read_text(encoding="utf-8"), "the end")
     report = replay(read_journal(journal), by_hand.loop.setup)
     assert report.is_identical
-    assert report.compared["input"] > 100
+    assert report.compared["input"] > 50

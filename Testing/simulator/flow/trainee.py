@@ -17,9 +17,10 @@ from rastrainer_simulator.teleoperation.axes import camera_axes
 from rastrainer_simulator.vectors import dot, subtract
 
 PATIENCE_S = 40.0
-TICKS_A_STEP = 2
-STEP_S = 0.004 * TICKS_A_STEP
-MAX_STEPS = 10_000
+RATE_HZ = 62.5
+"""Of a trainee's control loop: it ticks as often as a view is drawn, and costs a quarter."""
+STEP_S = 1.0 / RATE_HZ
+MAX_STEPS = 5_000
 SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 LIFT_M = 0.035
@@ -57,10 +58,9 @@ class LockStep:
         self._is_free = False
         loop.subscribe(self._tick)
 
-    def ticks(self, count: int) -> None:
-        for _ in range(count):
-            self._go.release()
-            assert self._done.acquire(timeout=PATIENCE_S), "the control loop has stopped"
+    def tick(self) -> None:
+        self._go.release()
+        assert self._done.acquire(timeout=PATIENCE_S), "the control loop has stopped"
 
     def free(self) -> None:
         """Let the loop go on alone."""
@@ -77,11 +77,17 @@ class Trainee:
     """Goes through menus by their names, and to fiducials by the sticks.
 
     Args:
-        loop: a control loop that ticks as fast as it can.
+        loop: a control loop that ticks as fast as it can, `RATE_HZ` times a simulated second.
         presenter: its presenter.
         make_hands: gives what the trainee works with.
         advance: lets the presenter, and what belongs to it, go on for some seconds.
+
+    Attributes:
+        step_s: duration of a step, s.
+        ticks_a_step: how often the loop ticks in it.
     """
+
+    step_s, ticks_a_step = STEP_S, 1
 
     def __init__(self, loop, presenter, make_hands, advance: Callable[[float], None] | None = None):
         self.loop, self.presenter, self._advance = loop, presenter, advance or presenter.advance
@@ -108,8 +114,9 @@ class Trainee:
     def step(self, count: int = 1) -> None:
         """Let the presenter go on for `count` steps, and the loop with it."""
         for _ in range(count):
-            self._advance(STEP_S)
-            self._lock_step.ticks(TICKS_A_STEP)
+            self._advance(self.step_s)
+            for _ in range(self.ticks_a_step):
+                self._lock_step.tick()
 
     def until(self, condition: Callable[[], bool], what: str = "it") -> None:
         """Step until a condition is true."""

@@ -59,6 +59,12 @@ class Outcome:
         return is_late if self.touches == other.touches else self.touches < other.touches
 
 
+class SteadyTrainee(Trainee):
+    """A trainee at a control loop of the usual rate: what the models do is published."""
+
+    step_s, ticks_a_step = 0.008, 2
+
+
 def play(
     setup: SimulationSetup, model: str, task: str, seed: int, limit_s: float = LIMIT_S
 ) -> Outcome:
@@ -112,7 +118,7 @@ def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Ite
     with ControlLoop(Simulation(setup, seed), folder / "records", speed=None) as loop:
         running = RunningPresenter(loop, services, has_gamepad=True)
         gamepad.plug_in()
-        trainee = Trainee(
+        trainee = SteadyTrainee(
             loop, running.presenter, lambda it: TrainedPad(it, gamepad), running.advance
         )
         try:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.protocol import Phase
 from rastrainer_simulator.net.views.screen import Tone
-from Testing.simulator.flow.trainee import STEP_S, Trainee
+from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.places_of_points import PlacesOfPoints, outward, surface_at
 from Testing.simulator.virtual.trained_pad import TrainedPad
 
@@ -23,7 +23,6 @@ WAYS = {
     "up": (0.0, 0.0, 1.0),
     "down": (0.0, 0.0, -1.0),
 }
-READ_S = READ_STEPS * STEP_S
 CARRY_M_S, SLIDE_M_S, CENTER_M_S, LOWER_M_S, EASE_M_S = 0.1, 0.08, 0.03, 0.06, 0.01
 NEARBY_M, ABOVE_M = 0.04, 0.025
 """Up to so far the tip is led along the skin; farther, it is carried so high above it."""
@@ -56,6 +55,7 @@ class ReadingTrainee:
     def __init__(self, trainee: Trainee, pad: TrainedPad) -> None:
         self._trainee = trainee
         self._pad = pad
+        self._read_s = READ_STEPS * trainee.step_s
         self._limit_s = 0.0
         self._at = np.array(trainee.tip)
         """Where the tip should be by its movements: World, m. The arm always starts there."""
@@ -177,7 +177,7 @@ class ReadingTrainee:
         along = to - (to @ out) * out
         ahead = _unit(along)
         self._tilt = FORGET * self._tilt
-        speed = min(fastest, float(np.linalg.norm(along)) / READ_S)
+        speed = min(fastest, float(np.linalg.norm(along)) / self._read_s)
         if self._is_pressing:
             self._tilt = self._tilt - STEEPER * ahead
             self._move(0.3 * speed * ahead + EASE_M_S * out)
