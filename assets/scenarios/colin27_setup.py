@@ -27,8 +27,8 @@ LANDMARKS = {
     "Left inner canthus": (-14.5, 70.4, -42.5),
 }
 """RAS, mm, found by eye on pictures of the mesh. Those that the robot reaches in every pose of a
-trial, the three that a trace begins with first; the right tragus and the left outer canthus are out
-of its reach in some poses, and the tip of the nose is not in the images."""
+trial, the three that a trace begins with first; the right tragus is out of its reach in some poses,
+the left outer canthus by some millimeters, and the tip of the nose is not in the images."""
 
 NOTICE = (
     "Copyright (C) 1993–2009 Louis Collins, McConnell Brain Imaging Centre, Montreal Neurological "

@@ -192,6 +192,9 @@ def pack_for_others(
         volume = without_face_in(volume, head) if volume else None
         scenario, head, skull = *_faceless(scenario, head), None
         taken += ["the face", "the skull"] if scenario.skull_mesh else ["the face"]
+        if scenario.landmarks:
+            scenario = replace(scenario, landmarks=())
+            taken.append("the landmarks, most of which were on the face")
         if scenario.procedures:
             scenario = replace(scenario, procedures=())
             taken.append("the procedures, which need the skull")

@@ -14,11 +14,14 @@ from rastrainer.head.volume import read_head_volume
 from rastrainer.procedure.meshes import read_all_no_go
 from rastrainer.procedure.plan import Procedure
 from rastrainer.progress import Progress, Warn
+from rastrainer.scenario.landmark_checks import on_skin
+from rastrainer.scenario.tasks import Landmark
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.tasks import PlannedTarget, PlannedTrajectory, Task
 from rastrainer.scenario.writer import HeadDraft, new_folder, scenario_name, write_scenario
+from rastrainer_simulator.authoring.landmark_plan import check_on_planned_head
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_plan import measure_procedures, with_procedure
 from rastrainer_simulator.authoring.scenario_check import check_plan, start_clearance_mm
@@ -185,6 +188,7 @@ def copy_with_plan(
     trajectory: PlannedTrajectory | None,
     warn: Callable[[str], None],
     procedure: Procedure | None = None,
+    landmarks: tuple[Landmark, ...] | None = None,
 ) -> Scenario:
     """Write a copy of a scenario with another plan and return it.
 
@@ -197,6 +201,8 @@ def copy_with_plan(
         trajectory: RAS mm, replacing the other one; None keeps it.
         warn: called if the first target is too deep for trials to start above it.
         procedure: replacing the one of the same name, or added; None keeps all as they are.
+        landmarks: RAS mm, replacing all others; those near the skin are moved onto it. None keeps
+            them.
 
     Raises:
         InputError: the scenario cannot be used, or the plan cannot be carried out. Nothing is
@@ -217,8 +223,12 @@ def copy_with_plan(
         scenario, no_go = with_procedure(scenario, procedure)
         (measured,) = measure_procedures(folder, procedure)
         wrong += measured.wrong
+    if landmarks is not None:
+        scenario = replace(scenario, landmarks=on_skin(head, landmarks))
     planning = PlanningSetup(scenario, head)
     wrong += check_plan(planning)
+    if landmarks is not None:
+        wrong += check_on_planned_head(planning, landmarks)
     # Trials start above the target and turn the head about it, so that touching depends on it.
     if not np.array_equal(scenario.target_position, before.target_position):
         wrong += check_tasks(planning, scenario.tasks)

@@ -51,6 +51,19 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     _add_plan(plan)
     _add_procedure(plan, "added, or in the place of the one of the same name")
     plan.set_defaults(run=_plan)
+    plan.add_argument(
+        "--landmarks",
+        type=Path,
+        metavar="MRK_JSON",
+        help="placed landmarks, in the order of touching, in the place of the scenario's own",
+    )
+    landmarks = parts.add_parser(
+        "landmarks", help="check placed landmarks on a head, or propose them; status 1 if wrong"
+    )
+    landmarks.add_argument("folder", type=Path, metavar="DIR")
+    landmarks.add_argument("file", type=Path, metavar="MRK_JSON")
+    landmarks.add_argument("--propose", action="store_true", help="write a proposal to MRK_JSON")
+    landmarks.set_defaults(run=_landmarks)
     lines = parts.add_parser(
         "lines", help="measure the planned lines of procedures; status 1 if any is wrong"
     )
@@ -230,6 +243,7 @@ def _procedure_of(arguments: argparse.Namespace) -> Procedure | None:
 
 
 def _plan(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.authoring.landmark_plan import read_placed_landmarks
     from rastrainer_simulator.authoring.make import copy_with_plan
     from rastrainer_simulator.authoring.scenario_options import targets_of, title_of, trajectory_of
 
@@ -241,9 +255,25 @@ def _plan(arguments: argparse.Namespace) -> int:
         trajectory_of(arguments),
         print_warning,
         _procedure_of(arguments),
+        None if arguments.landmarks is None else read_placed_landmarks(arguments.landmarks),
     )
     print(f"{scenario.title} is in {arguments.output}.")
     return 0
+
+
+def _landmarks(arguments: argparse.Namespace) -> int:
+    from rastrainer_simulator.authoring.landmark_plan import (
+        check_placed_landmarks,
+        read_placed_landmarks,
+        write_proposal,
+    )
+
+    if arguments.propose:
+        print(" ".join(write_proposal(arguments.folder, arguments.file)))
+        return 0
+    wrong = check_placed_landmarks(arguments.folder, read_placed_landmarks(arguments.file))
+    print(" ".join(wrong) or "The landmarks can be used.")
+    return 1 if wrong else 0
 
 
 def _pack(arguments: argparse.Namespace) -> int:

@@ -7,6 +7,7 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.landmarks_panel import LandmarksPanel
 from rastrainer.panels.new_scenario_panel import NewScenarioPanel
 from rastrainer.panels.next_step_panel import NextStepPanel
 from rastrainer.panels.plan_panel import PlanPanel
@@ -39,6 +40,8 @@ SECTIONS = (
     ScorePanel,
 )
 """In the order of the work."""
+NESTED = (LandmarksPanel,)
+"""Whose widgets are in the file of another section."""
 PANELS = (
     NextStepPanel,
     *SECTIONS,
@@ -64,7 +67,7 @@ class PanelStack:
             # Nodes can be chosen only from a scene.
             widget.setMRMLScene(slicer.mrmlScene)
         self.ui = slicer.util.childWidgetVariables(container)
-        sections: dict[type, Any] = {kind: kind(self.ui, session) for kind in SECTIONS}
+        sections: dict[type, Any] = {kind: kind(self.ui, session) for kind in (*SECTIONS, *NESTED)}
         line = NextStepPanel(self.ui, session, _actions(sections))
         self._panels = [*sections.values(), line]
 

@@ -15,6 +15,7 @@ from rastrainer.scenario.tasks import Task
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
+from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
 from rastrainer.slicer.logic.plan_logic import PlanLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
@@ -93,6 +94,7 @@ class ModuleSession:
         plan: of a target.
         procedure: that the trial continues with.
         traces: shows the trace of the trial on the head.
+        landmarks: of a head, in the scene and in scenarios.
         procedurePlan: of a procedure, in the scene and in scenarios.
         cohort: trials of the published study, with which CTPS compares.
         studyPath: file of the present study.
@@ -174,6 +176,7 @@ class ModuleSession:
         self.plan = PlanLogic(scene, self.link, self.registration)
         self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
         self.traces = TraceLogic(scene, self.link, self.work)
+        self.landmarks = LandmarkLogic(scene, self.scenarioFiles)
         self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
         self.task = ""
         self.taskTitle = ""
@@ -262,6 +265,7 @@ class ModuleSession:
         """Forget what pointed into the old scene; a trial that runs is shown again."""
         self.layout.forgetScene()
         self.plan.points.forget()
+        self.landmarks.points.forget()
         self.replay.forgetScene()
         self.slices.forgetScene()
         self.registration.forgetScene()

@@ -224,6 +224,28 @@ class ScenarioFiles:
         """
         return self._copy(name, title, ["--procedure", str(procedure)], ownProgram, progress)
 
+    def saveLandmarks(
+        self,
+        name: str,
+        title: str,
+        landmarks: Path,
+        ownProgram: str = "",
+        progress: Progress = lambda _step, _share: None,
+    ) -> Scenario:
+        """Copy a scenario with landmarks in the place of its own.
+
+        Args:
+            name: of the scenario, which stays as it is.
+            title: of the copy.
+            landmarks: a markups file, in the order of touching.
+            ownProgram: see the class.
+            progress: see the class.
+
+        Raises:
+            InputError: there is one of that title already, or the landmarks cannot be used.
+        """
+        return self._copy(name, title, ["--landmarks", str(landmarks)], ownProgram, progress)
+
     def _copy(
         self, name: str, title: str, plan: list[str], ownProgram: str, progress: Progress
     ) -> Scenario:

@@ -44,6 +44,7 @@ class Role:
     PROCEDURE_ERRORS = "procedure errors"
     ROBOT = "robot"
     REPLAY = "replay"
+    LANDMARKS = "landmarks"
     TRACED_POINTS = "traced points"
     NEXT_PLACE = "next place of the trace"
 

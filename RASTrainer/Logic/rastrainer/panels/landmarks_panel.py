@@ -1,0 +1,173 @@
+"""The group Landmarks of New scenario: those of a head, for trials without fiducials."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import slicer
+
+from rastrainer.errors import InputError
+from rastrainer.number_text import fixed
+from rastrainer.panels.cancelable_work import CancelableWork
+from rastrainer.panels.widgets import (
+    chosenData,
+    fillComboBox,
+    fillTable,
+    setSentence,
+    setUsable,
+)
+from rastrainer.scenario.landmark_checks import FACE_LANDMARKS
+from rastrainer.scenario.tasks import Landmark
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.translation import _
+
+NAMES = {
+    "Nasion": _("Nasion"),
+    "Right outer canthus": _("Right outer canthus"),
+    "Left outer canthus": _("Left outer canthus"),
+    "Right inner canthus": _("Right inner canthus"),
+    "Left inner canthus": _("Left inner canthus"),
+    "Right tragus": _("Right tragus"),
+    "Left tragus": _("Left tragus"),
+    "Tip of the nose": _("Tip of the nose"),
+}
+
+
+class LandmarksPanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        self._ui = ui
+        self._session = session
+        self._logic = session.landmarks
+        self._seen: tuple = ()
+        self._work = CancelableWork(self._showMessage, self._showProgress, self.showState)
+        entries = [(NAMES[name], name) for name in FACE_LANDMARKS]
+        fillComboBox(ui.landmarkNameComboBox, entries, FACE_LANDMARKS[0])
+        self._work.connectButton(ui.proposeLandmarksButton, self.propose)
+        ui.showLandmarksButton.connect("clicked()", self.show)
+        ui.placeLandmarkButton.connect("clicked()", self.place)
+        ui.removeLandmarkButton.connect("clicked()", self.remove)
+        ui.undoLandmarkButton.connect("clicked()", self.undo)
+        ui.checkLandmarksButton.connect("clicked()", self.check)
+        ui.saveLandmarksButton.connect("clicked()", self.save)
+        self._showMessage("")
+        self.showState()
+
+    def close(self) -> None:
+        """Cancel what is under way."""
+        self._work.cancel()
+
+    def propose(self) -> None:
+        """Replace the landmarks by proposed ones on the chosen head."""
+        with slicer.util.tryWithErrorDisplay(_("No landmarks could be proposed.")):
+            scenario, own = self._scenario(), self._ui.programPathLineEdit.currentPath
+            said = self._work.run(lambda report: self._logic.propose(scenario, own, report))
+            if said is not None:
+                self._showMessage(said)
+
+    def show(self) -> None:
+        """Replace the landmarks by those of the chosen scenario."""
+        with slicer.util.tryWithErrorDisplay(_("The landmarks cannot be shown.")):
+            scenario = self._scenario()
+            if not scenario.landmarks:
+                raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
+            self._logic.points.show(scenario.landmarks)
+            self._showMessage("")
+            self.showState()
+
+    def place(self) -> None:
+        """Let the next click in a view place the chosen landmark."""
+        with slicer.util.tryWithErrorDisplay(_("No landmark can be placed.")):
+            self._logic.points.startPlacing(chosenData(self._ui.landmarkNameComboBox))
+
+    def remove(self) -> None:
+        """Remove the landmark that is chosen in the table; it can be restored."""
+        self._logic.points.remove(self._ui.landmarksTable.currentRow())
+        self.showState()
+
+    def undo(self) -> None:
+        """Undo the last change."""
+        self._logic.points.undo()
+        self.showState()
+
+    def check(self) -> None:
+        """Check the landmarks on the head of the chosen scenario, and the robot's reach."""
+        with slicer.util.tryWithErrorDisplay(_("The landmarks were not checked.")):
+            scenario, own = self._scenario(), self._ui.programPathLineEdit.currentPath
+            said = self._work.run(lambda report: self._logic.check(scenario, own, report))
+            if said is not None:
+                self._showMessage(said)
+
+    def save(self) -> None:
+        """Copy the chosen scenario with these landmarks and use the copy."""
+        with slicer.util.tryWithErrorDisplay(_("The landmarks were not saved.")):
+            title = self._ui.landmarksTitleLineEdit.text.strip()
+            scenario, own = self._scenario(), self._ui.programPathLineEdit.currentPath
+            saved = self._work.run(lambda report: self._logic.save(scenario, title, own, report))
+            if saved is not None:
+                text = _("{title} was made and is chosen above.")
+                self._showMessage(text.format(title=saved.title))
+                self._session.scenarioMade.emit(saved.name)
+
+    def showState(self, *_arguments: Any) -> None:
+        """Show the landmarks of the scene; called about ten times a second."""
+        ui, points, isAtWork = self._ui, self._logic.points, self._work.isUnderWay
+        rows = [_row(landmark) for landmark in points.landmarks]
+        if tuple(rows) != self._seen:
+            self._seen = tuple(rows)
+            fillTable(ui.landmarksTable, rows)
+            self._chooseNext()
+        busy = _("Wait until the work under way is done.")
+        first = busy if isAtWork else _("Place landmarks first, or have them proposed.")
+        ui.proposeLandmarksButton.text = _("Cancel") if isAtWork else _("Propose")
+        setUsable(
+            ui.removeLandmarkButton,
+            bool(rows),
+            _("Remove the landmark that is chosen in the table."),
+            _("No landmark is placed."),
+        )
+        setUsable(
+            ui.undoLandmarkButton,
+            points.canUndo,
+            _("Undo the last placing, removal or proposal."),
+            _("Nothing was changed."),
+        )
+        setUsable(
+            ui.checkLandmarksButton,
+            bool(rows) and not isAtWork,
+            _("Check their places on the head chosen above, and whether the robot reaches them."),
+            first,
+        )
+        setUsable(
+            ui.saveLandmarksButton,
+            bool(rows) and not isAtWork,
+            _("Copy the scenario above with these landmarks."),
+            first,
+        )
+
+    def _chooseNext(self) -> None:
+        """Offer the first usual landmark that is missing."""
+        missing = self._logic.points.missing
+        entries = [(NAMES[name], name) for name in FACE_LANDMARKS]
+        chosen = missing[0] if missing else FACE_LANDMARKS[0]
+        fillComboBox(self._ui.landmarkNameComboBox, entries, chosen)
+
+    def _scenario(self) -> Scenario:
+        name = chosenData(self._ui.scenarioComboBox)
+        if not name:
+            raise InputError(_("Choose a scenario that can be used."))
+        return self._session.scenario.find(name)
+
+    def _showProgress(self, step: str, _share: float) -> None:
+        if step:
+            self._showMessage(step)
+
+    def _showMessage(self, sentence: str) -> None:
+        setSentence(self._ui.landmarksText, sentence)
+
+
+def _row(landmark: Landmark) -> tuple[str, ...]:
+    name = NAMES.get(landmark.name, landmark.name)
+    return (name, *(fixed(float(value), 1) for value in landmark.position))

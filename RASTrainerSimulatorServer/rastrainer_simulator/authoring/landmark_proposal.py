@@ -1,0 +1,217 @@
+"""Landmarks proposed on a head: those of the head of Colin27, carried to where the head is alike.
+
+The reference head is turned, shifted and scaled along its three axes until it lies on the other one
+(ICP; the worst tenth of the points does not count). Then the skin around each
+landmark is moved as a rigid patch until it lies on the skin there, because eyes, nose and ears are
+not where the size of the head alone puts them. What results is a proposal, to be looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from rastrainer import transforms
+from rastrainer.head.face_removal import nose_tip
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
+from rastrainer.registration.fits import RIGID, fit
+from rastrainer.scenario.landmark_checks import FACE_LANDMARKS, NOSE_TIP, spread_first
+from rastrainer.scenario.tasks import Landmark
+from rastrainer.scenario.scenario import Scenario
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+
+REFERENCE = {
+    "Nasion": (1.0, 84.4, -40.0),
+    "Right outer canthus": (52.6, 62.0, -42.1),
+    "Left outer canthus": (-51.5, 61.8, -43.2),
+    "Right inner canthus": (13.6, 72.8, -41.1),
+    "Left inner canthus": (-14.5, 70.4, -42.5),
+    "Right tragus": (86.4, -22.8, -56.3),
+    "Left tragus": (-86.9, -22.8, -56.3),
+}
+"""On the head of Colin27, RAS mm; see assets/scenarios/colin27_setup.py."""
+POINTS, OTHER_POINTS, PATCH_POINTS = 800, 6000, 150
+PATCH_MM, LEAST_PATCH = 30.0, 50
+ROUNDS, PATCH_ROUNDS = 40, 20
+ABOVE_BASE_MM = 10.0
+"""Points of the reference lower than this are left out: heads end at different heights."""
+COUNTED_SHARE = 0.9
+SCALES = (0.7, 1.4)
+PATCH_LIMIT_MM = 12.0
+"""A patch that would move farther has found something else, and stays."""
+NOSE_BELOW_MM = (25.0, 70.0)
+"""How far below the nasion the tip of the nose is."""
+POSES_TRIED = 12
+NEAR_MM, PLACES_TRIED = 6.0, 8
+
+
+@dataclass(frozen=True)
+class ProposedLandmarks:
+    """A proposal.
+
+    Attributes:
+        landmarks: in the order of touching, the three that a trace begins with first.
+        left_out: a sentence for each landmark that is not among them.
+    """
+
+    landmarks: tuple[Landmark, ...]
+    left_out: tuple[str, ...]
+
+
+def propose_landmarks(scenario: Scenario) -> ProposedLandmarks:
+    """Return landmarks for the head of a scenario that the robot can touch in its trials.
+
+    Raises:
+        InputError: the head cannot be read.
+    """
+    mesh = read_head_mesh(scenario.head_mesh)
+    found = landmarks_on(mesh)
+    missing = [name for name in FACE_LANDMARKS if name not in {each.name for each in found}]
+    left_out = [f"{name} is not on the head, which ends above it." for name in missing]
+    unreached = unreachable(PlanningSetup(scenario, mesh), found)
+    left_out += [
+        f"{name} is left out: the robot does not reach it in every pose of a trial."
+        for name in unreached
+    ]
+    kept = [each for each in found if each.name not in unreached]
+    return ProposedLandmarks(spread_first(kept), tuple(left_out))
+
+
+def unreachable(planning: PlanningSetup, landmarks: Sequence[Landmark]) -> list[str]:
+    """Return the names of landmarks that the robot cannot touch in some pose of a trial.
+
+    It reaches one if it can touch a place within 6 mm of it: a landmark is no exact place.
+    """
+    poses = planning.poses(range(POSES_TRIED))
+    return [each.name for each in landmarks if not _is_reached(planning, each.position, poses)]
+
+
+def _is_reached(planning: PlanningSetup, place: np.ndarray, poses: list[np.ndarray]) -> bool:
+    mesh = planning.mesh
+    around = np.flatnonzero(np.linalg.norm(mesh.vertices - place, axis=1) < NEAR_MM)
+    places = np.vstack([place, mesh.vertices[_thinned(around, PLACES_TRIED)]]).astype(float)
+    normals = outward_normals(mesh, places)
+    return all(
+        any(
+            planning.touchable(places[[row]], normals[[row]], [pose])[0]
+            for row in range(len(places))
+        )
+        for pose in poses
+    )
+
+
+def landmarks_on(mesh: HeadMesh) -> tuple[Landmark, ...]:
+    """Return the reference's landmarks on another head, RAS mm, in the order of their names."""
+    reference = _reference()
+    onto = _whole(reference, mesh)
+    places = {
+        name: _local(reference, np.array(place), onto, mesh) for name, place in REFERENCE.items()
+    }
+    nose = nose_tip(mesh)
+    below = places["Nasion"][2] - nose[2]
+    if NOSE_BELOW_MM[0] < below < NOSE_BELOW_MM[1] and nose[1] > places["Nasion"][1]:
+        places[NOSE_TIP] = np.asarray(nose, dtype=float)
+    base = float(mesh.vertices[:, 2].min())
+    return tuple(
+        Landmark(name, nearest_on_mesh(mesh, places[name]).position.round(1))
+        for name in FACE_LANDMARKS
+        if name in places and places[name][2] > base
+    )
+
+
+@cache
+def _reference() -> HeadMesh:
+    return read_head_mesh(asset_path("scenarios", "colin27") / "head.ply")
+
+
+def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
+    """Return the transform (4, 4) that lays the reference on the head: rigid after a scaling.
+
+    Distances are measured along the normals of the other head (point to plane: Chen and Medioni
+    1992), to its vertices, which are thinned out.
+    """
+    points = _thinned(np.flatnonzero(_is_skin(reference)), POINTS)
+    points = reference.vertices[points].astype(float)
+    others = _thinned(np.arange(len(mesh.vertices)), OTHER_POINTS)
+    places, normals = mesh.vertices[others].astype(float), mesh.vertex_normals[others]
+    is_skin = _is_skin(mesh)[others]
+    squares = np.einsum("ij,ij->i", places, places)
+    scales, pose = _beginning(reference, mesh)
+    for _ in range(ROUNDS):
+        moved = transforms.apply(pose, points * scales)
+        nearest = (squares - 2.0 * moved @ places.T).argmin(axis=1)
+        away = np.linalg.norm(places[nearest] - moved, axis=1)
+        counts = is_skin[nearest]
+        counts &= away <= np.quantile(away[counts], COUNTED_SHARE)
+        normal, q, p = normals[nearest[counts]], moved[counts], points[counts]
+        middle = q.mean(axis=0)
+        along = (normal @ pose[:3, :3]) * p
+        rows = np.hstack([np.cross(q - middle, normal), normal, along])
+        off = np.einsum("ij,ij->i", normal, places[nearest[counts]] - q)
+        step = np.linalg.lstsq(rows, off, rcond=1e-6)[0]
+        turned = _turn(step[:3])
+        shift = middle + step[3:6] - turned @ middle
+        pose = transforms.rigid(turned, shift) @ pose
+        scales = np.clip(scales + step[6:], *SCALES)
+    return pose @ np.diag([*scales, 1.0])
+
+
+def _turn(vector: np.ndarray) -> np.ndarray:
+    """Return the rotation (3, 3) by a vector, rad (Rodrigues)."""
+    angle = float(np.linalg.norm(vector))
+    if angle == 0.0:
+        return np.eye(3)
+    x, y, z = vector / angle
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+
+
+def _is_skin(mesh: HeadMesh) -> np.ndarray:
+    """Return which vertices (n,) bool are skin: not near the base, where heads are cut off."""
+    return mesh.vertices[:, 2] > mesh.vertices[:, 2].min() + ABOVE_BASE_MM
+
+
+def _thinned(indices: np.ndarray, count: int) -> np.ndarray:
+    return indices[:: max(len(indices) // count, 1)]
+
+
+def _beginning(reference: HeadMesh, mesh: HeadMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return scales (3,) and a shift (4, 4): same top, width and length."""
+    own, other = (_extent(each.vertices) for each in (reference, mesh))
+    across = (other[1] - other[0]) / (own[1] - own[0])
+    scales = np.clip(np.array([across[0], across[1], across[:2].mean()]), *SCALES)
+    shift = np.eye(4)
+    shift[:2, 3] = (other.mean(axis=0) - scales * own.mean(axis=0))[:2]
+    shift[2, 3] = other[1, 2] - scales[2] * own[1, 2]
+    return scales, shift
+
+
+def _extent(vertices: np.ndarray) -> np.ndarray:
+    return np.array([vertices.min(axis=0), vertices.max(axis=0)])
+
+
+def _local(reference: HeadMesh, place: np.ndarray, onto: np.ndarray, mesh: HeadMesh) -> np.ndarray:
+    """Return where the skin around a landmark puts it, (3,) RAS mm of the other head."""
+    away = np.linalg.norm(reference.vertices - place, axis=1)
+    patch = np.flatnonzero((away < PATCH_MM) & _is_skin(reference))
+    patch = reference.vertices[_thinned(patch, PATCH_POINTS)].astype(float)
+    start = transforms.apply(onto, np.vstack([place, patch]))
+    away = np.linalg.norm(mesh.vertices - start[0], axis=1)
+    others = mesh.vertices[(away < 2.0 * PATCH_MM) & _is_skin(mesh)].astype(float)
+    if len(others) < LEAST_PATCH:
+        return start[0]
+    points = start
+    for _ in range(PATCH_ROUNDS):
+        distances = np.linalg.norm(points[1:, None] - others[None], axis=2)
+        nearest = distances.argmin(axis=1)
+        least = distances[np.arange(len(nearest)), nearest]
+        counts = least <= np.quantile(least, COUNTED_SHARE)
+        step = fit(points[1:][counts], others[nearest[counts]], RIGID)
+        points = transforms.apply(step, points)
+    has_strayed = np.linalg.norm(points[0] - start[0]) > PATCH_LIMIT_MM
+    return start[0] if has_strayed else points[0]

@@ -1,0 +1,81 @@
+"""Landmarks are placed, replaced, removed and restored in Slicer; the scenario has them after."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer.scenario.library import user_library
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.slicer.scene.landmark_nodes import LandmarkPoints
+from Testing.end_to_end.module.story import Story
+from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
+
+COLIN27 = ["Nasion", "Left tragus", "Right outer canthus"]
+COLIN27 += ["Right inner canthus", "Left inner canthus"]
+
+
+def names(host):
+    table = host.find("landmarksTable")
+    return [table.item(row, 0).text() for row in range(table.rowCount)]
+
+
+def test_landmarks_are_placed_by_clicks_and_each_change_is_undone(host):
+    host.open()
+    assert not host.find("undoLandmarkButton").enabled
+    assert not host.find("saveLandmarksButton").enabled
+    host.press("placeLandmarkButton")
+    host.place(1.0, 84.0, -40.0)
+    host.wait_until(lambda: names(host) == ["Nasion"], "the landmark is shown")
+    assert host.find("landmarkNameComboBox").currentText == "Right outer canthus"
+    host.press("placeLandmarkButton")
+    host.place(52.0, 62.0, -42.0)
+    host.wait_until(lambda: len(names(host)) == 2, "the second is shown")
+    host.choose("landmarkNameComboBox", "Nasion")
+    host.press("placeLandmarkButton")
+    host.place(0.0, 85.0, -39.0)
+    host.wait_until(lambda: names(host) == ["Right outer canthus", "Nasion"], "it is replaced")
+    host.choose("landmarksTable", 0)
+    host.press("removeLandmarkButton")
+    assert names(host) == ["Nasion"]
+    for left in (["Right outer canthus", "Nasion"], ["Nasion", "Right outer canthus"], ["Nasion"]):
+        host.press("undoLandmarkButton")
+        assert names(host) == left
+    (nasion,) = LandmarkPoints(host.scene).landmarks
+    assert nasion.position.tolist() == pytest.approx([1.0, 84.0, -40.0])
+    host.press("undoLandmarkButton")
+    assert names(host) == []
+    assert not host.find("undoLandmarkButton").enabled
+
+
+def test_those_of_a_scenario_are_shown_to_be_changed(host):
+    host.open()
+    host.choose("scenarioComboBox", 0)
+    host.press("showLandmarksButton")
+    assert names(host) == COLIN27
+    landmarks = LandmarkPoints(host.scene)
+    assert landmarks.missing == ("Left outer canthus", "Right tragus", "Tip of the nose")
+    assert host.find("landmarkNameComboBox").currentText == "Left outer canthus"
+
+
+@pytest.mark.soak
+def test_landmarks_are_proposed_checked_and_saved_by_the_simulators_program(host, tmp_path):
+    Story(host, tmp_path).choose_own_program()
+    host.choose("scenarioComboBox", 0)
+    host.press("proposeLandmarksButton")
+    host.wait_until(lambda: len(names(host)) == 6, "the proposal is shown")
+    assert "Right tragus is left out" in host.text("landmarksText")
+    host.press("checkLandmarksButton")
+    assert host.text("landmarksText") == "The landmarks can be used."
+    host.choose("landmarkNameComboBox", "Right tragus")
+    host.press("placeLandmarkButton")
+    host.place(86.4, -22.8, -56.3)
+    host.wait_until(lambda: len(names(host)) == 7, "it is placed")
+    host.press("checkLandmarksButton")
+    assert "The robot does not reach Right tragus" in host.text("landmarksText")
+    host.press("undoLandmarkButton")
+    host.type("landmarksTitleLineEdit", "My landmarks")
+    host.press("saveLandmarksButton")
+    saved = load_scenario(user_library() / "my-landmarks")
+    assert sorted(each.name for each in saved.landmarks) == sorted([*COLIN27, "Left outer canthus"])
+    assert host.find("scenarioComboBox").currentText == "My landmarks"
+    assert host.messages == []
