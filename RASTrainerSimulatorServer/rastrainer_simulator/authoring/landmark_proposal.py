@@ -20,8 +20,8 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
 from rastrainer.registration.fits import RIGID, fit
 from rastrainer.scenario.landmark_checks import FACE_LANDMARKS, NOSE_TIP, spread_first
-from rastrainer.scenario.tasks import Landmark
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.scenario.tasks import Landmark
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 

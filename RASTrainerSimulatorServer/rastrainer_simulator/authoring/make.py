@@ -15,11 +15,10 @@ from rastrainer.procedure.meshes import read_all_no_go
 from rastrainer.procedure.plan import Procedure
 from rastrainer.progress import Progress, Warn
 from rastrainer.scenario.landmark_checks import on_skin
-from rastrainer.scenario.tasks import Landmark
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
 from rastrainer.scenario.setup import SetUp
-from rastrainer.scenario.tasks import PlannedTarget, PlannedTrajectory, Task
+from rastrainer.scenario.tasks import Landmark, PlannedTarget, PlannedTrajectory, Task
 from rastrainer.scenario.writer import HeadDraft, new_folder, scenario_name, write_scenario
 from rastrainer_simulator.authoring.landmark_plan import check_on_planned_head
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

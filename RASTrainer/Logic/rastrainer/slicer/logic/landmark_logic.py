@@ -14,8 +14,8 @@ from rastrainer.errors import InputError
 from rastrainer.files.markups import read_markups, write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.progress import Progress
-from rastrainer.scenario.tasks import Landmark
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.scenario.tasks import Landmark
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
 from rastrainer.slicer.scene.landmark_nodes import LandmarkPoints
 from rastrainer.slicer.translation import _
