@@ -38,8 +38,9 @@ class Lab:
         view: one that watches.
     """
 
-    def __init__(self, folder: Path, *arguments: str):
+    def __init__(self, folder: Path, *arguments: str, **preferences: str):
         self._folder = folder
+        self._preferences = {"order": "any", **preferences}
         self.records = folder / "records"
         self.key = secrets.token_urlsafe(32)
         with ExitStack() as stack:
@@ -57,7 +58,7 @@ class Lab:
         config = self._folder / "records-config"
         config.mkdir(parents=True)
         (config / LIMITS_FILE).write_text(json.dumps(PATIENT))
-        (config / "preferences.json").write_text('{"order": "any"}')
+        (config / "preferences.json").write_text(json.dumps(self._preferences))
         os.environ["RASTRAINER_VIEW_KEY"] = self.key
         try:
             return SimulatorWithGamepad(self.records, "--view-port", "0", *arguments)

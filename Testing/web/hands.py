@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 
-from playwright.sync_api import Page
+from playwright.sync_api import Error, Page
 
 from Testing.end_to_end.hands import KeyHands
 
@@ -63,6 +64,7 @@ _IS_TARGET = """(target) => {
   return box !== undefined && Math.min(box.width, box.height) >= 24;
 }"""
 """Whether what is to be clicked is as large as WCAG 2.2 wants it (2.5.8)."""
+_FINE_HINT = "#hints [data-item='press fine']"
 _SLOW_IS = """(word) =>
   document.querySelector("#hints [data-item='press fine']")?.textContent.endsWith(word)"""
 
@@ -153,6 +155,8 @@ class PageMouse:
     def __init__(self, page: Page):
         self._page = page
         self._dragged: str | None = None
+        self._was_fine = False
+        self._stick = (0.0, 0.0, 0.0)
 
     def click(self, item: str) -> None:
         """Click on an item of the menu or on a hint, once it is there."""
@@ -174,33 +178,47 @@ class PageMouse:
         is_level = math.hypot(right, forward) >= abs(up)
         across, along = (right, forward) if is_level else (0.0, up)
         wanted = ("first", "last")[not is_level] if across or along else None
-        if wanted != self._dragged and self._dragged is not None:
+        if self._dragged is not None and (wanted, fine) != (self._dragged, self._was_fine):
             self._page.mouse.up()
             self._dragged = None
-        if wanted is None:
+        if wanted is None or (self._dragged is None and not self._seize(wanted, fine)):
             return
-        if fine != self._is_slow:
-            self._page.mouse.up()
-            self._dragged = None
-            self.click("press fine")
-            self._page.wait_for_function(_SLOW_IS, arg="on" if fine else "off")
+        # While a stick is dragged nothing else is asked of the page: each answer may take long.
+        x, y, radius = self._stick
+        self._page.mouse.move(x + across * radius, y - along * radius)
+
+    def _seize(self, stick: str, fine: bool) -> bool:
+        """Take hold of the first or the last stick; return whether it is shown."""
+        if fine != self._is_slow and self._page.query_selector(_FINE_HINT) is not None:
+            # Some steps of the tutorial do without this hint, and one may begin at this moment.
+            with suppress(Error):
+                self.click("press fine")
+                self._page.wait_for_function(_SLOW_IS, arg="on" if fine else "off")
         sticks = self._page.query_selector_all("#touch-controls .stick")
-        box = sticks[0 if wanted == "first" else 1].bounding_box()
+        box = sticks[0 if stick == "first" else 1].bounding_box()
         if box is None:
             # A menu has opened.
-            return
+            return False
         radius = box["width"] / 2
-        middle = box["x"] + radius, box["y"] + radius
-        if self._dragged is None:
-            self._page.mouse.move(*middle)
-            self._page.mouse.down()
-            self._dragged = wanted
-        self._page.mouse.move(middle[0] + across * radius, middle[1] - along * radius)
+        self._stick = box["x"] + radius, box["y"] + radius, radius
+        self._page.mouse.move(*self._stick[:2])
+        self._page.mouse.down()
+        self._dragged, self._was_fine = stick, fine
+        return True
+
+    def turn_view(self, across_px: int) -> None:
+        """Drag with the right button, from the middle of the picture."""
+        size = self._page.viewport_size
+        x, y = size["width"] // 2, size["height"] // 2
+        self._page.mouse.move(x, y)
+        self._page.mouse.down(button="right")
+        self._page.mouse.move(x + across_px, y, steps=5)
+        self._page.mouse.up(button="right")
 
     @property
     def _is_slow(self) -> bool:
         # Early in the tutorial there is no such hint.
-        texts = self._page.locator("#hints [data-item='press fine']").all_inner_texts()
+        texts = self._page.locator(_FINE_HINT).all_inner_texts()
         return any(text.endswith("on") for text in texts)
 
 

@@ -17,7 +17,6 @@ FOLDER = Path(__file__).parents[2] / "Screenshots"
 DESKTOP = {"width": 1600, "height": 900}
 BOTH_EYES = {"width": 1832, "height": 960}
 LOOK_DOWN_AND_ASIDE = "device.quaternion.set(-0.19, -0.17, -0.03, 0.966)"
-LOOK_AT_THE_BOARD = "device.quaternion.set(-0.03, -0.24, -0.01, 0.97)"
 
 
 def keep(page: Page, name: str) -> None:
@@ -49,8 +48,6 @@ def main() -> None:
             page = open_page(browser, url, code, "metaQuest2", size=BOTH_EYES)
             trainee.hands = Controllers(page)
             enter_headset(page)
-            page.evaluate(LOOK_AT_THE_BOARD)
-            keep(page, "headset_menu.png")
             trainee.choose("resume")
             page.evaluate(LOOK_DOWN_AND_ASIDE)
             page.wait_for_selector('body[data-menu=""]')

@@ -1,18 +1,24 @@
-"""The page by the mouse alone: the ID, the trial run, the sticks, touches, undo, menus."""
+"""The page by the mouse alone: the ID, the tutorial, the sticks, touches and menus."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from rastrainer_simulator.flow.tutorial.steps import steps_for
+from rastrainer_simulator.input.inputs import SourceKind
+from Testing.end_to_end.view_learner import ViewLearner
+from Testing.tutorial_player import TutorialPlayer
 from Testing.web.chromium import open_page
 from Testing.web.hands import PageMouse
 from Testing.web.place import WITHOUT_GRAPHICS, Place, Trainee
 
 SIZE = {"width": 1280, "height": 720}
-SLOW = "0.5"
+SLOW, SLOWEST = "0.5", "0.25"
 """Simulated seconds in a second, so that a stick is let go of in time on a busy machine."""
 ON_SCREEN = {"order": "fixed"}
+PATIENT = {**WITHOUT_GRAPHICS, "lost_s": 600}
+"""A machine that is too busy to draw does not pause the trial."""
 
 
 class Clicks:
@@ -33,12 +39,14 @@ class Clicks:
         self.choose("done")
         assert self.value("trainee") == "P7"
 
-    def begin_trial_run(self) -> None:
-        """Go from the start menu to the trial run with the sticks on the screen."""
+    def begin_by_sticks(self, task: str) -> None:
+        """Go from the start menu to the trial run, or the tutorial, with sticks on the screen."""
         for item in ("train", "skip", "next"):
             self.choose(item)
         self.click_id()
-        self.begin_task("trial-run")
+        self.choose(task)
+        self.until_menu(None)
+        self.until(lambda: self.view.scene["task"] == "trial-run", "the scene")
         self.hands.click("press sticks")
         self.until(lambda: self.view.screen.has_sticks, "the sticks")
 
@@ -63,7 +71,7 @@ def page(place, browser):
 
 def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(place, page):
     trainee = ClickingTrainee(place.view, PageMouse(page))
-    trainee.begin_trial_run()
+    trainee.begin_by_sticks("trial-run")
     page.wait_for_selector("#touch-controls .stick")
     assert page.query_selector("#touch-controls button:visible") is None
     start = trainee.tip.copy()
@@ -82,10 +90,34 @@ def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(place, page):
     assert np.isfinite(trainee.tip).all()
 
 
+class MouseLearner(ViewLearner):
+    """Drags with the right button."""
+
+    def turn_view(self):
+        self.hands.turn_view(200)
+
+
+@pytest.mark.soak
+def test_by_the_mouse_alone_the_tutorial_is_done_and_leads_to_the_trial_run(tmp_path, browser):
+    rules = {"order": "fixed", "tutorial": "required"}
+    with Place(tmp_path, "--speed", SLOWEST, limits=PATIENT, **rules) as place:
+        simulator = place.simulator
+        page = open_page(browser, simulator.url, simulator.code, size=SIZE, draws=False)
+        trainee = ClickingTrainee(place.view, PageMouse(page))
+        trainee.begin_by_sticks("tutorial")
+        player = TutorialPlayer(MouseLearner(trainee), SourceKind.MOUSE)
+        player.play()
+        assert [step for step, _text in player.read] == list(steps_for(SourceKind.MOUSE, "desktop"))
+        trainee.until_menu("tutorial-done")
+        trainee.begin_task("trial-run")
+        page.wait_for_selector("#touch-controls .stick")
+        assert page.problems == []
+
+
 @pytest.mark.soak
 def test_the_first_touches_of_the_trial_run_are_steered_by_the_mouse(place, page):
     trainee = ClickingTrainee(place.view, PageMouse(page))
-    trainee.begin_trial_run()
+    trainee.begin_by_sticks("trial-run")
     for label in ("1", "2"):
         trainee.touch(label)
     assert trainee.touched == 2
