@@ -14,8 +14,7 @@ import aiohttp
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
 from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, read_parts
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.screen_reader import screen_from_json
 from rastrainer_simulator.desktop.shown_trace import ShownTrace

@@ -9,8 +9,7 @@ import pytest
 import trimesh
 
 from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.net.views.screen import (

@@ -8,8 +8,7 @@ import pytest
 from rastrainer.protocol import Mode
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.net.views import outgoing

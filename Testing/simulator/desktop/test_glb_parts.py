@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.desktop.glb_parts import read_parts
+from rastrainer_simulator.desktop.inbox import read_parts
 from rastrainer_simulator.scene.nodes import SKIN, TIP_FREE
 from Testing.simulator.desktop.conftest import BODIES
 

@@ -5,7 +5,7 @@ import pytest
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
-from rastrainer_simulator.desktop.glb_parts import Finish
+from rastrainer_simulator.desktop.inbox import Finish
 from rastrainer_simulator.desktop.plain_light import add_plain_lights, lit_colors
 from rastrainer_simulator.desktop.shown_scene import finish_surface, to_srgb
 from rastrainer_simulator.scene.surfaces import surface

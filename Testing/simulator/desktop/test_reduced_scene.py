@@ -6,8 +6,7 @@ import pytest
 from rastrainer_simulator.desktop import reduced_scene
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
-from rastrainer_simulator.desktop.glb_parts import read_parts
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
 from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, SCREEN, state_text
