@@ -14,9 +14,38 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLFramebufferObject
 
 from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.frame_copy import COLORS, DEPTHS, Rectangle, copy_frame
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.shown_scene import ShownScene
+
+Rectangle = tuple[int, int, int, int]
+"""Left, right, bottom and top, in pixels."""
+
+# OpenGL's names, of which VTK's Python has none.
+_GL_READ_FRAMEBUFFER, _GL_DRAW_FRAMEBUFFER = 0x8CA8, 0x8CA9
+_GL_SCISSOR_TEST = 0x0C11
+COLORS, DEPTHS = 0x4000, 0x0100
+NEAREST, LINEAR = 0x2600, 0x2601
+
+
+def copy_frame(
+    window: GlWindow,
+    source: vtkOpenGLFramebufferObject,
+    of: Rectangle,
+    target: vtkOpenGLFramebufferObject,
+    to: Rectangle,
+    what: int = COLORS,
+    filtering: int = NEAREST,
+) -> None:
+    """Copy a rectangle; colors are scaled where the other one is larger, depths cannot be."""
+    state = window.render_window.GetState()
+    state.PushFramebufferBindings()
+    # The next renderer switches it on again, for its own part of the window.
+    state.vtkglDisable(_GL_SCISSOR_TEST)
+    source.Bind(_GL_READ_FRAMEBUFFER)
+    target.Bind(_GL_DRAW_FRAMEBUFFER)
+    vtkOpenGLFramebufferObject.Blit(of, to, what, filtering)
+    state.PopFramebufferBindings()
+
 
 _DEPTH_BITS = 32
 """As VTK's own framebuffer has them: depths are only copied between equal formats."""

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from rastrainer_simulator.desktop.frame_copy import LINEAR, Rectangle, copy_frame
 from rastrainer_simulator.desktop.gl_window import GlWindow
-from rastrainer_simulator.desktop.kept_view import KeptView
+from rastrainer_simulator.desktop.kept_view import LINEAR, KeptView, Rectangle, copy_frame
 
 MAX_PIXELS = 1_200_000
 """So many are drawn fast enough by a processor; more than 1366 × 768, fewer than 1600 × 900."""
