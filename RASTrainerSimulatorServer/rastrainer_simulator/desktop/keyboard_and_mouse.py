@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 import pygame
 
 from rastrainer_simulator.desktop.connection import ServerConnection
-from rastrainer_simulator.desktop.panels.stick import stick_boxes
+from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.net.views.messages import ALIVE, KEY, ORBIT, STICKS, VISIBILITY
 
 _IN_ORDER = (

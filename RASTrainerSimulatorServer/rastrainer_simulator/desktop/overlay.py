@@ -13,6 +13,13 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from rastrainer_simulator.desktop.panels import sprite, strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box
+from rastrainer_simulator.desktop.panels.controls_picture import (
+    StickLook,
+    knob_box,
+    paint_knob,
+    paint_stick,
+    stick_boxes,
+)
 from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
 from rastrainer_simulator.desktop.panels.procedure_gauges import (
     BullsEye,
@@ -21,13 +28,6 @@ from rastrainer_simulator.desktop.panels.procedure_gauges import (
     paint_gauge,
 )
 from rastrainer_simulator.desktop.panels.sprite import Side, Sprite, Thumbnail
-from rastrainer_simulator.desktop.panels.stick import (
-    StickLook,
-    knob_box,
-    paint_knob,
-    paint_stick,
-    stick_boxes,
-)
 from rastrainer_simulator.desktop.panels.tip_guides import (
     REACH,
     STEP_DEG,

@@ -19,8 +19,8 @@ from rastrainer_simulator.desktop.head_marks import ErrorArrows, TraceMarks
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.keyboard_and_mouse import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
+from rastrainer_simulator.desktop.panels.controls_picture import StickLook
 from rastrainer_simulator.desktop.panels.procedure_gauges import bulls_eye, depth_gauge
-from rastrainer_simulator.desktop.panels.stick import StickLook
 from rastrainer_simulator.desktop.panels.tip_guides import (
     Direction,
     TouchRing,

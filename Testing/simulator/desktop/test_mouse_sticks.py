@@ -4,7 +4,7 @@ import pygame
 import pytest
 
 from rastrainer_simulator.desktop.keyboard_and_mouse import MouseSticks
-from rastrainer_simulator.desktop.panels.stick import stick_boxes
+from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.net.views.messages import STICKS
 
 SIZE = (1280, 720)

@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.desktop.camera import TRANSITION_S
-from rastrainer_simulator.desktop.panels.stick import stick_boxes
+from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.desktop.performance import Quality, first_quality
 from rastrainer_simulator.desktop.picture import Pointer
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
