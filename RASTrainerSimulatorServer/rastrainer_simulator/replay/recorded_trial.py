@@ -22,8 +22,8 @@ from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.scene_view import stand_pose
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.procedure_state import ProcedureState, Tool
+from rastrainer_simulator.record.procedure_entries import procedure_after
 from rastrainer_simulator.registration_state import TouchState, TracedPoint, TraceState
-from rastrainer_simulator.replay.recorded_procedure import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Event,
