@@ -19,7 +19,6 @@ from rastrainer_simulator.registration_state import FinalRegistration, TouchStat
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
-from rastrainer_simulator.training.kept_states import KeptStates
 from rastrainer_simulator.training.procedure_phases import (
     OF_A_PROCEDURE,
     PhaseStep,
@@ -36,7 +35,7 @@ from rastrainer_simulator.training.rules import (
     refusal,
     refused_touch,
 )
-from rastrainer_simulator.training.trial_clock import TrialClock, trial_id, trial_seed
+from rastrainer_simulator.training.trial_clock import KeptStates, TrialClock, trial_id, trial_seed
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector
 
