@@ -11,9 +11,8 @@ from typing import Any
 import slicer
 import vtk
 
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message
-from rastrainer.igtl.points import Point, Points
 from rastrainer.slicer.scene.link_nodes import ORIGINAL_NAME
 
 METADATA_PREFIX = "OpenIGTLink."

@@ -11,7 +11,7 @@ from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.surface_queries import outward_normal
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.points import Point
+from rastrainer.igtl.content import Point
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import Scenario, load_scenario

@@ -5,9 +5,8 @@ import random
 import struct
 from collections.abc import Callable
 
-from rastrainer.igtl.content import Command, CommandReply, Status, String, Transform
+from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack
-from rastrainer.igtl.points import Point, Points
 from rastrainer.igtl.wire import crc64
 from Testing.security.hostile_content import HOSTILE_JSON
 

@@ -11,9 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as some
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.content import Command, CommandReply, Status, String, Transform
+from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.points import Point, Points
 from rastrainer_simulator.net.igtl.outgoing import Outgoing, OutgoingQueue
 from Testing.security.wire_police import SENT_TYPES, OffenseError, WirePolice
 

@@ -6,9 +6,8 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
-from rastrainer.igtl.content import Command, CommandReply, String
+from rastrainer.igtl.content import Command, CommandReply, Point, Points, String
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
-from rastrainer.igtl.points import Point, Points
 from rastrainer.igtl.wire import crc64
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.link.heartbeat import LinkState

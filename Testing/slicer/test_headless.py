@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.igtl.points import Point, Points
+from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.control_points import labelsOf, worldPoints

@@ -7,9 +7,8 @@ import slicer
 import vtk
 
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.points import Point, Points
 from rastrainer.igtl.wire import crc64
 from rastrainer_headless.command import HeadlessCommand
 from rastrainer_headless.connector import HeadlessConnector

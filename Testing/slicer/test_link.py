@@ -3,8 +3,7 @@
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.content import Status, String
-from rastrainer.igtl.points import Point, Points
+from rastrainer.igtl.content import Point, Points, Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.link.heartbeat import RECONNECT_AFTER_S, LinkState
 from rastrainer.slicer.link.link import POSES_HZ, Link

@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.igtl.points import Point, Points
+from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import isApplied, isPlanned, matrixOf

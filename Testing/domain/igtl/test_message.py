@@ -7,9 +7,8 @@ import struct
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.content import Command, CommandReply, Status, String, Transform
+from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import CONTENTS, HEADER_BYTES, Message, pack, read_header, unpack
-from rastrainer.igtl.points import Point, Points
 from rastrainer.igtl.wire import crc64
 
 IDENTITY = Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))

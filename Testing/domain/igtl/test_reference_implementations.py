@@ -7,9 +7,8 @@ import numpy as np
 import pyigtl
 import pytest
 
-from rastrainer.igtl.content import String, Transform
+from rastrainer.igtl.content import Point, Points, String, Transform
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
-from rastrainer.igtl.points import Point, Points
 from rastrainer.igtl.wire import crc64, plain_crc64
 
 MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])

@@ -7,9 +7,8 @@ import struct
 
 import pytest
 
-from rastrainer.igtl.content import Command, Status, String, Transform
+from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import MAX_BODY_BYTES, Message, pack
-from rastrainer.igtl.points import Point, Points
 from rastrainer.igtl.stream import MAX_GARBAGE_BYTES, MAX_KEPT_BYTES, MessageReader, StreamError
 from rastrainer.igtl.wire import crc64
 

@@ -14,8 +14,15 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from rastrainer.errors import InputError
-from rastrainer.igtl.content import STATUS_KEY, Command, CommandReply, Status, String, Transform
-from rastrainer.igtl.points import Points
+from rastrainer.igtl.content import (
+    STATUS_KEY,
+    Command,
+    CommandReply,
+    Points,
+    Status,
+    String,
+    Transform,
+)
 from rastrainer.igtl.wire import crc64, decode_text, encode_text, pack_name, unpack_name
 
 Content: TypeAlias = Transform | String | Points | Status | Command | CommandReply

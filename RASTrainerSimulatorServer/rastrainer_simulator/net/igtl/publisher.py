@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message
-from rastrainer.igtl.points import Point, Points
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.rates import Pacer

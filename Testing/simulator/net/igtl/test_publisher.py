@@ -10,9 +10,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.igtl.content import String
+from rastrainer.igtl.content import Points, String
 from rastrainer.igtl.message import HEADER_BYTES, read_header, unpack
-from rastrainer.igtl.points import Points
 from rastrainer.protocol import DeviceName, Phase, Proximity
 from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher

@@ -17,9 +17,8 @@ import pytest
 from pyigtl.messages import MessageBase, message_type_to_class_constructor
 
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Command, Status, String, Transform
+from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message
-from rastrainer.igtl.points import Point, Points
 from rastrainer_simulator.registration_state import TouchState
 from rastrainer_simulator.state import TrainingState
 from Testing.simulator.net.igtl.servers import PlainServer, at_rest

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rastrainer.igtl.content import Command, Status, String, Transform
-from rastrainer.igtl.points import Point, Points
+from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.registration_state import TouchState

@@ -11,9 +11,8 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Command, Status, String, Transform
+from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import MAX_BODY_BYTES, Message, pack
-from rastrainer.igtl.points import Point, Points
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, LoopThread, PlainServer
 
