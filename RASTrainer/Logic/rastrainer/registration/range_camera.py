@@ -1,4 +1,4 @@
-"""A simulated range camera: it sees the skin that nothing hides, with noise along its rays."""
+"""A simulated range camera: where its rays first meet the skin, exactly, and with noise."""
 
 from __future__ import annotations
 
@@ -9,8 +9,69 @@ from numpy.random import Generator
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.ray_casting import first_hits
 from rastrainer.registration.surface_checks import LEAST_POINTS
+
+_MARGIN = 1e-9
+
+
+def first_hits(mesh: HeadMesh, eye: np.ndarray, ahead: np.ndarray, spacing: float) -> np.ndarray:
+    """Return where the rays of a camera first meet a surface, (n, 3) float, RAS mm.
+
+    The rays go through the points of a square grid at distance 1 before the eye; those that meet
+    nothing give no point. Each triangle is tried with the rays within the box around its picture
+    (ray and triangle by Möller and Trumbore 1997), and the nearest hit of each ray is kept.
+
+    Args:
+        mesh: The surface.
+        eye: (3,) float, RAS mm, outside of it.
+        ahead: (3,) float, the direction of view; the surface is before the eye.
+        spacing: Of the grid: the tangent of the angle between neighboring rays in the middle.
+    """
+    frame = _frame(np.asarray(ahead, dtype=float))
+    seen = (mesh.vertices - eye) @ frame.T
+    corners = seen[mesh.triangles]
+    corners = corners[(corners[:, :, 2] > _MARGIN).all(axis=1)]
+    flat = corners[:, :, :2] / corners[:, :, 2:] / spacing
+    low = np.ceil(flat.min(axis=1) - _MARGIN).astype(np.int64)
+    sizes = np.maximum(np.floor(flat.max(axis=1) + _MARGIN).astype(np.int64) - low + 1, 0)
+    counts = sizes.prod(axis=1)
+    which = np.repeat(np.arange(len(corners)), counts)
+    place = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
+    column, row = np.divmod(place, np.maximum(sizes[which, 1], 1))
+    grid = low[which] + np.stack([column, row], axis=1)
+    rays = np.concatenate([grid * spacing, np.ones((len(grid), 1))], axis=1)
+    depth = _depths(corners[which], rays)
+    is_hit = np.isfinite(depth)
+    grid, rays, depth = grid[is_hit], rays[is_hit], depth[is_hit]
+    order = np.lexsort((depth, grid[:, 1], grid[:, 0]))
+    is_first = np.ones(len(order), dtype=bool)
+    is_first[1:] = (np.diff(grid[order], axis=0) != 0).any(axis=1)
+    nearest = order[is_first]
+    return np.asarray(eye + (depth[nearest, None] * rays[nearest]) @ frame)
+
+
+def _frame(ahead: np.ndarray) -> np.ndarray:
+    """Return the axes of a camera as rows, (3, 3) float: right, up, ahead."""
+    ahead = ahead / np.linalg.norm(ahead)
+    right = np.cross(ahead, np.eye(3)[np.abs(ahead).argmin()])
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(ahead, right), ahead])
+
+
+def _depths(corners: np.ndarray, rays: np.ndarray) -> np.ndarray:
+    """Return the depth at which rays (n, 3) meet triangles (n, 3, 3), inf where they do not."""
+    a = corners[:, 0]
+    to_b, to_c = corners[:, 1] - a, corners[:, 2] - a
+    across = np.cross(rays, to_c)
+    determinant = np.einsum("ij,ij->i", to_b, across)
+    safe = np.where(np.abs(determinant) > 1e-12, determinant, np.inf)
+    u = -np.einsum("ij,ij->i", a, across) / safe
+    turned = np.cross(-a, to_b)
+    v = np.einsum("ij,ij->i", rays, turned) / safe
+    depth = np.einsum("ij,ij->i", to_c, turned) / safe
+    is_inside = (u >= -_MARGIN) & (v >= -_MARGIN) & (u + v <= 1 + _MARGIN) & np.isfinite(safe)
+    return np.where(is_inside & (depth > 0), depth, np.inf)
+
 
 SPACING_MM = 8.0
 """Between points of a scan that faces the camera."""
