@@ -24,13 +24,13 @@ from rastrainer.igtl.wire import crc64
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.scene.link_nodes import ORIGINAL_NAME, decodedText
 from rastrainer_headless.command import HeadlessCommand, OutgoingCommand
-from rastrainer_headless.incoming_nodes import (
+from rastrainer_headless.peer_sockets import PeerSockets, recordCrash
+from rastrainer_headless.scene import (
     NODE_CLASS,
     adoptOrCreateNode,
     asSlicerHas,
     updateNode,
 )
-from rastrainer_headless.peer_sockets import PeerSockets, recordCrash
 
 _INCOMING = "incoming"
 _CRASHING_TYPE = re.compile(r"(GET|STT|STP|RTS)_")

@@ -1,16 +1,23 @@
-"""A MRML scene in plain Python: what Slicer's application gives its scene, without the application.
+"""A MRML scene in plain Python, and what Slicer's connector makes of a message.
 
-Needs the package `slicer-core`; desktop Slicer has its own scene and never loads this file.
+Needs the package `slicer-core`; desktop Slicer has its own scene and connector, and never loads
+this file.
 """
 
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import slicer
+import vtk
 
 from rastrainer.errors import InputError
+from rastrainer.igtl.content import Point, Points, Status, String, Transform
+from rastrainer.igtl.message import Message
+from rastrainer.slicer.scene.link_nodes import ORIGINAL_NAME
 
 SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
 """Slicer's own slice views and how they are cut."""
@@ -79,3 +86,133 @@ class HeadlessScene:
         logic.SetMRMLScene(self.scene)
         logic.AddSliceNode(name).SetOrientation(orientation)
         return logic
+
+
+METADATA_PREFIX = "OpenIGTLink."
+UNSELECTED = "Unselected"
+
+
+class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
+    """A stand-in of `vtkMRMLIGTLStatusNode`, which comes with the extension."""
+
+    def __init__(self) -> None:
+        self._status = Status(0)
+        self.SetSaveWithScene(False)
+
+    def GetCode(self) -> int:
+        """Return the status code; 1 is well."""
+        return self._status.code
+
+    def GetSubCode(self) -> int:
+        """Return the device's own code."""
+        return self._status.subcode
+
+    def GetErrorName(self) -> str:
+        """Return the name of the trouble."""
+        return self._status.name
+
+    def GetStatusString(self) -> str:
+        """Return the message for people."""
+        return self._status.message
+
+    def setStatus(self, status: Status) -> None:
+        """Keep what has arrived (the connector's part)."""
+        self._status = status
+        self.Modified()
+
+
+NODE_CLASS = {
+    Transform.TYPE: "vtkMRMLTransformNode",
+    String.TYPE: "vtkMRMLTextNode",
+    Points.TYPE: "vtkMRMLMarkupsFiducialNode",
+    Status.TYPE: "vtkMRMLScriptedModuleNode",
+}
+
+"""Class of the node that each type is put into; Slicer knows more types, which we never send."""
+
+_NEW_NODE_CLASS = {**NODE_CLASS, Transform.TYPE: "vtkMRMLLinearTransformNode"}
+
+
+def asSlicerHas(text: str) -> str | bytes:
+    """Return a text of a message as VTK hands it to Python: as bytes where it is not UTF-8."""
+    data = text.encode("utf-8", "surrogateescape")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        return data
+
+
+def adoptOrCreateNode(scene: Any, messageType: str, deviceName: str) -> Any:
+    """Return the node for a device: one of that name and class that is there, or a new one."""
+    name = deviceName or "OpenIGTLink"
+    node = scene.GetFirstNode(name, NODE_CLASS[messageType])
+    if node is None:
+        node = _newNode(scene, messageType, name)
+        node.SetDescription("Received by OpenIGTLink")
+    node.SetAttribute(ORIGINAL_NAME, name)
+    return node
+
+
+def _newNode(scene: Any, messageType: str, name: str) -> Any:
+    if messageType == Status.TYPE:
+        node = HeadlessStatusNode()
+        node.SetName(name)
+        return scene.AddNode(node)
+    node = scene.AddNewNodeByClass(_NEW_NODE_CLASS[messageType], name)
+    if messageType == Points.TYPE:
+        node.CreateDefaultDisplayNodes()
+    return node
+
+
+def updateNode(node: Any, message: Message) -> None:
+    """Put the content of a message and its metadata into its node."""
+    content = message.content
+    if isinstance(content, Transform):
+        _updateTransform(node, content, message.metadata)
+    elif isinstance(content, String):
+        node.SetText(asSlicerHas(content.text.partition("\0")[0]))
+        node.Modified()
+    elif isinstance(content, Points):
+        if content.points or message.metadata:
+            _updatePoints(node, content.points)
+    else:
+        node.setStatus(content)
+    for key, value in message.metadata.items():
+        node.SetAttribute(METADATA_PREFIX + key, asSlicerHas(value))
+
+
+def _updateTransform(node: Any, transform: Transform, metadata: Mapping[str, str]) -> None:
+    matrix = vtk.vtkMatrix4x4()
+    matrix.DeepCopy([value for row in transform.matrix for value in row])
+    node.SetMatrixTransformToParent(matrix)
+    node.Modified()
+    for key, value in metadata.items():
+        if "Status" in key:
+            node.SetAttribute(key, asSlicerHas(value))
+
+
+def _updatePoints(node: Any, points: Sequence[Point]) -> None:
+    while node.GetNumberOfControlPoints() > len(points):
+        node.RemoveNthControlPoint(node.GetNumberOfControlPoints() - 1)
+    for index, point in enumerate(points):
+        _updatePoint(node, index, point)
+    display = node.GetDisplayNode()
+    if display is None:
+        return
+    for point in reversed(points):
+        color = [channel / 255.0 for channel in point.color[:3]]
+        if point.group == UNSELECTED:
+            display.SetColor(color)
+        else:
+            display.SetSelectedColor(color)
+
+
+def _updatePoint(node: Any, index: int, point: Point) -> None:
+    label = asSlicerHas(point.label)
+    if index >= node.GetNumberOfControlPoints():
+        node.AddControlPoint(vtk.vtkVector3d(point.position), label)
+    else:
+        node.SetNthControlPointLabel(index, label)
+        node.SetNthControlPointPosition(index, point.position)
+    node.SetNthControlPointSelected(index, point.group != UNSELECTED)
+    node.SetNthControlPointVisibility(index, point.color[3] > 0)
