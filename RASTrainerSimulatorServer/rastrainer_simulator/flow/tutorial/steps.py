@@ -20,8 +20,6 @@ MOVE_MM = 30.0
 SLOW_MM = 10.0
 TURN_DEG = 20.0
 LOOK_DEG = 15.0
-NO_VIEW_AFTER_S = 5.0
-"""A point whose best view is not found so long after it was asked for has none."""
 
 
 class TutorialStep(str, Enum):
