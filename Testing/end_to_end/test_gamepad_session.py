@@ -5,8 +5,6 @@ Within the trial Slicer's side crashes and comes back; in the next one the gamep
 
 from __future__ import annotations
 
-import os
-import shutil
 import time
 from itertools import groupby
 from pathlib import Path
@@ -15,7 +13,6 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
-from rastrainer_simulator.desktop.camera import TRANSITION_S
 from rastrainer_simulator.ops.texts.texts import Texts
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
@@ -26,15 +23,12 @@ from Testing.read_png import read_png
 # A window that the processor draws wants the machine for itself.
 pytestmark = pytest.mark.soak
 
-SCREENSHOTS = Path(__file__).parents[2] / "Screenshots"
-WANTS_SCREENSHOTS = bool(os.environ.get("RASTRAINER_SCREENSHOTS"))
-WIDTH, HEIGHT = (1920, 1080) if WANTS_SCREENSHOTS else (960, 540)
-QUALITY = ("--quality", "low", "--picture-quality", "high" if WANTS_SCREENSHOTS else "low")
-# A trainee who is shown to the world takes the time to touch exactly.
-SPEED = "1" if WANTS_SCREENSHOTS else "4"
+WIDTH, HEIGHT = 960, 540
+QUALITY = ("--quality", "low", "--picture-quality", "low")
+SPEED = "4"
 DRAWN_S = 600.0
 STEADY_S = 0.4
-SETTLED_S = TRANSITION_S + 0.5 if WANTS_SCREENSHOTS else 0.1
+SETTLED_S = 0.1
 LONGEST_SOUND_S = 1.5
 TRAINEE = "P7"
 CRASH_AFTER = 9
@@ -275,14 +269,10 @@ def test_each_event_is_heard_once(session, name):
 
 
 def test_the_window_shows_each_step_of_the_flow(session):
-    """Pictures of the whole window; `RASTRAINER_SCREENSHOTS=1` keeps them in the best light."""
     for name, path in session["pictures"].items():
         pixels = read_png(path)
         assert pixels.shape == (HEIGHT, WIDTH, 3)
         assert pixels.std() > 20, name
-        # That of the result is made by `Testing.end_to_end.result_picture`.
-        if WANTS_SCREENSHOTS and name != "result":
-            shutil.copyfile(path, SCREENSHOTS / f"{name}.png")
     red, blue = ((200, 0, 0), (255, 60, 60)), ((0, 30, 190), (70, 125, 255))
     free, near = (
         middle(read_png(session["pictures"][f"close-view-{name}"]))

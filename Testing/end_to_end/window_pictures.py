@@ -1,0 +1,118 @@
+"""Make the pictures of the window for the README: python -m Testing.end_to_end.window_pictures.
+
+The tip is carried to the points by commands, and the trial of the result is a scripted trainee's: a
+hand that looks at a computer which draws large pictures sees late, and rests on the head too long.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from pathlib import Path
+
+from rastrainer.igtl.client import Client
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
+from rastrainer_simulator.desktop.camera import TRANSITION_S
+from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+from Testing.end_to_end.hands import GamepadHands
+from Testing.end_to_end.lab import Lab
+from Testing.end_to_end.virtual_display import VirtualKeyboard
+from Testing.end_to_end.window_process import WindowProcess
+from Testing.web.place import CarriedTrainee
+
+FOLDER = Path(__file__).parents[2] / "Screenshots"
+WINDOW = ("--size", "1920x1080", "--quality", "low", "--picture-quality", "high")
+DRAWN_S = 600.0
+SEED = 9
+TRAINEE = "P7"
+TOUCHED = 6
+"""So many points are touched where the head is seen from near."""
+
+
+class Photographer:
+    """Has the window keep pictures in the best light."""
+
+    def __init__(self, lab: Lab, window: WindowProcess):
+        self._lab, self._window = lab, window
+
+    def keep(self, name: str) -> None:
+        """Keep what is shown, once the view has arrived."""
+        if self._lab.view.screen.menu is None:
+            # Beside a menu nothing changes, and nothing is drawn again.
+            self._window.wait_for_tick(self._lab.view.state["tick"])
+        time.sleep(TRANSITION_S + 0.5)
+        known = set(self._window.folder.glob("*.png"))
+        self._lab.keyboard.tap("F12")
+        shutil.copyfile(self._window.next_picture(known, DRAWN_S), FOLDER / f"{name}.png")
+        print(name, flush=True)
+
+
+def main() -> None:
+    """Make all of them."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        Lab(Path(folder), "--seed", "7", view="never") as lab,
+    ):
+        window = lab.open_window("window", *WINDOW)
+        photographer = Photographer(lab, window)
+        with Client(port=lab.simulator.port) as client:
+            say_hello(client, "trainee")
+            trainee = CarriedTrainee(lab.view, GamepadHands(lab.simulator), client)
+            keep_menus(trainee, photographer, lab.keyboard)
+            keep_views(trainee, photographer)
+            trainee.go_home()
+            # It waits for one trial more, so that it is still there while the result is shown.
+            slicer = lab.start_slicer(trials=2)
+            scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
+            play_trial(client, scenario, "task-1", TRAINEE, SEED)
+            slicer.told_until("trial")
+            trainee.until_menu("result")
+            # The hints are those of the device in use.
+            trainee.focus("errors")
+            trainee.focus("next")
+            photographer.keep("result")
+
+
+def keep_menus(
+    trainee: CarriedTrainee, photographer: Photographer, keyboard: VirtualKeyboard
+) -> None:
+    trainee.until_menu("start")
+    trainee.focus("introduction")
+    trainee.focus("train")
+    photographer.keep("menu")
+    trainee.go_to_experiment()
+    trainee.focus("trainee")
+    keyboard.hold("ShiftLeft", True)
+    keyboard.tap("KeyP")
+    trainee.until(lambda: trainee.value("trainee") == "P", "the letter")
+    keyboard.hold("ShiftLeft", False)
+    keyboard.tap("Digit7")
+    trainee.until(lambda: trainee.value("trainee") == TRAINEE, "the ID")
+    trainee.focus("trial-run")
+    trainee.focus("task-1")
+    photographer.keep("experiment")
+
+
+def keep_views(trainee: CarriedTrainee, photographer: Photographer) -> None:
+    """Keep the room from afar, and the head from near, with the tip in the air and as an error."""
+    trainee.begin_task("task-1")
+    trainee.use_camera("far")
+    photographer.keep("far-view")
+    trainee.use_camera("close-up")
+    trainee.touch_all(TOUCHED)
+    label = trainee.view.state["next"]
+    trainee.approach(label, 0.004)
+    trainee.use_camera("close-up")
+    photographer.keep("close-view-free")
+    trainee.steer_to(trainee.place_of(label), 0.002)
+    trainee.until(lambda: trainee.view.state["touch"] == "on skin", "the skin")
+    photographer.keep("close-view-on-skin")
+    trainee.press_beside_fiducials()
+    photographer.keep("close-view-proximity")
+
+
+if __name__ == "__main__":
+    main()
