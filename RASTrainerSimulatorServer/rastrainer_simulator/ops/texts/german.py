@@ -263,8 +263,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "unseen.left": "Angehalten: Die Ansicht des Versuchs wurde geschlossen oder ging verloren.",
         "unseen.unplugged": "Pause: Das Gamepad wurde abgesteckt.",
         "unseen.hidden": "Angehalten: Der Versuch war nicht zu sehen.",
-        "unseen.instructor": "Angehalten von der Lehrperson.",
-        "instructor.says": "Deine Lehrperson: {text}",
+        "unseen.instructor": "Angehalten von den Ausbildenden.",
+        "instructor.says": "Von den Ausbildenden: {text}",
         "instructor.nothing runs": "An diesem Platz läuft nichts, das angehalten werden könnte.",
         "instructor.no result": "Eine Wiederholung kann gezeigt werden, solange am Platz das "
         "Ergebnis eines Versuchs zu sehen ist.",
