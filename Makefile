@@ -71,6 +71,7 @@ lock: .venv/installed
 	$(COMPILE) --extra bench --constraints requirements-test.lock -o requirements-bench.lock
 	$(COMPILE) --extra soak --constraints requirements-test.lock -o requirements-soak.lock
 	$(subst pyproject.toml,requirements-ralph.in,$(COMPILE)) -o requirements-ralph.lock
+	$(subst pyproject.toml,requirements-icp.in,$(COMPILE)) -o requirements-icp.lock
 	$(COMPILE) --extra supply --constraints requirements.lock -o requirements-supply.lock
 	$(COMPILE) --extra docs --constraints requirements-test.lock -o requirements-docs.lock
 	$(COMPILE) --constraints requirements.lock --excludes tools/simulator-leaves-out.txt -o $(SIMULATOR)/requirements.lock
@@ -103,10 +104,12 @@ $(VENV_PYTHON):
 	touch $@
 
 # A peer has an environment of its own: it wants other versions of the same packages.
-.venv/soak-installed: .venv/test-installed requirements-soak.lock requirements-ralph.lock
+.venv/soak-installed: .venv/test-installed requirements-soak.lock requirements-ralph.lock requirements-icp.lock
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-soak.lock
 	$(BIN)/python -m venv .venv/ralph
 	.venv/ralph/bin/python -m pip install -q --require-hashes -r requirements-ralph.lock
+	$(BIN)/python -m venv .venv/icp
+	.venv/icp/bin/python -m pip install -q --require-hashes -r requirements-icp.lock
 	touch $@
 
 .venv/supply-installed: .venv/installed requirements-supply.lock

@@ -33,8 +33,8 @@ EXTRAS = {
     "requirements-docs.lock": ("docs",),
 }
 """What `make lock` makes each lock from, beside the project's own dependencies."""
-PEERS_LOCK = ROOT / "requirements-ralph.lock"
-"""Of a peer in the tests, which has an environment and a file of requirements of its own."""
+PEERS_LOCKS = tuple(ROOT / f"requirements-{name}.lock" for name in ("ralph", "icp"))
+"""Of peers in the tests, which have environments and files of requirements of their own."""
 NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")
 
 ENTRY = re.compile(r"^[a-z0-9][a-z0-9._-]*==[^\s\\]+(?: ; [^\\]+)? \\$")
@@ -76,9 +76,9 @@ def test_each_lock_holds_every_package_that_the_project_asks_for():
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert {lock.name for lock in LOCKS} == {*EXTRAS, PEERS_LOCK.name}
+    assert {lock.name for lock in LOCKS} == {*EXTRAS, *(lock.name for lock in PEERS_LOCKS)}
     asked = {name: asked_for(project, extras) for name, extras in EXTRAS.items()}
-    asked[PEERS_LOCK.name] = asked_of(PEERS_LOCK.with_suffix(".in"))
+    asked |= {lock.name: asked_of(lock.with_suffix(".in")) for lock in PEERS_LOCKS}
     for lock in LOCKS:
         locked = set(re.findall(r"^([a-z0-9._-]+)==", lock.read_text(encoding="utf-8"), re.M))
         assert asked[lock.name] - locked == set(), lock.name

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-import vtk
-from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
@@ -17,6 +15,7 @@ from Testing.domain.registration.traces import (
     places,
     traced,
 )
+from Testing.icp_peers.vtk_icp import vtk_match
 
 
 @pytest.fixture(scope="module")
@@ -118,37 +117,6 @@ def test_the_flat_base_attracts_no_points(head, face):
     )
     match = match_surface(np.vstack([trace, transforms.apply(pose, below)]), head, start)
     assert not match.is_inlier[-15:].any()
-
-
-def head_corners(mesh):
-    return mesh.triangles.astype(np.int64).ravel()
-
-
-def vtk_match(trace, mesh, start):
-    """VTK's ICP: true nearest points of cells, all points count, point to point."""
-    surface, points, cells = vtk.vtkPolyData(), vtk.vtkPoints(), vtk.vtkCellArray()
-    points.SetData(numpy_to_vtk(mesh.vertices, deep=True))
-    offsets = np.arange(0, head_corners(mesh).size + 1, 3)
-    cells.SetData(
-        numpy_to_vtkIdTypeArray(offsets, deep=True),
-        numpy_to_vtkIdTypeArray(head_corners(mesh), deep=True),
-    )
-    surface.SetPoints(points)
-    surface.SetPolys(cells)
-    source, places_ = vtk.vtkPolyData(), vtk.vtkPoints()
-    places_.SetData(numpy_to_vtk(transforms.apply(start, trace), deep=True))
-    source.SetPoints(places_)
-    icp = vtk.vtkIterativeClosestPointTransform()
-    icp.SetSource(source)
-    icp.SetTarget(surface)
-    icp.GetLandmarkTransform().SetModeToRigidBody()
-    icp.SetMaximumNumberOfLandmarks(len(trace))
-    icp.SetMaximumNumberOfIterations(2000)
-    icp.SetCheckMeanDistance(True)
-    icp.SetMaximumMeanDistance(1e-9)
-    icp.Update()
-    matrix = np.array([[icp.GetMatrix().GetElement(i, j) for j in range(4)] for i in range(4)])
-    return matrix @ start
 
 
 def test_vtk_finds_the_same_minimum_and_none_better(head, face):

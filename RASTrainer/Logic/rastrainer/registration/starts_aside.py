@@ -1,7 +1,7 @@
 """Starts on both sides of a fit, since a head made of triangles has many minima close together.
 
 Minima whose costs hardly differ lie where the points determine the pose least. So a fit is repeated
-from both sides, along the directions of least curvature, and the lowest is taken.
+from both sides, along the direction of least curvature, and the lowest is taken.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rastrainer.registration.surface_fit import (
     transforms_of,
 )
 
-DIRECTIONS = 2
+DIRECTIONS = 1
 ASIDE_SD = 1.0
 """How far aside, in standard deviations of the pose as the residuals tell it."""
 ASIDE_MM = 2.0
