@@ -11,7 +11,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import Status, String
-from rastrainer.panels.widgets import LONGEST_TEXT, toolTip
+from rastrainer.panels.plain_text import LONGEST_TEXT, toolTip
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import LABELS

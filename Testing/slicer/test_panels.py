@@ -13,7 +13,7 @@ import slicer
 from PySide6 import QtCore
 
 from rastrainer import transforms
-from rastrainer.panels.widgets import toolTip
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import LABELS

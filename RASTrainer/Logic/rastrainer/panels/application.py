@@ -9,7 +9,7 @@ from typing import Any
 import qt
 import slicer
 
-from rastrainer.panels.widgets import toolTip
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.scenario.library import user_library
 from rastrainer.slicer.logic.module_session import ModulePaths
 from rastrainer.slicer.program.simulator_package import SimulatorPackage, pythonSlicer

@@ -9,15 +9,14 @@ from typing import Any
 import qt
 
 from rastrainer.errors import InputError
+from rastrainer.panels.plain_text import buttonTitle, shortName
 from rastrainer.panels.widgets import (
     LINK_COLORS,
-    buttonTitle,
     connectAsPressed,
     setLight,
     setSentence,
     setText,
     setUsable,
-    shortName,
 )
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
 from rastrainer.slicer.link.heartbeat import LinkState, notInstalled

@@ -9,6 +9,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.panels.cancelable_work import CancelableWork
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
@@ -19,7 +20,6 @@ from rastrainer.panels.widgets import (
     setLight,
     setText,
     setUsable,
-    toolTip,
 )
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.link.heartbeat import LinkState

@@ -8,8 +8,8 @@ from typing import Any
 import qt
 import slicer
 
+from rastrainer.panels.plain_text import buttonTitle, toolTip
 from rastrainer.panels.widgets import (
-    buttonTitle,
     chosenData,
     fillTable,
     keepChecked,
@@ -18,7 +18,6 @@ from rastrainer.panels.widgets import (
     setSentence,
     setUsable,
     textLabel,
-    toolTip,
 )
 from rastrainer.registration.fits import AFFINE, RIGID, SIMILARITY
 from rastrainer.registration.registration import Registration

@@ -6,14 +6,8 @@ from typing import Any
 
 import slicer
 
-from rastrainer.panels.widgets import (
-    connectAsPressed,
-    keepPath,
-    keepText,
-    setText,
-    setUsable,
-    toolTip,
-)
+from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.widgets import connectAsPressed, keepPath, keepText, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import INDEX, PROGRAM, WHEELS

@@ -7,6 +7,7 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.setup_panel import costSentence
 from rastrainer.panels.widgets import (
     LINK_COLORS,
@@ -18,7 +19,6 @@ from rastrainer.panels.widgets import (
     setSentence,
     setText,
     setUsable,
-    toolTip,
 )
 from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
 from rastrainer.slicer.logic.module_session import ModuleSession

@@ -12,8 +12,9 @@ import qt
 import slicer
 
 from rastrainer.errors import InputError
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.questionnaire_form import QuestionnaireForm
-from rastrainer.panels.widgets import fillTable, setSentence, setText, setUsable, toolTip
+from rastrainer.panels.widgets import fillTable, setSentence, setText, setUsable
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.study_logic import TRIALS

@@ -11,6 +11,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
 from rastrainer.panels.cancelable_work import CancelableWork
+from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
     chosenData,
     connectAsPressed,
@@ -20,7 +21,6 @@ from rastrainer.panels.widgets import (
     setChecked,
     setText,
     setUsable,
-    toolTip,
 )
 from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession

@@ -7,12 +7,12 @@ from typing import Any
 import slicer
 
 from rastrainer.number_text import fixed
+from rastrainer.panels.plain_text import buttonTitle, shortName, toolTip
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
     RED,
     YELLOW,
-    buttonTitle,
     chosenData,
     connectAsPressed,
     fillComboBox,
@@ -22,8 +22,6 @@ from rastrainer.panels.widgets import (
     setSentence,
     setText,
     setUsable,
-    shortName,
-    toolTip,
 )
 from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN, Mode, Phase, Proximity
 from rastrainer.registration.methods import RegistrationMethod

@@ -52,8 +52,8 @@ def menu_panel(
 
     The item `hovered` is under the mouse; `thumbnail` belongs to the one that has the focus.
 
-    What is too high is set smaller, down to what is still readable, then with closer rows, wider,
-    and with its text beside its rows; beyond that the rows scroll with the focus.
+    What is too high is set smaller, down to what is still readable, then wider, with its text
+    beside its rows, and with closer rows; beyond that the rows scroll with the focus.
     """
     factor, width, widths, rows = 1.0, theme.PANEL_WIDTH, [theme.BROAD_PANEL_WIDTH], _ROWS
     if menu.paragraphs:
@@ -62,10 +62,10 @@ def menu_panel(
     while layout.height > room[1] and (factor > SMALLEST or rows is _ROWS or widths):
         if factor > SMALLEST:
             factor *= SHRINK
-        elif rows is _ROWS:
-            rows = _CLOSE_ROWS
-        else:
+        elif widths:
             width = widths.pop()
+        else:
+            rows = _CLOSE_ROWS
         layout = _Layout(menu, Brush(scale * factor), room, width, rows)
     return layout.paint(hovered, thumbnail)
 
