@@ -42,6 +42,14 @@ def draw_item(canvas: Canvas, item: MenuItem, look: Look, brush: Brush, row: Box
         _DRAW_VALUE[item.kind](canvas, item, look, brush, place, color)
 
 
+def fits(item: MenuItem, brush: Brush, width: int) -> bool:
+    """Return whether a row of that width shows label and value whole, with or without the focus."""
+    if not item.value:
+        return brush.width(item.label, theme.STRONG) + 2 * brush.px(theme.PAD) <= width
+    pads = 3 * brush.px(theme.PAD)
+    return brush.width(item.label, theme.STRONG) + _needed(item, brush) + pads <= width
+
+
 def text_color(item: MenuItem, look: Look) -> Color:
     """Return the color of an item's label: one that cannot be chosen is readable in the focus."""
     if item.is_enabled:

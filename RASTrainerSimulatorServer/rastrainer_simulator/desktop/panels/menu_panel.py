@@ -10,7 +10,13 @@ from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad, draw_keyboard
-from rastrainer_simulator.desktop.panels.item_row import Look, draw_item, draw_trend, trend_height
+from rastrainer_simulator.desktop.panels.item_row import (
+    Look,
+    draw_item,
+    draw_trend,
+    fits,
+    trend_height,
+)
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.net.views.screen import Menu
 
@@ -52,20 +58,23 @@ def menu_panel(
 
     The item `hovered` is under the mouse; `thumbnail` belongs to the one that has the focus.
 
-    What is too high is set smaller, down to what is still readable, then wider, with its text
-    beside its rows, and with closer rows; beyond that the rows scroll with the focus.
+    What is too high is set smaller, down to what is still readable, then with closer rows, then,
+    as where these are clipped, wider, and with its text beside its rows; beyond that the rows
+    scroll with the focus.
     """
     factor, width, widths, rows = 1.0, theme.PANEL_WIDTH, [theme.BROAD_PANEL_WIDTH], _ROWS
     if menu.paragraphs:
         widths.insert(0, theme.WIDE_PANEL_WIDTH)
     layout = _Layout(menu, Brush(scale), room, width, rows)
-    while layout.height > room[1] and (factor > SMALLEST or rows is _ROWS or widths):
+    while layout.height > room[1] or (rows is _CLOSE_ROWS and layout.is_clipped):
         if factor > SMALLEST:
             factor *= SHRINK
+        elif rows is _ROWS:
+            rows = _CLOSE_ROWS
         elif widths:
             width = widths.pop()
         else:
-            rows = _CLOSE_ROWS
+            break
         layout = _Layout(menu, Brush(scale * factor), room, width, rows)
     return layout.paint(hovered, thumbnail)
 
@@ -125,6 +134,11 @@ class _Layout:
         self._shown = self._rows_in_sight(min(len(menu.items), fitting))
         shown = above + self._rows_height(len(self._shown)) + below
         self._height = min(self.height, max(shown, least))
+
+    @property
+    def is_clipped(self) -> bool:
+        """Whether an item is too wide for its row."""
+        return not all(fits(item, self._brush, self._text_width) for item in self._menu.items)
 
     def _rows_height(self, count: int) -> int:
         return count * (self._row + self._gap) - self._gap if count else 0
