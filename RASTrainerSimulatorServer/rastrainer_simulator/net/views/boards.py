@@ -30,10 +30,12 @@ class Boards:
 
     async def serve(self, board: View, now: SimulationState, seat: Seat) -> None:
         """Tell a board everything, and have it told what changes until it leaves."""
+        # First the others: then all know the same, and the new one is told nothing twice.
+        self.tell(now, seat)
         self._joined[board.number] = board
         try:
             board.outbox.put_latest(outgoing.WELCOME, outgoing.welcome(board.number))
-            board.outbox.put_latest(outgoing.SEAT, seat_text(now, seat))
+            board.outbox.put_latest(outgoing.SEAT, self._told)
             await board.serve()
         finally:
             del self._joined[board.number]
