@@ -158,6 +158,19 @@ def test_a_finished_trial_after_it_is_offered_beside_it(simulation, tmp_path):
     ]
 
 
+def full_from_the_abort_on():
+    """Return a write that fails from the abort on: the states before it come at any moment."""
+    write, is_full = os.write, []
+
+    def on_disk(descriptor, content):
+        if is_full or b"Abort" in bytes(content) or b'"attempt"' in bytes(content):
+            is_full.append(True)
+            return on_full_disk(descriptor, content)
+        return write(descriptor, content)
+
+    return on_disk
+
+
 def test_one_that_a_full_disk_did_not_take_is_offered_and_written_later(
     simulation, anywhere, tmp_path, monkeypatch
 ):
@@ -165,7 +178,7 @@ def test_one_that_a_full_disk_did_not_take_is_offered_and_written_later(
         trial_id = server.start()
         touch(server, 2)
         with monkeypatch.context() as patch:
-            patch.setattr(os, "write", on_full_disk)
+            patch.setattr(os, "write", full_from_the_abort_on())
             server.do(CommandName.ABORT)
             (record,) = wait_for_offer(server)
             refused = server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id)
