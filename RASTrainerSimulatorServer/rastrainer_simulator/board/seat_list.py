@@ -10,7 +10,7 @@ from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import printable_name, read_json
-from rastrainer.files.writing import keep_others_out, make_private_folder, write_json
+from rastrainer.files.writing import write_private_json
 from rastrainer.json_checks import accepted, text
 from rastrainer_simulator.net.loopback import is_loopback
 
@@ -80,15 +80,7 @@ class SeatList:
 
     def _write(self, entries: dict[str, SeatEntry]) -> None:
         values = [dataclasses.asdict(entry) for entry in entries.values()]
-        try:
-            make_private_folder(self._path.parent)
-        except OSError as error:
-            raise InputError(f"The folder of settings cannot be made: {error.strerror}.") from None
-        # Private before there is a key in it.
-        if not self._path.exists():
-            write_json(self._path, {})
-            keep_others_out(self._path)
-        write_json(self._path, {"formatVersion": FORMAT_VERSION, "seats": values})
+        write_private_json(self._path, {"formatVersion": FORMAT_VERSION, "seats": values})
         self._entries = entries
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.files.writing import keep_others_out, make_private_folder, write_json
+from rastrainer.files.writing import write_private_json
 
 PIN_FILE = "instructor.json"
 PIN_WORDS = "6 to 12 digits"
@@ -97,13 +97,9 @@ class InstructorPin:
             raise InputError(f"A PIN has {PIN_WORDS}.")
         salt = secrets.token_bytes(_SALT_BYTES)
         hashed = _hash(pin, salt)
-        try:
-            make_private_folder(self._path.parent)
-        except OSError as error:
-            raise InputError(f"The folder of settings cannot be made: {error.strerror}.") from None
         encoded = {"salt": salt, "hash": hashed}
-        write_json(self._path, {k: base64.b64encode(v).decode() for k, v in encoded.items()})
-        keep_others_out(self._path)
+        values = {name: base64.b64encode(value).decode() for name, value in encoded.items()}
+        write_private_json(self._path, values)
 
 
 def _hash(pin: str, salt: bytes) -> bytes:

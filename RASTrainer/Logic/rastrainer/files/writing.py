@@ -73,6 +73,23 @@ def make_empty_folder(folder: Path) -> None:
         raise InputError(f"The folder {folder} holds something; choose one that is empty.")
 
 
+def write_private_json(path: Path, value: object) -> None:
+    """Write JSON as `write_json` does, readable by this user only, and make its folder.
+
+    Raises:
+        InputError: the folder cannot be made, or the file not written.
+    """
+    try:
+        make_private_folder(path.parent)
+    except OSError as error:
+        raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
+    if not path.exists():
+        # Private before there is anything in it.
+        write_json(path, {})
+        keep_others_out(path)
+    write_json(path, value)
+
+
 def _unwritable(path: object, error: Exception) -> InputError:
     return InputError(
         f"The file {printable_name(path)} cannot be written: {failure_reason(error)}."

@@ -143,10 +143,18 @@ class Gate:
 
     def _check_pause(self) -> None:
         """Refuse while pairing is paused; the one who caused the pause is told of the new code."""
-        wait = self._code.seconds_to_wait()
-        if wait > 0:
-            headers = {hdrs.RETRY_AFTER: str(math.ceil(wait))}
-            raise web.HTTPTooManyRequests(text=TOO_MANY, headers=headers)
+        refuse_for(self._code.seconds_to_wait(), TOO_MANY)
+
+
+def refuse_for(wait_s: float, why: str) -> None:
+    """Refuse with a sentence where there are seconds to wait.
+
+    Raises:
+        web.HTTPTooManyRequests: there are; its `Retry-After` has them.
+    """
+    if wait_s > 0:
+        headers = {hdrs.RETRY_AFTER: str(math.ceil(wait_s))}
+        raise web.HTTPTooManyRequests(text=why, headers=headers)
 
 
 def _is_public(request: web.Request) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from aiohttp import hdrs, web
 from rastrainer.errors import InputError
 from rastrainer.json_checks import accepted, one_of, text
 from rastrainer.protocol import decode_json_object
-from rastrainer_simulator.net.views.gate import ROLE
+from rastrainer_simulator.net.views.gate import ROLE, refuse_for
 from rastrainer_simulator.net.views.presenter import InstructorOrder, Presenter
 from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.ops.instructor_pin import GuessLimit, InstructorPin
@@ -67,10 +66,7 @@ class InstructorOrders:
             raise web.HTTPForbidden(text=WRONG_PIN)
 
     def _check_pause(self) -> None:
-        wait = self._limit.seconds_to_wait()
-        if wait > 0:
-            headers = {hdrs.RETRY_AFTER: str(math.ceil(wait))}
-            raise web.HTTPTooManyRequests(text=TOO_MANY, headers=headers)
+        refuse_for(self._limit.seconds_to_wait(), TOO_MANY)
 
 
 async def _order(request: web.Request) -> tuple[str, InstructorOrder, str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.files.writing import keep_others_out, make_private_folder, write_json
+from rastrainer.files.writing import write_private_json
 
 KEY_BYTES = 32
 SHORTEST_KEY = 32
@@ -100,9 +100,4 @@ def _read(path: Path) -> list[bytes]:
 
 
 def _write(path: Path, hashes: deque[bytes]) -> None:
-    try:
-        make_private_folder(path.parent)
-    except OSError as error:
-        raise InputError(f"The folder of settings cannot be made: {error.strerror}.") from None
-    write_json(path, [each.hex() for each in hashes])
-    keep_others_out(path)
+    write_private_json(path, [each.hex() for each in hashes])
