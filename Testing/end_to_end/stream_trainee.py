@@ -125,6 +125,12 @@ class StreamTrainee:
         return self.view.screen.menu
 
     @property
+    def menu_name(self) -> str | None:
+        """The open menu's name, read once: another thread replaces the screen."""
+        menu = self.menu
+        return None if menu is None else menu.name
+
+    @property
     def touched(self) -> int:
         return len(self.view.state["touched"])
 
@@ -171,7 +177,7 @@ class StreamTrainee:
 
     def until_menu(self, name: str | None) -> None:
         """Wait until a menu of that name is open, or none."""
-        self.until(lambda: (self.menu and self.menu.name) == name, f"the menu {name}")
+        self.until(lambda: self.menu_name == name, f"the menu {name}")
 
     def press(self, control: str, is_done: Callable[[], bool], what: str) -> None:
         """Press a control, and wait until it has an effect."""
@@ -185,8 +191,8 @@ class StreamTrainee:
     def choose(self, item: str) -> None:
         """Move the focus to an item and accept it; it leads to another menu."""
         self.focus(item)
-        before = self.menu.name
-        self.press("accept", lambda: not self.menu or self.menu.name != before, f"after {item}")
+        before = self.menu_name
+        self.press("accept", lambda: self.menu_name != before, f"after {item}")
 
     def read_on(self, name: str) -> None:
         """Accept page by page until a menu of that name is open."""
@@ -330,7 +336,7 @@ class StreamTrainee:
 
     def steer_to(self, place: np.ndarray, near: float, fine: bool = False) -> None:
         """Push the sticks toward a place (3,) World, m, until the tip is near it."""
-        if self.menu is not None and self.menu.name == "trial":
+        if self.menu_name == "trial":
             # The simulator pauses where a busy machine keeps the window from drawing.
             self.choose("resume")
         slow, least = (FINE_M, LEAST_FINE_PUSH) if fine else (COARSE_M, LEAST_PUSH)

@@ -109,8 +109,8 @@ class ClickingInWindow(StreamTrainee):
 
     def choose(self, item: str) -> None:
         """Click on an item, which leads to another menu."""
-        before = self.menu.name
-        self._until_clicked(item, lambda: not self.menu or self.menu.name != before)
+        before = self.menu_name
+        self._until_clicked(item, lambda: self.menu_name != before)
 
     def show_sticks(self) -> None:
         """Have the sticks shown, and wait until the window has them."""

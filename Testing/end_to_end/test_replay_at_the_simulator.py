@@ -72,7 +72,8 @@ def views(loop_thread, simulator, key):
 
 def shown(view):
     """Return the name of the menu; None where none is open."""
-    return view.screen.menu and view.screen.menu.name
+    menu = view.screen.menu
+    return menu and menu.name
 
 
 def ghost_tip(view):

@@ -140,21 +140,21 @@ class Trainee(StreamTrainee):
 
     def go_home(self) -> None:
         """Go to the start menu from wherever the last one has stopped."""
-        while not self.menu or self.menu.name != "start":
-            if not self.menu:
+        while self.menu_name != "start":
+            before = self.menu
+            if before is None:
                 self.press("menu", lambda: self.menu is not None, "the menu")
-            elif self.menu.name in LEAVES:
-                self.choose(LEAVES[self.menu.name])
+            elif before.name in LEAVES:
+                self.choose(LEAVES[before.name])
             else:
-                before = self.menu
                 self.press("back", lambda b=before: self.menu != b, f"before {before.name}")
 
     def go_to_experiment(self) -> None:
         """Go from wherever the last one has stopped to the choice of head and task."""
         self.go_home()
         self.choose("train")
-        while self.menu.name != "experiment":
-            self.choose("skip" if self.menu.name == "introduction" else "next")
+        while self.menu_name != "experiment":
+            self.choose("skip" if self.menu_name == "introduction" else "next")
 
     def begin(self, task: str, page: Page | None = None) -> None:
         """Go from the start menu into a task.

@@ -17,10 +17,10 @@ class TappingTrainee(CarriedTrainee):
 
     def choose(self, item: str) -> None:
         """Tap an item, once the page shows its menu."""
-        before = self.menu.name
+        before = self.menu_name
         self._until_shown()
         self._page.tap(f"#menu li[data-name='{item}'] button")
-        self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
+        self.until(lambda: self.menu_name != before, f"after {item}")
 
     def write_id(self) -> None:
         self._until_shown()

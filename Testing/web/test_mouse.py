@@ -26,9 +26,9 @@ class Clicks:
 
     def choose(self, item: str) -> None:
         """Click on an item, which leads to another menu."""
-        before = self.menu.name
+        before = self.menu_name
         self.hands.click(item)
-        self.until(lambda: not self.menu or self.menu.name != before, f"after {item}")
+        self.until(lambda: self.menu_name != before, f"after {item}")
 
     def click_id(self) -> None:
         """Enter the ID P7, a character at a time."""
