@@ -149,6 +149,10 @@ class Thumbs:
         self._screen.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
 
 
+KEPT_STICK_SHARE = 0.4
+"""A stick is let go of where its part of the way is smaller than this share of the other's."""
+
+
 class PageMouse:
     """The mouse alone: it clicks on menus and hints, and drags one of the sticks at a time."""
 
@@ -175,7 +179,7 @@ class PageMouse:
 
     def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
         """Drag the stick of the larger part; slow motion is clicked on and off."""
-        is_level = math.hypot(right, forward) >= abs(up)
+        is_level = self._is_level(math.hypot(right, forward), abs(up))
         across, along = (right, forward) if is_level else (0.0, up)
         wanted = ("first", "last")[not is_level] if across or along else None
         if self._dragged is not None and (wanted, fine) != (self._dragged, self._was_fine):
@@ -186,6 +190,14 @@ class PageMouse:
         # While a stick is dragged nothing else is asked of the page: each answer may take long.
         x, y, radius = self._stick
         self._page.mouse.move(x + across * radius, y - along * radius)
+
+    def _is_level(self, level: float, upright: float) -> bool:
+        """Return whether the first stick is dragged; to change sticks takes long."""
+        if self._dragged == "first":
+            return level >= KEPT_STICK_SHARE * upright
+        if self._dragged == "last":
+            return upright < KEPT_STICK_SHARE * level
+        return level >= upright
 
     def _seize(self, stick: str, fine: bool) -> bool:
         """Take hold of the first or the last stick; return whether it is shown."""

@@ -40,13 +40,14 @@ class Clicks:
         assert self.value("trainee") == "P7"
 
     def begin_by_sticks(self, task: str) -> None:
-        """Go from the start menu to the trial run, or the tutorial, with sticks on the screen."""
+        """Go from the start menu to a task, or the tutorial, with sticks on the screen."""
         for item in ("train", "skip", "next"):
             self.choose(item)
         self.click_id()
         self.choose(task)
         self.until_menu(None)
-        self.until(lambda: self.view.scene["task"] == "trial-run", "the scene")
+        shown = "trial-run" if task == "tutorial" else task
+        self.until(lambda: self.view.scene["task"] == shown, "the scene")
         self.hands.click("press sticks")
         self.until(lambda: self.view.screen.has_sticks, "the sticks")
 
@@ -122,3 +123,19 @@ def test_the_first_touches_of_the_trial_run_are_steered_by_the_mouse(place, page
         trainee.touch(label)
     assert trainee.touched == 2
     assert {entry["operator"] for entry in place.entries("input")} <= {"mouse", ""}
+
+
+@pytest.mark.soak
+def test_by_the_mouse_alone_a_whole_trial_is_touched_and_scored(tmp_path, browser):
+    with Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any") as place:
+        simulator = place.simulator
+        page = open_page(browser, simulator.url, simulator.code, size=SIZE, draws=False)
+        trainee = ClickingTrainee(place.view, PageMouse(page))
+        trainee.begin_by_sticks("task-1")
+        trainee.touch_all()
+        trainee.register()
+        trainee.until_menu("result")
+        assert trainee.menu.facts[0].label == "Score"
+        assert len(place.entries("touch")) == 15
+        assert {entry["operator"] for entry in place.entries("input")} <= {"mouse", ""}
+        assert page.problems == []
