@@ -115,9 +115,9 @@ class ArmScreen:
     def _movement_hints(self) -> tuple[Hint, ...]:
         """Return what moves the tip."""
         session = self._session
-        up_and_down = session.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
+        up_and_down = session.operator.pair_label(ControlName.MOVE_UP, ControlName.MOVE_DOWN)
         return (
-            Hint(session.stick_label(_LEVEL), session.texts.say("hint.move")),
+            Hint(session.operator.stick_label(_LEVEL), session.texts.say("hint.move")),
             Hint(up_and_down, session.texts.say("hint.up_and_down")),
         )
 

@@ -307,7 +307,7 @@ class Flow:
         session = self._session
         say = session.texts.say
         return (
-            Hint(session.pair_label(ControlName.UP, ControlName.DOWN), say("hint.choose")),
+            Hint(session.operator.pair_label(ControlName.UP, ControlName.DOWN), say("hint.choose")),
             clickable_hint(session, ControlName.ACCEPT, "hint.accept"),
             clickable_hint(session, ControlName.BACK, "hint.back"),
         )

@@ -176,16 +176,16 @@ class ProcedureScreen(ArmScreen):
     def _stick_hints(self, phase: Phase) -> tuple[Hint, ...]:
         """Return what the sticks do; in a headset what is not drawn in the hands."""
         session, say = self._session, self._session.texts.say
-        up_and_down = session.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
+        up_and_down = session.operator.pair_label(ControlName.MOVE_DOWN, ControlName.MOVE_UP)
         if phase in FED:
             return (Hint(up_and_down, say("hint.feed")),)
-        if session.is_typing_possible((SourceKind.XR,)):
+        if session.operator.is_one_of((SourceKind.XR,)):
             is_aligning = phase is Phase.ALIGNING
             return (Hint(say("headset.tilt"), say("hint.tilt")),) if is_aligning else ()
         if phase is not Phase.ALIGNING:
             return self._movement_hints()
-        turn = session.pair_label(ControlName.TURN_LEFT, ControlName.TURN_RIGHT)
-        tilt = session.pair_label(ControlName.TURN_DOWN, ControlName.TURN_UP)
+        turn = session.operator.pair_label(ControlName.TURN_LEFT, ControlName.TURN_RIGHT)
+        tilt = session.operator.pair_label(ControlName.TURN_DOWN, ControlName.TURN_UP)
         turning = (Hint(turn, say("hint.turn")), Hint(tilt, say("hint.tilt")))
         return (*self._movement_hints(), *turning)
 

@@ -164,7 +164,7 @@ class TrialScreen(ArmScreen):
             tone = Tone.GOOD if training.phase is Phase.COMPLETE else Tone.PLAIN
             return ScreenMessage(session.texts.again(training.instruction), tone)
         if training.phase is Phase.COMPLETE:
-            key = session.label(ControlName.TOUCH)
+            key = session.operator.label(ControlName.TOUCH)
             text = session.texts.say(
                 "work.complete", trainee=training.trainee, count=len(training.touches), touch=key
             )
@@ -174,7 +174,7 @@ class TrialScreen(ArmScreen):
         if self._was_refused and not has_gone_on:
             return ScreenMessage(session.texts.again(training.instruction), Tone.WARNING)
         if is_on_skin:
-            key = session.label(ControlName.TOUCH)
+            key = session.operator.label(ControlName.TOUCH)
             return ScreenMessage(session.texts.say("work.on skin", touch=key), Tone.GOOD)
         if self._is_off_the_way():
             text = session.texts.say(
@@ -222,7 +222,7 @@ class TrialScreen(ArmScreen):
             ControlName.MENU: "hint.menu",
         }
         movement: tuple[Hint, ...] = ()
-        if session.is_typing_possible((SourceKind.XR,)):
+        if session.operator.is_one_of((SourceKind.XR,)):
             # In a headset one looks around with the head, and its sticks are drawn in its hands.
             del names[ControlName.BEST_VIEW]
         elif not is_complete:

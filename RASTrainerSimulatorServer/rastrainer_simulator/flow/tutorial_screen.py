@@ -98,7 +98,7 @@ class TutorialScreen(ArmScreen):
         if self._homing is not None and self._is_homing:
             self._homing.advance(dt)
             return
-        tutorial.use(session.learned_device)
+        tutorial.use(session.operator.learned)
         done = tutorial.advance(dt, self._observation())
         if done is not None:
             self._was_refused = self._has_paused = False
@@ -136,7 +136,7 @@ class TutorialScreen(ArmScreen):
         if tutorial.praised is not None:
             return self._praise(tutorial.praised)
         if tutorial.may_touch and self._state.touch is TouchStage.ON_SKIN:
-            key = session.label(ControlName.TOUCH)
+            key = session.operator.label(ControlName.TOUCH)
             return ScreenMessage(say("work.on skin", touch=key), Tone.GOOD)
         practice, errors = tutorial.practice.state, tutorial.practice.errors_mm()
         if tutorial.step is TutorialStep.GUIDED and errors:
@@ -168,9 +168,12 @@ class TutorialScreen(ArmScreen):
             return ()
         controls = _CONTROLS[step]
         if step is TutorialStep.TURN_VIEW:
-            hints = [Hint(session.pair_label(*controls), say("hint.turn_view"))]
+            hints = [Hint(session.operator.pair_label(*controls), say("hint.turn_view"))]
         elif step in (*MOVES, TutorialStep.LOOK_AROUND):
-            hints = [Hint(session.label(name), say(f"control.{name.value}")) for name in controls]
+            hints = [
+                Hint(session.operator.label(name), say(f"control.{name.value}"))
+                for name in controls
+            ]
         else:
             named = {name: f"control.{name.value}" for name in controls if self._is_there(name)}
             hints = list(self._control_hints(named))
@@ -230,9 +233,13 @@ class TutorialScreen(ArmScreen):
         session = self._session
         controls = _CONTROLS[step]
         is_pair = step is TutorialStep.TURN_VIEW
-        name = session.pair_label(*controls) if is_pair else session.label(controls[0])
+        name = (
+            session.operator.pair_label(*controls)
+            if is_pair
+            else session.operator.label(controls[0])
+        )
         key = f"tutorial.{step.value}"
-        for variant in (session.learned_device.value, session.preferences.axes):
+        for variant in (session.operator.learned.value, session.preferences.axes):
             if f"{key}.{variant}" in session.texts:
                 key = f"{key}.{variant}"
         point = self._tutorial.practice.state.next_point

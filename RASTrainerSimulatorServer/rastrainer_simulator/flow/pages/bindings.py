@@ -32,7 +32,7 @@ class BindingsPage(SessionPage):
 
     def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
-        self._device = session.device
+        self._device = session.operator.kind
         self._group = "work"
 
     def menu(self) -> Menu:
@@ -62,7 +62,7 @@ class BindingsPage(SessionPage):
             self._group = _stepped(tuple(GROUPS), self._group, direction)
 
     def _control(self, control: ControlName) -> MenuItem:
-        inputs = self.session.input_labels(self._device, control)
+        inputs = self.session.operator.input_labels(self._device, control)
         return self.button(control.value, self.say(f"control.{control.value}"), value=inputs)
 
 
@@ -126,7 +126,7 @@ class ConflictPage(SessionPage):
         others = self.session.bindings.others(self._device, self._control, self._wanted)
         text = self.say(
             "conflict.text",
-            input=self.session.input_label(self._device, self._wanted),
+            input=self.session.operator.input_label(self._device, self._wanted),
             other=", ".join(self.say(f"control.{other.value}") for other in others),
             control=self.say(f"control.{self._control.value}"),
         )
@@ -156,7 +156,7 @@ def rebind(session: TrainingSession, device: InputDevice, control: ControlName, 
         session.texts.say(
             "bindings.changed",
             control=session.texts.say(f"control.{control.value}"),
-            input=session.input_label(device, name),
+            input=session.operator.input_label(device, name),
         )
     )
 

@@ -46,13 +46,13 @@ class ErrorsPage(SessionPage):
         """Return the arrows; they show the true errors, which the score has already revealed."""
         session = self.session
         touches = session.training.touches if session.training.result is not None else ()
-        back = Hint(session.label(ControlName.BACK), self.say("hint.result"), "back")
+        back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
         hints: tuple[Hint, ...] = (back,)
-        if not session.is_typing_possible((SourceKind.XR,)):
+        if not session.operator.is_one_of((SourceKind.XR,)):
             # In a headset one looks around with the head.
             pairs = (ControlName.LEFT, ControlName.RIGHT), (ControlName.UP, ControlName.DOWN)
             turn = self.say("hint.turn_view")
-            hints = (*(Hint(session.pair_label(*pair), turn) for pair in pairs), back)
+            hints = (*(Hint(session.operator.pair_label(*pair), turn) for pair in pairs), back)
         return Screen(
             instruction=ScreenMessage(self._title),
             hints=hints,

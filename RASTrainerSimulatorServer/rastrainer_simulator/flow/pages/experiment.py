@@ -56,7 +56,7 @@ class ExperimentPage(SessionPage):
         )
         mode = self.choice("mode", self.say(f"mode.{session.mode}"))
         scenario = self.button("scenario", value=session.scenario.title)
-        by_mouse = (self.button("clicked"),) if session.is_typing_possible(_CLICKS) else ()
+        by_mouse = (self.button("clicked"),) if session.operator.is_one_of(_CLICKS) else ()
         choices = (trainee, *by_mouse, mode, scenario, *self._method(), *self._procedure())
         tasks = tuple(self._task(task.name) for task in session.scenario.tasks)
         step = self._step()
@@ -88,7 +88,7 @@ class ExperimentPage(SessionPage):
         elif item == "tutorial":
             self.session.begin_tutorial()
         elif item == "trainee":
-            if self.session.is_typing_possible(_TYPES):
+            if self.session.operator.is_one_of(_TYPES):
                 self.session.pages.move(1)
             else:
                 self.session.pages.open(KeyboardPage(self.session, self.write))
@@ -153,7 +153,7 @@ class ExperimentPage(SessionPage):
         if tutorial_rule(session) is TutorialRule.SKIPPED:
             return ()
         reason = tutorial_obstacle(session)
-        is_done = session.tutorials.has_done(session.trainee.strip(), session.learned_device)
+        is_done = session.tutorials.has_done(session.trainee.strip(), session.operator.learned)
         value = self.say("experiment.done" if is_done else "experiment.tutorial time")
         help_ = reason or self.say("experiment.tutorial help")
         return (self.button("tutorial", value=value, is_enabled=not reason, help=help_),)

@@ -84,9 +84,12 @@ class ControlsPage(SessionPage):
         """Return the list of the controls."""
         session = self.session
         # Two ways of a stick tell which one it is; a key has only one.
-        most = len(ControlName) if session.device is InputDevice.KEYBOARD else 2
+        most = len(ControlName) if session.operator.kind is InputDevice.KEYBOARD else 2
         facts = tuple(
-            Fact(self.say(f"controls.{key}"), " / ".join(map(session.label, controls[:most])))
+            Fact(
+                self.say(f"controls.{key}"),
+                " / ".join(map(session.operator.label, controls[:most])),
+            )
             for key, controls in _SHOWN
         )
         items = (*(["next"] if self._leads_on else []), "test", "rebind", "back")
@@ -96,7 +99,7 @@ class ControlsPage(SessionPage):
             (self.say("controls.text"),),
             facts,
             tuple(self.button(item) for item in items),
-            picture=session.device_picture,
+            picture=session.operator.picture,
         )
 
     def accept(self, item: str) -> None:
@@ -132,7 +135,7 @@ class PadTestPage(SessionPage):
         )
         fine = Fact(self.say("control.fine"), self.say("test.yes" if held.fine else "test.no"))
         facts = tuple(Fact(*self._input(*pressed)) for pressed in self._pressed)
-        leave = self.session.label(ControlName.MENU)
+        leave = self.session.operator.label(ControlName.MENU)
         return Menu(
             self.name,
             self.say("test.title"),
@@ -161,4 +164,4 @@ class PadTestPage(SessionPage):
         table = self.session.bindings.table(device)
         works = [control for control, inputs in table.items() if name in inputs]
         names = ", ".join(self.say(f"control.{control.value}") for control in works)
-        return self.session.input_label(device, name), names or self.say("test.nothing")
+        return self.session.operator.input_label(device, name), names or self.say("test.nothing")

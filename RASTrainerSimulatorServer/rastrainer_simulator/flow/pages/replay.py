@@ -115,8 +115,8 @@ class ReplayPage(SessionPage):
                 self.session.happened(felt)
 
     def _hints(self) -> tuple[Hint, ...]:
-        label, say = self.session.label, self.session.texts.say
-        seek = self.session.pair_label(ControlName.LEFT, ControlName.RIGHT)
+        label, say = self.session.operator.label, self.session.texts.say
+        seek = self.session.operator.pair_label(ControlName.LEFT, ControlName.RIGHT)
         return (
             clickable_hint(self.session, ControlName.ACCEPT, "hint.play"),
             Hint(seek, say("hint.seek")),

@@ -37,14 +37,14 @@ class SessionPage(Page):
 
 def clickable_hint(session: TrainingSession, control: ControlName, key: str) -> Hint:
     """Return the hint of a control that is pressed once; `key` is of what it does."""
-    return Hint(session.label(control), session.texts.say(key), PRESS + control.value)
+    return Hint(session.operator.label(control), session.texts.say(key), PRESS + control.value)
 
 
 def slow_hint(session: TrainingSession) -> Hint:
     """Return the hint of slow motion, which is held, or by a mouse switched on and off."""
     say = session.texts.say
-    if not session.steers_by_mouse:
-        return Hint(session.label(ControlName.FINE), say("hint.fine"))
+    if not session.operator.steers_by_mouse:
+        return Hint(session.operator.label(ControlName.FINE), say("hint.fine"))
     key = "hint.on" if session.screen_sticks.is_slow else "hint.off"
     return clickable_hint(session, ControlName.FINE, key)
 
@@ -55,7 +55,7 @@ def stick_hints(session: TrainingSession, can_tilt: bool = False) -> tuple[Hint,
     Where the tool can be tilted, the right stick does it, or lifts and lowers the tool.
     """
     say, sticks = session.texts.say, session.screen_sticks
-    if not session.is_typing_possible((SourceKind.MOUSE,)):
+    if not session.operator.is_one_of((SourceKind.MOUSE,)):
         return ()
     action = say("hint.hide sticks" if sticks.is_shown else "hint.sticks")
     hints = [Hint(say("hint.mouse"), action, PRESS + SHOW)]

@@ -47,7 +47,7 @@ def tutorial_obstacle(session: TrainingSession) -> str:
     if step is None:
         return ""
     is_asked = step.kind == StepKind.TRIAL_RUN and step.mode == session.mode
-    has_done = session.tutorials.has_done(trainee, session.learned_device)
+    has_done = session.tutorials.has_done(trainee, session.operator.learned)
     if is_asked and not has_done:
         return ""
     return say("experiment.study", step=session.step_sentence(step))
@@ -71,4 +71,4 @@ def needs_tutorial(session: TrainingSession) -> bool:
     """Return whether the trial run waits for the tutorial with the device in use."""
     if tutorial_rule(session) is not TutorialRule.REQUIRED:
         return False
-    return not session.tutorials.has_done(session.trainee.strip(), session.learned_device)
+    return not session.tutorials.has_done(session.trainee.strip(), session.operator.learned)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -32,6 +32,7 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.commands import Commands
 from rastrainer_simulator.flow.session.open_pages import OpenPages
+from rastrainer_simulator.flow.session.operator_device import OperatorDevice
 from rastrainer_simulator.flow.session.own_score import OwnScore
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
@@ -51,18 +52,15 @@ from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.bindings import (
     BINDINGS_FILE,
-    DEFAULT_BINDINGS,
     Bindings,
     write_bindings,
 )
-from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.controls import Controls
-from rastrainer_simulator.input.inputs import InputDevice, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
 from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
 from rastrainer_simulator.operator_input import OperatorInput
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
@@ -75,9 +73,6 @@ SET_UP_AFTER_S = 1.0
 """A simulation takes a second to make: who steps through the options shall not wait for each."""
 TUTORIAL_VIEW = Orbit(zoom=1.7)
 """From farther away than a trial: the tip is seen where it starts, above the head."""
-_OWN_LABELS = {SourceKind.XR: "headset", SourceKind.TOUCH_SCREEN: "touch screen"}
-_BY_MOUSE = "mouse"
-"""Whose inputs have other names than those of a gamepad, and how the keys of their texts begin."""
 
 
 @dataclass(frozen=True)
@@ -221,37 +216,9 @@ class TrainingSession:
         return self._controls.held
 
     @property
-    def device(self) -> InputDevice:
-        """What the operator uses; before anybody acts, a gamepad where there is one."""
-        holder = self._controls.holder
-        if holder is None:
-            has_pad = self._controls.has_gamepad
-        else:
-            has_pad = holder.kind not in (SourceKind.KEYBOARD, SourceKind.MOUSE)
-        return InputDevice.GAMEPAD if has_pad else InputDevice.KEYBOARD
-
-    @property
-    def learned_device(self) -> SourceKind:
-        """What the arm is driven with, as far as it has controls of its own to be learned."""
-        holder = self._controls.holder
-        if holder is not None and holder.kind in (SourceKind.XR, SourceKind.TOUCH_SCREEN):
-            return holder.kind
-        if self.steers_by_mouse:
-            return SourceKind.MOUSE
-        has_pad = self.device is InputDevice.GAMEPAD
-        # In a headset one holds its controllers, unless a gamepad is in use.
-        other = SourceKind.XR if self.mode == Mode.HMD.value else SourceKind.KEYBOARD
-        return SourceKind.GAMEPAD if has_pad else other
-
-    @property
-    def steers_by_mouse(self) -> bool:
-        """Whether the operator drags the sticks on the screen, and clicks the rest."""
-        return self.screen_sticks.is_shown and self.is_typing_possible((SourceKind.MOUSE,))
-
-    @property
-    def device_picture(self) -> str:
-        """Which drawing shows what the operator uses."""
-        return "controllers" if self.is_typing_possible((SourceKind.XR,)) else self.device.value
+    def operator(self) -> OperatorDevice:
+        """What the operator works with, and what its inputs are called."""
+        return OperatorDevice(self._controls, self.texts, self.mode, self.screen_sticks.is_shown)
 
     @property
     def is_being_set_up(self) -> bool:
@@ -270,11 +237,6 @@ class TrainingSession:
         trainee = self.training.trainee if self.tutorial is None else self.tutorial.trainee
         is_led = self.study.step_of(trainee) is not None
         return choice == "always" or (choice == "practice" and not is_led)
-
-    def is_typing_possible(self, kinds: tuple[SourceKind, ...]) -> bool:
-        """Return whether what the operator uses is one of these."""
-        holder = self._controls.holder
-        return holder is not None and holder.kind in kinds
 
     def advance(self, dt: float, state: SimulationState) -> None:
         """Take the newest state, and what has been answered within `dt` seconds."""
@@ -327,7 +289,7 @@ class TrainingSession:
         self.view.close()
         if tutorial.step is not None:
             return None
-        outcome = tutorial.outcome(self.learned_device)
+        outcome = tutorial.outcome(self.operator.learned)
         self._save(lambda: self.tutorials.keep(outcome))
         return outcome
 
@@ -472,41 +434,6 @@ class TrainingSession:
         """Return the sentence about a study's step."""
         left = self.study.break_left_s(step.trainee)
         return step_sentence(self.texts, step, self.task_title(step.task), self.duration(left))
-
-    def label(self, control: ControlName) -> str:
-        """Return the first input of a control on what the operator has in their hands."""
-        holder = self._controls.holder
-        kind = "" if holder is None else _OWN_LABELS.get(holder.kind, "")
-        own = f"{_BY_MOUSE if self.steers_by_mouse else kind}.{control.value}"
-        if own in self.texts:
-            return self.texts.say(own)
-        if self.steers_by_mouse:
-            # They are where a gamepad has them, whatever its bindings are now.
-            name = DEFAULT_BINDINGS.gamepad[control][0]
-            return self.input_label(InputDevice.GAMEPAD, name)
-        return self.input_label(self.device, self.bindings.table(self.device)[control][0])
-
-    def pair_label(self, first: ControlName, second: ControlName) -> str:
-        """Return the first inputs of two controls that belong together."""
-        return pair_label(self.label(first), self.label(second))
-
-    def stick_label(self, controls: Sequence[ControlName]) -> str:
-        """Return what moves the tool one way or another: "Left stick", or the keys, "W A S D"."""
-        labels = [self.label(control) for control in controls]
-        words = [label.split() for label in labels]
-        shared = 0
-        while all(len(word) > shared and word[shared] == words[0][shared] for word in words):
-            shared += 1
-        return " ".join(words[0][:shared] or labels)
-
-    def input_labels(self, device: InputDevice, control: ControlName) -> str:
-        """Return all inputs of a control."""
-        names = self.bindings.table(device)[control]
-        return ", ".join(self.input_label(device, name) for name in names)
-
-    def input_label(self, device: InputDevice, name: str) -> str:
-        """Return what an input is called."""
-        return input_label(self.texts, device.value, name)
 
     def duration(self, seconds: float) -> str:
         """Return minutes and seconds, such as 03:21."""

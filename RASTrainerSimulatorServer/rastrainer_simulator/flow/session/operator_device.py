@@ -1,0 +1,107 @@
+"""What the operator works the simulator with, and what its inputs are called on the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rastrainer.protocol import Mode
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.controls import Controls
+from rastrainer_simulator.input.inputs import InputDevice, SourceKind
+from rastrainer_simulator.ops.texts.texts import Texts, input_label, pair_label
+
+_OWN_LABELS = {SourceKind.XR: "headset", SourceKind.TOUCH_SCREEN: "touch screen"}
+_BY_MOUSE = "mouse"
+"""Whose inputs have other names than those of a gamepad, and how the keys of their texts begin."""
+
+
+@dataclass(frozen=True)
+class OperatorDevice:
+    """The device of whoever has control, or the likely one before anybody has.
+
+    Attributes:
+        controls: who has control, and which input does what.
+        texts: name the inputs in the chosen language.
+        mode: "desktop" or "hmd".
+        has_screen_sticks: whether views draw sticks for a mouse.
+    """
+
+    controls: Controls
+    texts: Texts
+    mode: str
+    has_screen_sticks: bool
+
+    @property
+    def kind(self) -> InputDevice:
+        """What is used; before anybody acts, a gamepad where there is one."""
+        holder = self.controls.holder
+        if holder is None:
+            has_pad = self.controls.has_gamepad
+        else:
+            has_pad = holder.kind not in (SourceKind.KEYBOARD, SourceKind.MOUSE)
+        return InputDevice.GAMEPAD if has_pad else InputDevice.KEYBOARD
+
+    @property
+    def learned(self) -> SourceKind:
+        """What the arm is driven with, as far as it has controls of its own to be learned."""
+        holder = self.controls.holder
+        if holder is not None and holder.kind in (SourceKind.XR, SourceKind.TOUCH_SCREEN):
+            return holder.kind
+        if self.steers_by_mouse:
+            return SourceKind.MOUSE
+        has_pad = self.kind is InputDevice.GAMEPAD
+        # In a headset one holds its controllers, unless a gamepad is in use.
+        other = SourceKind.XR if self.mode == Mode.HMD.value else SourceKind.KEYBOARD
+        return SourceKind.GAMEPAD if has_pad else other
+
+    @property
+    def steers_by_mouse(self) -> bool:
+        """Whether the operator drags the sticks on the screen, and clicks the rest."""
+        return self.has_screen_sticks and self.is_one_of((SourceKind.MOUSE,))
+
+    @property
+    def picture(self) -> str:
+        """Which drawing shows what the operator uses."""
+        return "controllers" if self.is_one_of((SourceKind.XR,)) else self.kind.value
+
+    def is_one_of(self, kinds: tuple[SourceKind, ...]) -> bool:
+        """Return whether what the operator uses is one of these."""
+        holder = self.controls.holder
+        return holder is not None and holder.kind in kinds
+
+    def label(self, control: ControlName) -> str:
+        """Return the first input of a control on what the operator has in their hands."""
+        holder = self.controls.holder
+        kind = "" if holder is None else _OWN_LABELS.get(holder.kind, "")
+        own = f"{_BY_MOUSE if self.steers_by_mouse else kind}.{control.value}"
+        if own in self.texts:
+            return self.texts.say(own)
+        if self.steers_by_mouse:
+            # They are where a gamepad has them, whatever its bindings are now.
+            name = DEFAULT_BINDINGS.gamepad[control][0]
+            return self.input_label(InputDevice.GAMEPAD, name)
+        return self.input_label(self.kind, self.controls.bindings.table(self.kind)[control][0])
+
+    def pair_label(self, first: ControlName, second: ControlName) -> str:
+        """Return the first inputs of two controls that belong together."""
+        return pair_label(self.label(first), self.label(second))
+
+    def stick_label(self, controls: Sequence[ControlName]) -> str:
+        """Return what moves the tool one way or another: "Left stick", or the keys, "W A S D"."""
+        labels = [self.label(control) for control in controls]
+        words = [label.split() for label in labels]
+        shared = 0
+        while all(len(word) > shared and word[shared] == words[0][shared] for word in words):
+            shared += 1
+        return " ".join(words[0][:shared] or labels)
+
+    def input_labels(self, device: InputDevice, control: ControlName) -> str:
+        """Return all inputs of a control."""
+        names = self.controls.bindings.table(device)[control]
+        return ", ".join(self.input_label(device, name) for name in names)
+
+    def input_label(self, device: InputDevice, name: str) -> str:
+        """Return what an input is called."""
+        return input_label(self.texts, device.value, name)
