@@ -233,6 +233,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "toolTipHz": Argument(number(0, 250, "Hz"), Rate.TOOL_TIP_HZ),
         "linksHz": Argument(number(0, 250, "Hz"), Rate.LINKS_HZ),
         "steady": Argument(yes_or_no, False),
+        "scores": Argument(yes_or_no, True),
     },
     CommandName.LIST_TASKS: {},
     CommandName.LOAD_SCENARIO: {"folder": Argument(text(1024))},

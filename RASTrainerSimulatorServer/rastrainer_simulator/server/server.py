@@ -247,7 +247,7 @@ class SimulatorServer:
             use_settings=self._use_settings,
             list_scenarios=self._scenarios.listed,
             use_scenario=self._scenarios.load,
-            is_slicer_connected=lambda: bool(link.server.clients),
+            is_slicer_connected=lambda: link.is_slicer_connected,
             quit=stop.set,
             study=self._study,
             scores_alone=self._options.scores_alone,

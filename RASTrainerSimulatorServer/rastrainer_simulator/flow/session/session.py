@@ -85,7 +85,7 @@ class FlowServices:
         use_settings: has the simulation continue with other settings, between two trials.
         list_scenarios: lists the scenarios that `use_scenario` takes by their names.
         use_scenario: has the simulation continue with another scenario, between two trials.
-        is_slicer_connected: says whether a client is connected over OpenIGTLink.
+        is_slicer_connected: says whether a client that registers and scores is connected.
         quit: ends the process.
         study: knows what a study that Slicer leads asks of the trainees.
         scores_alone: whether a trial outside of a study is scored here where no Slicer is

@@ -70,6 +70,7 @@ class ClientConnection(asyncio.BufferedProtocol):
 
     Attributes:
         name: what the peer called itself, at first its address.
+        scores: whether it has said that it registers and scores trials.
         host: the peer's, for the log.
         header_version: what the peer speaks.
         is_silent: it has not sent a single message.
@@ -78,6 +79,7 @@ class ClientConnection(asyncio.BufferedProtocol):
 
     def __init__(self, owner: ConnectionOwner):
         self.name = self.host = "a client"
+        self.scores = False
         self.header_version = 2
         self.is_silent = True
         self.closed = asyncio.Event()

@@ -130,6 +130,11 @@ class SimulatorLink:
             for connection in self.server.clients:
                 connection.send(Outgoing(Message(DeviceName.COMMAND, command)))
 
+    @property
+    def is_slicer_connected(self) -> bool:
+        """Whether a client registers and scores: others, such as displays, may only listen."""
+        return any(connection.scores for connection in self.server.clients)
+
     def _heartbeat(self) -> Outgoing:
         clients = len(self.server.clients)
         return Outgoing(heartbeat({"clients": clients, **self._health()}))
@@ -156,7 +161,7 @@ class SimulatorLink:
                 "install RASTrainer of the same version on both sides."
             )
             return Answer(0, False, sentence, spoken)
-        connection.name = arguments["client"]
+        connection.name, connection.scores = arguments["client"], arguments["scores"]
         requested = {name: arguments[name] for name in ("toolTipHz", "linksHz", "steady")}
         self.publisher.subscribe(connection, PoseSubscription(*requested.values()))
         return Answer(0, True, data={**spoken, **requested})

@@ -110,6 +110,18 @@ def test_hello_of_another_protocol_version_is_refused_with_ours(client):
     assert reply.data["protocolVersion"] == PROTOCOL_VERSION
 
 
+def test_only_a_client_that_says_so_counts_as_slicer(client, link_server):
+    def is_slicer_connected(**hello):
+        client.send_command("Hello", {**HELLO, **hello})
+        return link_server.link.is_slicer_connected
+
+    assert not link_server.link.is_slicer_connected
+    assert not is_slicer_connected(protocolVersion=PROTOCOL_VERSION + 1)
+    assert is_slicer_connected()
+    assert not is_slicer_connected(scores=False)
+    assert is_slicer_connected(scores=True)
+
+
 def test_commands_of_a_client_are_carried_out_in_their_order(client, link_server):
     count = 300
     for number in range(count):
