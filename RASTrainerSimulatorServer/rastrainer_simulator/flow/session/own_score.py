@@ -82,7 +82,7 @@ class OwnScore:
         Args:
             submit: has the simulation carry out a command.
             records: folder of the trials' journals.
-            is_slicer_connected: says whether a client that scores is connected; asked in the thread, too.
+            is_slicer_connected: says whether a client scores; asked in the thread, too.
             attempts_of: gives a trainee's earlier scored trials and failures, oldest first.
         """
         self.problem = ""
