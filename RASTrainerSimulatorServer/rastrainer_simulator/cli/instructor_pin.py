@@ -19,8 +19,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="set the PIN that instructors need at this seat",
         description=(
             f"Asks for a PIN of {PIN_WORDS}, twice, or reads it from a pipe. With it, a teacher's "
-            "board may pause this simulator, show the trainee a sentence and start a replay. "
-            "Without a PIN, nobody can."
+            "board may pause this simulator, show the trainee a sentence and start a replay; and "
+            "at the simulator, settings, order of tasks and another view's taking the control "
+            "are locked until it is entered. Without a PIN, no board can do anything, and "
+            "nothing is locked."
         ),
     )
     parser.add_argument("--remove", action="store_true", help="have no PIN any more")
@@ -39,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     pin = InstructorPin(arguments.config or config_folder())
     if arguments.remove:
         pin.set("")
-        print("There is no PIN any more: no board can give orders.")
+        print("There is no PIN any more: no board can give orders, and nothing is locked.")
         return 0
     chosen = _asked()
     if not chosen:

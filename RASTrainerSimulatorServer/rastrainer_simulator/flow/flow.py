@@ -154,6 +154,7 @@ class Flow:
                 language=session.preferences.language,
                 errors=work.errors() if self._procedure_screen.is_open else (),
                 is_head_clear=self._procedure_screen.is_open and work.is_head_clear,
+                is_private=page is not None and page.is_private,
             )
         return Screen(
             instruction=work.instruction(),

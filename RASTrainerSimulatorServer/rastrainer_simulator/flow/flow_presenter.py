@@ -73,7 +73,7 @@ class FlowPresenter:
     ) -> None:
         self._control_loop = control_loop
         self.shown = PlaybackSwitch(control_loop)
-        self.controls = Controls(bindings, self)
+        self.controls = Controls(bindings, self, self._may_be_taken)
         self._session = TrainingSession(
             control_loop, self.controls, services, preferences, self.happened
         )
@@ -289,7 +289,8 @@ class FlowPresenter:
             return
         name = self._session.texts.say(f"source.{holder.kind.value}")
         menu = self._session.texts.say("control.menu")
-        text = self._session.texts.say("control.held", source=name, menu=menu, seconds=IDLE_S)
+        key = "control.locked" if self._session.lock.is_locked else "control.held"
+        text = self._session.texts.say(key, source=name, menu=menu, seconds=IDLE_S)
         self._session.notice(text, Tone.WARNING)
         self._is_changed = True
 
@@ -322,6 +323,10 @@ class FlowPresenter:
         if effect.rumble > 0.0:
             self.rumble(effect.rumble, effect.seconds)
         self._publish(feedback)
+
+    def _may_be_taken(self) -> bool:
+        """Return whether another operator may take the control from one who rests."""
+        return not self._session.lock.is_locked
 
     def _watched(self) -> int | None:
         """Return the view that the trainee looks at: a headset, else the one that is operated."""

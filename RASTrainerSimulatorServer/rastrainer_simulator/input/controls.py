@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from rastrainer_simulator.input.bindings import Bindings
@@ -45,8 +45,9 @@ class Controls:
     Whoever acts first holds the control. What is at the same seat (the simulator's gamepad, the
     keys and the mouse of its windows; the keys, pad and controllers of one page) shares it and
     passes it on by being used. Another seat's input does nothing, except that pressing `menu`
-    takes the control over once the holder has done nothing for `IDLE_S` seconds: on purpose, and
-    never while someone operates. A holder that is unplugged or leaves gives the control up.
+    takes the control over once the holder has done nothing for `IDLE_S` seconds: on purpose,
+    never while someone operates, and only where it `may_be_taken`. A holder that is unplugged or
+    leaves gives the control up.
 
     Attributes:
         bindings: which input does what; may be exchanged at any time.
@@ -54,11 +55,17 @@ class Controls:
         situation: whether the arm can be driven or a menu is open.
     """
 
-    def __init__(self, bindings: Bindings, listener: ControlsListener) -> None:
+    def __init__(
+        self,
+        bindings: Bindings,
+        listener: ControlsListener,
+        may_be_taken: Callable[[], bool] = lambda: True,
+    ) -> None:
         self.bindings = bindings
         self.holder: Source | None = None
         self.situation = ControlContext.MENU
         self._listener = listener
+        self._may_be_taken = may_be_taken
         self._states: dict[Source, InputState] = {}
         self._idle = 0.0
         self._repeating: tuple[Source, str, ControlName] | None = None
@@ -144,7 +151,7 @@ class Controls:
         if self.is_operator(source):
             self._hold(source)
             return True
-        if control is ControlName.MENU and self._idle >= IDLE_S:
+        if control is ControlName.MENU and self._idle >= IDLE_S and self._may_be_taken():
             self._hold(source)
             self._listener.taken_over(source)
             return False

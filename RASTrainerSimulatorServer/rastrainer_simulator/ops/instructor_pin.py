@@ -7,7 +7,10 @@ import hashlib
 import hmac
 import re
 import secrets
+import threading
+import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -15,11 +18,12 @@ from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_private_json
 
 PIN_FILE = "instructor.json"
-PIN_WORDS = "6 to 12 digits"
+SHORTEST_PIN, LONGEST_PIN = 6, 12
+PIN_WORDS = f"{SHORTEST_PIN} to {LONGEST_PIN} digits"
 WRONG_GUESSES = 5
 FIRST_PAUSE_S = 1.0
 LONGEST_PAUSE_S = 300.0
-_PIN = re.compile(r"[0-9]{6,12}")
+_PIN = re.compile(f"[0-9]{{{SHORTEST_PIN},{LONGEST_PIN}}}")
 _MAX_BYTES = 1000
 _SALT_BYTES = 16
 # 16 MB and about 50 ms for each guess (RFC 7914).
@@ -100,6 +104,49 @@ class InstructorPin:
         encoded = {"salt": salt, "hash": hashed}
         values = {name: base64.b64encode(value).decode() for name, value in encoded.items()}
         write_private_json(self._path, values)
+
+
+@dataclass(frozen=True)
+class PinAnswer:
+    """What became of a guess at a PIN.
+
+    Attributes:
+        is_right: whether it was the PIN.
+        wait_s: how long no guess is looked at from now on, s; 0 where one may be made.
+    """
+
+    is_right: bool
+    wait_s: float
+
+
+class PinGuesses:
+    """The guesses at a seat's PIN, from boards and at the seat: one after the other, and few."""
+
+    def __init__(self, pin: InstructorPin, clock: Callable[[], float] = time.monotonic) -> None:
+        """Guard a PIN; `clock` returns s."""
+        self._pin = pin
+        self._limit = GuessLimit(clock)
+        # Guesses at the same time would be counted too late.
+        self._one = threading.Lock()
+
+    @property
+    def is_set(self) -> bool:
+        """Whether there is a PIN."""
+        return self._pin.is_set
+
+    def guess(self, pin: str) -> PinAnswer:
+        """Look at a guess, unless guessing is paused; takes about 50 ms, in any thread.
+
+        Raises:
+            InputError: the PIN's file cannot be read or is no PIN's.
+        """
+        with self._one:
+            wait_s = self._limit.seconds_to_wait()
+            if wait_s > 0.0:
+                return PinAnswer(False, wait_s)
+            is_right = self._pin.accepts(pin)
+            self._limit.guessed(is_right)
+            return PinAnswer(is_right, self._limit.seconds_to_wait())
 
 
 def _hash(pin: str, salt: bytes) -> bytes:

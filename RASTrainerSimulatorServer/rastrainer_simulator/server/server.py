@@ -37,6 +37,7 @@ from rastrainer_simulator.net.loopback import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, TrialLog
 from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import config_folder, log_folder
+from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.record.recorded_setup import setup_of, versions
 from rastrainer_simulator.record.records_folder import RecordsFolder
 from rastrainer_simulator.robot.kinematics import kinematics_name
@@ -110,6 +111,7 @@ class SimulatorServer:
         self._settings = self._preferred_settings()
         self._seeds = itertools.count(options.seed)
         self._study = StudySteps()
+        self._pin = PinGuesses(InstructorPin(self._config))
         # First: until the folder is ours, another simulator may add to the trial to resume.
         self._records = RecordsFolder(options.records)
         with contextlib.ExitStack() as unless_ready:
@@ -251,6 +253,7 @@ class SimulatorServer:
             quit=stop.set,
             study=self._study,
             scores_alone=self._options.scores_alone,
+            pin=self._pin,
         )
         running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
         link.publisher.is_guided = lambda: running.presenter.is_tracing_guided
@@ -285,6 +288,7 @@ class SimulatorServer:
             self._scenarios.picture,
             self._limits.views,
             self._config,
+            self._pin,
         )
 
     def _make_simulation(self, scenario: Path | None) -> Simulation:

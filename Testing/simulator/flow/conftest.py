@@ -15,6 +15,7 @@ from rastrainer_simulator.flow.session.session import FlowServices
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
+from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.state import Answer
 from rastrainer_simulator.viewpoint.touch_views import TouchViews
 from Testing.sdl_virtual_gamepad import VirtualGamepad
@@ -53,6 +54,8 @@ class Outside:
         self.settings = []
         self.scenarios = []
         self.loads = []
+        self.now = 0.0
+        self.pin = InstructorPin(folder / "config")
         self.services = FlowServices(
             config=folder / "config",
             records=folder / "records",
@@ -61,6 +64,7 @@ class Outside:
             use_scenario=self._load,
             is_slicer_connected=lambda: self.has_slicer,
             quit=lambda: setattr(self, "has_quit", True),
+            pin=PinGuesses(self.pin, lambda: self.now),
         )
 
     def _list(self):

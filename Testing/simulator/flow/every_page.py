@@ -14,6 +14,7 @@ from rastrainer_simulator.flow.pages import (
     errors,
     experiment,
     introduction,
+    pin,
     procedure,
     result,
     start,
@@ -24,9 +25,10 @@ from rastrainer_simulator.flow.pages import (
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
+from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import InputDevice
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.screen import Screen, without_secrets
 from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
@@ -91,6 +93,12 @@ PROCEDURE_SCORED = replace(
 LEARNED = TutorialOutcome("P07", "gamepad", "desktop", 112.0, 2.34, (1.2, 0.8, 0.6))
 
 
+class _SetPin:
+    """A PIN that is set, and that nobody guesses."""
+
+    is_set = True
+
+
 class _Loading:
     """A trial that is never loaded."""
 
@@ -106,6 +114,12 @@ def every_screen(presenter: FlowPresenter) -> dict[str, Screen]:
     for page in _pages(session):
         session.pages.show(page)
         screens[page.name] = flow.screen()
+    session.lock = InstructorLock(_SetPin())
+    session.pages.show(start.SettingsPage(session))
+    screens["locked settings"] = flow.screen()
+    screens["somebody else's PIN"] = without_secrets(screens["pin"])
+    # A view that does not operate is sent nothing else.
+    screens["pin"] = replace(screens["pin"], is_private=False)
     session.pages.show_start()
     return screens
 
@@ -120,6 +134,7 @@ def _pages(session) -> Iterator[SessionPage]:
     keys, touch = InputDevice.KEYBOARD, ControlName.TOUCH
     for simple in (start.StartPage, start.QuitPage, start.SettingsPage):
         yield simple(session)
+    yield pin.PinPage(session)
     yield introduction.IntroductionPage(session)
     yield introduction.ControlsPage(session)
     yield introduction.PadTestPage(session)

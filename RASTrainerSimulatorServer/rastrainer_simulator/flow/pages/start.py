@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import ControlsPage, IntroductionPage
+from rastrainer_simulator.flow.pages.pin import PinPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.preferences import (
     OF_A_TRIAL,
     OF_INSTRUCTORS,
+    OF_TRAINEES,
     OPTIONS,
     PREFERENCES_FILE,
 )
@@ -73,24 +75,35 @@ class SettingsPage(SessionPage):
     def menu(self) -> Menu:
         """Return the choices."""
         items = tuple(self._item(name) for name in OPTIONS)
-        return Menu(self.name, self.say("settings.title"), items=(*items, self.button("back")))
+        lock = self.session.lock
+        pin = (self.button("unlock" if lock.is_locked else "lock"),) if lock.has_pin else ()
+        items = (*items, *pin, self.button("back"))
+        return Menu(self.name, self.say("settings.title"), items=items)
 
     def accept(self, item: str) -> None:
-        """Go back."""
+        """Go back, ask for the PIN, or lock again."""
         if item == "back":
             self.back()
+        elif item == "unlock":
+            self.session.pages.open(PinPage(self.session))
+        else:
+            self.session.lock.lock()
 
     def step(self, item: str, direction: int) -> None:
         """Choose another option, which counts at once."""
         self.session.prefer(self.session.preferences.stepped(item, direction))
 
     def _item(self, name: str) -> MenuItem:
+        lock = self.session.lock
         waits = self.session.has_open_trial and name in OF_A_TRIAL
+        is_locked = lock.is_locked and name not in OF_TRAINEES
         help_ = self.say("settings.waits") if waits else self._help(name)
-        is_enabled = not waits and name not in OF_INSTRUCTORS
+        is_enabled = not waits and not is_locked and (lock.has_pin or name not in OF_INSTRUCTORS)
         return self.choice(name, self._value(name), is_enabled=is_enabled, help=help_)
 
     def _help(self, name: str) -> str:
+        if self.session.lock.is_locked and name not in OF_TRAINEES:
+            return self.say("settings.locked")
         return self.say(f"settings.{name} help", file=PREFERENCES_FILE)
 
     def _value(self, name: str) -> str:

@@ -22,11 +22,13 @@ class Page:
         name: of the menu.
         steps_when_accepted: whether accepting a choice goes to its next option.
         first: name of the item that has the focus at first; "" is the first that can be chosen.
+        is_private: whether its items are only for the views of who operates.
     """
 
     name: ClassVar[str] = ""
     steps_when_accepted: ClassVar[bool] = True
     first: str = ""
+    is_private: ClassVar[bool] = False
 
     def menu(self) -> Menu:
         """Return what is shown, without a focus."""
@@ -165,6 +167,11 @@ class OpenPages:
             place = names.index(self._focused(menu)) + direction
             self._focus[-1] = names[place % len(names)]
             self._happened(FeedbackEvent.FOCUS)
+
+    def focus(self, name: str) -> None:
+        """Let an item of the page that is shown have the focus."""
+        if self._focus:
+            self._focus[-1] = name
 
     def choose(self, name: str) -> None:
         """Choose an item: press a button, step a choice, go to a text."""

@@ -108,7 +108,12 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
 EXPERT = "expert"
 OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch", "self_alignment")
 OF_INSTRUCTORS = ("order", "tutorial")
-"""Preferences that are changed in the file: who trains does not decide what they may leave out."""
+"""Preferences that are changed in the file, or with the instructor's PIN where there is one.
+
+Who trains does not decide what they may leave out.
+"""
+OF_TRAINEES = ("language", "volume", "muted")
+"""Preferences that no PIN locks: who trains has to understand and hear."""
 OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance", "ghost")
 """Preferences that a running trial must not change: they are in its record."""
 

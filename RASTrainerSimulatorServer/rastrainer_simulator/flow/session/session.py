@@ -31,6 +31,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.commands import Commands
+from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
 from rastrainer_simulator.flow.session.own_score import OwnScore
@@ -60,6 +61,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
 from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
 from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
@@ -90,6 +92,7 @@ class FlowServices:
         study: knows what a study that Slicer leads asks of the trainees.
         scores_alone: whether a trial outside of a study is scored here where no Slicer is
             connected.
+        pin: the instructor's; None where there is never one.
     """
 
     config: Path
@@ -101,6 +104,7 @@ class FlowServices:
     quit: Callable[[], None]
     study: StudySteps = field(default_factory=StudySteps)
     scores_alone: bool = False
+    pin: PinGuesses | None = None
 
 
 class TrainingSession:
@@ -128,6 +132,7 @@ class TrainingSession:
         tutorial: the one that is open; else None.
         tutorials: who has finished one, and with which device.
         screen_sticks: those that views draw for a mouse.
+        lock: what needs the instructor's PIN.
     """
 
     def __init__(
@@ -165,6 +170,7 @@ class TrainingSession:
         self.tutorial: Tutorial | None = None
         self.tutorials = FinishedTutorials(services.records)
         self.screen_sticks = ScreenSticks()
+        self.lock = InstructorLock(services.pin)
         self.list_scenarios = services.list_scenarios
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
@@ -243,6 +249,8 @@ class TrainingSession:
         self._time += dt
         self.state = state
         self.places.advance(dt, state)
+        trial_id = self.training.trial_id
+        self.lock.follow(self.trainee.strip(), trial_id, self.tutorial is not None)
         if self.own_score is not None:
             is_in_study = self.study.step_of(self.training.trainee) is not None
             self.own_score.advance(dt, self.training, self.scenario, is_in_study)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
-from pathlib import Path
 
 from aiohttp import hdrs, web
 
@@ -14,7 +12,7 @@ from rastrainer.protocol import decode_json_object
 from rastrainer_simulator.net.views.gate import ROLE, refuse_for
 from rastrainer_simulator.net.views.presenter import InstructorOrder, Presenter
 from rastrainer_simulator.net.views.sessions import ViewRole
-from rastrainer_simulator.ops.instructor_pin import GuessLimit, InstructorPin
+from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, PinGuesses
 
 LONGEST_SENTENCE = 200
 BODY_S = 5.0
@@ -22,20 +20,17 @@ ONLY_BOARDS = "Only a teacher's board may instruct: pair as one."
 NO_PIN = "This seat takes no orders: set a PIN there with rastrainer instructor-pin."
 WRONG_PIN = "This is not the PIN of this seat."
 TOO_MANY = "There were too many wrong PINs: wait."
-_pin_text = text(12)
+_pin_text = text(LONGEST_PIN)
 _order_name = one_of(*(order.value for order in InstructorOrder))
 
 
 class InstructorOrders:
     """Takes orders over HTTP, each with the PIN."""
 
-    def __init__(
-        self, config: Path | None, presenter: Presenter, clock: Callable[[], float]
-    ) -> None:
-        """Take orders for a presenter; `config` is the folder with the PIN, None for no orders."""
-        self._pin = None if config is None else InstructorPin(config)
+    def __init__(self, pin: PinGuesses | None, presenter: Presenter) -> None:
+        """Take orders for a presenter; without a PIN none."""
+        self._pin = pin
         self._presenter = presenter
-        self._limit = GuessLimit(clock)
         self._one_guess = asyncio.Lock()
 
     async def take(self, request: web.Request) -> web.Response:
@@ -43,7 +38,7 @@ class InstructorOrders:
         if request[ROLE] is not ViewRole.BOARD:
             raise web.HTTPForbidden(text=ONLY_BOARDS)
         pin, order, sentence = await _order(request)
-        # One after the other: guesses at the same time would be counted too late.
+        # One after the other: many guesses at the same time would take all threads.
         async with self._one_guess:
             await self._check(pin)
         problem = self._presenter.instruct(order, sentence)
@@ -55,18 +50,13 @@ class InstructorOrders:
         """Refuse a wrong PIN, and any while guessing is paused."""
         if self._pin is None or not self._pin.is_set:
             raise web.HTTPConflict(text=NO_PIN)
-        self._check_pause()
         try:
-            is_right = await asyncio.to_thread(self._pin.accepts, pin)
+            answer = await asyncio.to_thread(self._pin.guess, pin)
         except InputError as error:
             raise web.HTTPConflict(text=str(error)) from None
-        if self._limit.guessed(is_right):
-            self._check_pause()
-        if not is_right:
+        refuse_for(answer.wait_s, TOO_MANY)
+        if not answer.is_right:
             raise web.HTTPForbidden(text=WRONG_PIN)
-
-    def _check_pause(self) -> None:
-        refuse_for(self._limit.seconds_to_wait(), TOO_MANY)
 
 
 async def _order(request: web.Request) -> tuple[str, InstructorOrder, str]:

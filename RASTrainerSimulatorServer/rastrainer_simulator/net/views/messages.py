@@ -30,12 +30,13 @@ VISIBILITY = "visibility"
 ALIVE = "alive"
 WORN = "worn"
 
+DESKTOP = "desktop"
 HEADSET = "headset"
 SPECTATOR = "spectator"
 BOARD = "board"
 ONLY_WATCH = (SPECTATOR, BOARD)
 """The kinds that may send nothing but that they are alive."""
-VIEW_KINDS = ("desktop", "page", HEADSET, *ONLY_WATCH)
+VIEW_KINDS = (DESKTOP, "page", HEADSET, *ONLY_WATCH)
 MAX_AXES = 16
 MAX_BUTTONS = 32
 # Pads go a little beyond their end; what is farther out is no position of a stick.

@@ -16,6 +16,7 @@ from rastrainer_simulator.net.views.presenter import Presenter
 from rastrainer_simulator.net.views.sessions import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.desktop_process import VIEW_KEY_VARIABLE
+from rastrainer_simulator.ops.instructor_pin import PinGuesses
 
 
 async def open_views(
@@ -28,6 +29,7 @@ async def open_views(
     scenario_picture: Callable[[str], Path | None] = lambda _name: None,
     limits: ViewLimits | None = None,
     config: Path | None = None,
+    pin: PinGuesses | None = None,
 ) -> ViewServer:
     """Return a server that listens on this computer; `tell` is given what people must know.
 
@@ -40,7 +42,7 @@ async def open_views(
 
     `scenario_picture` returns the picture of a scenario by its name; `limits` are those of
     `ViewLimits` unless a site has its own. `config` is the folder of the settings, which keeps the
-    keys of teachers' boards.
+    keys of teachers' boards, and `pin` lets these give orders.
 
     Raises:
         InputError: the port cannot be listened on, the key is no key, the certificate cannot be
@@ -51,7 +53,7 @@ async def open_views(
         tell(f"has a new pairing code for views: {code}")
 
     server = ViewServer(
-        source, presenter, tell_new_code, robot_meshes, limits, scenario_picture, config
+        source, presenter, tell_new_code, robot_meshes, limits, scenario_picture, config, pin
     )
     agreed = os.environ.get(VIEW_KEY_VARIABLE)
     if agreed is not None:

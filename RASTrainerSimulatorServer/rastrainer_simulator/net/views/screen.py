@@ -180,6 +180,7 @@ class Screen:
         is_head_clear: whether the skin is drawn so that what is within the head is seen.
         coverage: what the paint on the skin says while it is traced; "" where none is painted.
         ruler: while a drill or an instrument is in the guide; else None.
+        is_private: whether what the menu offers is only for the views of who operates.
     """
 
     menu: Menu | None = None
@@ -195,6 +196,15 @@ class Screen:
     is_head_clear: bool = False
     coverage: str = ""
     ruler: DepthRuler | None = None
+    is_private: bool = False
+
+
+def without_secrets(screen: Screen) -> Screen:
+    """Return a private screen as others see it: what its menu is about, and nothing to choose."""
+    if screen.menu is None or not screen.is_private:
+        return screen
+    menu = dataclasses.replace(screen.menu, facts=(), items=(), focus="")
+    return dataclasses.replace(screen, menu=menu)
 
 
 def focused_picture(menu: Menu | None) -> str:

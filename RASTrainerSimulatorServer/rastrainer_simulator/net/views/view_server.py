@@ -26,6 +26,7 @@ from rastrainer_simulator.net.views.presenter import Hello, Presenter
 from rastrainer_simulator.net.views.sessions import BOARDS_FILE, Sessions, ViewRole
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.net.views.views import Views
+from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
 
 FOREVER = "private, max-age=31536000, immutable"
@@ -54,6 +55,7 @@ class ViewServer:
         limits: ViewLimits | None = None,
         scenario_picture: Callable[[str], Path | None] = lambda _name: None,
         config: Path | None = None,
+        pin: PinGuesses | None = None,
     ) -> None:
         """Make a server, in the event loop's thread; nothing listens yet.
 
@@ -64,8 +66,8 @@ class ViewServer:
             robot_meshes: those that the setups are loaded with.
             limits: what views may cost.
             scenario_picture: returns the picture of a scenario by its name.
-            config: folder of the settings, with the keys of boards and the instructor's PIN; None
-                keeps no boards, and takes no orders from a teacher.
+            config: folder of the settings, with the keys of boards; None keeps none.
+            pin: that boards need to give orders; None takes none.
 
         Raises:
             InputError: the file with the keys of boards cannot be read.
@@ -85,7 +87,7 @@ class ViewServer:
             },
             None if config is None else config / BOARDS_FILE,
         )
-        self._instructor = InstructorOrders(config, presenter, asyncio.get_running_loop().time)
+        self._instructor = InstructorOrders(pin, presenter)
         self.port = 0
         self._scenes = SceneFiles(cache_folder(), robot_meshes)
         self._views = Views(source, presenter, self._scenes, self._limits)

@@ -6,7 +6,7 @@ import asyncio
 import itertools
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.core.setup import SimulationSetup
@@ -15,10 +15,10 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.boards import Boards
-from rastrainer_simulator.net.views.messages import HEADSET
+from rastrainer_simulator.net.views.messages import DESKTOP, HEADSET
 from rastrainer_simulator.net.views.news import Mirror, TraceNews
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Presenter, ViewUpdate
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.screen import Screen, without_secrets
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.scene.scene_files import SceneFiles
 from rastrainer_simulator.state import SimulationState
@@ -127,7 +127,7 @@ class Views:
         if self._scene:
             put(outgoing.SCENE, self._scene)
         put(outgoing.CONTROL, outgoing.control(self._presenter.control, view.number))
-        put(outgoing.SCREEN, outgoing.screen(self._presenter.screen))
+        self._send_screen(self._presenter.screen, (view,))
         self._put_state(view, self._state_text(now))
         trace = self._trace.everything()
         if trace is not None:
@@ -151,17 +151,38 @@ class Views:
         return outgoing.state(now, delayed, presenter.pictures(now), presenter.ghost(now))
 
     def _send_update(self, update: ViewUpdate) -> None:
+        views, screen = self._views.values(), self._presenter.screen
         if isinstance(update, Screen):
-            text = outgoing.screen(update)
-            for view in self._views.values():
-                view.outbox.put_latest(outgoing.SCREEN, text)
+            self._send_screen(update, views)
         elif isinstance(update, Feedback):
             text = outgoing.event(update)
-            for view in self._views.values():
-                view.outbox.put_event(text)
+            for view in views:
+                # How often the focus clicks says which item was chosen.
+                if not screen.is_private or self._is_operators(view):
+                    view.outbox.put_event(text)
         elif isinstance(update, Control):
-            for view in self._views.values():
+            for view in views:
                 view.outbox.put_latest(outgoing.CONTROL, outgoing.control(update, view.number))
+            if screen.is_private:
+                self._send_screen(screen, views)
+
+    def _send_screen(self, screen: Screen, views: Iterable[View]) -> None:
+        """Send a screen; what is private in it only to the views of who operates."""
+        whole = outgoing.screen(screen)
+        bare = outgoing.screen(without_secrets(screen)) if screen.is_private else whole
+        for view in views:
+            is_whole = not screen.is_private or self._is_operators(view)
+            view.outbox.put_latest(outgoing.SCREEN, whole if is_whole else bare)
+
+    def _is_operators(self, view: View) -> bool:
+        """Return whether a view is in front of who holds the control."""
+        if view.is_spectator:
+            return False
+        number = self._presenter.control.view
+        holding = None if number is None else self._views.get(number)
+        # A gamepad at the simulator, and each of its windows, belongs to all of these windows.
+        is_own = number is None or (holding is not None and holding.hello.kind == DESKTOP)
+        return view is holding or (is_own and view.hello.kind == DESKTOP)
 
     def _look_for_scene(self, now: SimulationState) -> None:
         setup, training = self._source.setup, now.training

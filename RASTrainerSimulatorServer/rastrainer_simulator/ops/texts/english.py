@@ -296,6 +296,17 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "clicked-id.delete": "Delete",
         "clicked-id.done": "Done",
         "character.back": "Back",
+        "pin.title": "Instructor's PIN",
+        "pin.text": "It unlocks the settings, the order of the tasks and passing on the control, "
+        "until the trainee changes or a trial begins.",
+        "pin.entered": "PIN",
+        "pin.too short": "A PIN has 6 to 12 digits.",
+        "pin.delete": "Delete",
+        "pin.unlock": "Unlock",
+        "pin.cancel": "Cancel",
+        "pin.unlocked": "Unlocked until the trainee changes or a trial begins.",
+        "pin.wrong": "This is not the PIN of this seat.",
+        "pin.wait": "There were too many wrong PINs: wait {seconds} s.",
         "keyboard.title": "Your ID",
         "keyboard.row": "Type",
         "keyboard.delete": "Delete",
@@ -471,6 +482,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         # Settings.
         "settings.title": "Settings",
         "settings.back": "Back",
+        "settings.unlock": "Instructor's PIN",
+        "settings.lock": "Lock again",
+        "settings.locked": "Locked: an instructor enters the PIN below.",
         "settings.waits": "This cannot be changed until the trial has ended.",
         "settings.language": "Language",
         "settings.language help": "Language of all screens.",
@@ -484,7 +498,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.muted.no": "No",
         "settings.order": "Order of the tasks",
         "settings.order help": "Whether tasks must be done in their order. Instructors change "
-        "this in the file {file}.",
+        "this with their PIN, or in the file {file}.",
         "settings.order.fixed": "One after the other",
         "settings.order.any": "Any",
         "settings.coarse": "Speed",
@@ -529,7 +543,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "ghost.none": "No ghost: there is no acceptable trial of this task to show yet.",
         "settings.tutorial": "Tutorial",
         "settings.tutorial help": "Whether the trial run waits for it. A study may set its own. "
-        "Instructors change this in the file {file}.",
+        "Instructors change this with their PIN, or in the file {file}.",
         "settings.tutorial.required": "Before the trial run",
         "settings.tutorial.optional": "May be skipped",
         "settings.tutorial.skipped": "None",
@@ -601,6 +615,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "control.taken": "The {source} has taken control.",
         "control.held": "The {source} is in control. Someone else can take over with {menu} after "
         "{seconds:.0f} s without input.",
+        "control.locked": "The {source} is in control. Only an instructor can pass it on: {menu}, "
+        "Settings, Instructor's PIN.",
         "control.holder": "Control: {source}",
         "control.nobody": "Control: nobody",
         "source.gamepad": "gamepad",

@@ -406,6 +406,17 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "clicked-id.delete": "Löschen",
         "clicked-id.done": "Fertig",
         "character.back": "Zurück",
+        "pin.title": "PIN der Ausbildenden",
+        "pin.text": "Sie gibt die Einstellungen, die Reihenfolge der Aufgaben und die Weitergabe "
+        "der Steuerung frei, bis jemand anderes übt oder ein Versuch beginnt.",
+        "pin.entered": "PIN",
+        "pin.too short": "Eine PIN hat 6 bis 12 Ziffern.",
+        "pin.delete": "Löschen",
+        "pin.unlock": "Freigeben",
+        "pin.cancel": "Abbrechen",
+        "pin.unlocked": "Freigegeben, bis jemand anderes übt oder ein Versuch beginnt.",
+        "pin.wrong": "Das ist nicht die PIN dieses Platzes.",
+        "pin.wait": "Es waren zu viele falsche PINs: warte {seconds} s.",
         "keyboard.title": "Deine ID",
         "keyboard.row": "Schreiben",
         "keyboard.delete": "Löschen",
@@ -587,6 +598,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "tutorial-done.menu": "Experiment-Menü",
         "settings.title": "Einstellungen",
         "settings.back": "Zurück",
+        "settings.unlock": "PIN der Ausbildenden",
+        "settings.lock": "Wieder sperren",
+        "settings.locked": "Gesperrt: Ausbildende geben unten die PIN ein.",
         "settings.waits": "Das lässt sich erst nach dem Ende des Versuchs ändern.",
         "settings.language": "Sprache",
         "settings.language help": "Sprache aller Bildschirme.",
@@ -599,8 +613,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.muted.yes": "Ja",
         "settings.muted.no": "Nein",
         "settings.order": "Reihenfolge der Aufgaben",
-        "settings.order help": "Ob die Aufgaben der Reihe nach kommen. Ausbildende ändern es in "
-        "der Datei {file}.",
+        "settings.order help": "Ob die Aufgaben der Reihe nach kommen. Ausbildende ändern es "
+        "mit ihrer PIN oder in der Datei {file}.",
         "settings.order.fixed": "Eine nach der anderen",
         "settings.order.any": "Beliebig",
         "settings.coarse": "Geschwindigkeit",
@@ -647,7 +661,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "ghost.none": "Kein Geist: Es gibt noch keinen akzeptablen Versuch dieser Aufgabe.",
         "settings.tutorial": "Tutorial",
         "settings.tutorial help": "Ob der Probelauf auf das Tutorial wartet. Eine Studie kann das "
-        "selbst festlegen. Die Kursleitung ändert das in der Datei {file}.",
+        "selbst festlegen. Ausbildende ändern das mit ihrer PIN oder in der Datei "
+        "{file}.",
         "settings.tutorial.required": "Vor dem Probelauf",
         "settings.tutorial.optional": "Darf entfallen",
         "settings.tutorial.skipped": "Keines",
@@ -722,6 +737,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "control.taken": "Die Steuerung ist jetzt hier: {source}.",
         "control.held": "Die Steuerung liegt hier: {source}. Wer übernehmen will, kann das mit "
         "{menu} nach {seconds:.0f} s ohne Eingabe.",
+        "control.locked": "Die Steuerung liegt hier: {source}. Nur Ausbildende können sie "
+        "weitergeben: {menu}, Einstellungen, PIN der Ausbildenden.",
         "control.holder": "Steuerung: {source}",
         "control.nobody": "Steuerung: niemand",
         "source.gamepad": "Gamepad",

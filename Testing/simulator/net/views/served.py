@@ -15,6 +15,7 @@ from rastrainer_simulator.net.views.presenter import Control, Seat, TraceGuidanc
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.net.views.view_server import ViewServer
+from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.viewpoint.orbit import CameraPose
 from rastrainer_simulator.viewpoint.view_control import Pictures
 from Testing.simulator.net.igtl.servers import HOST, PATIENCE_S, LoopThread
@@ -100,6 +101,7 @@ class ServedViews:
             limits=ViewLimits(**limits),
             scenario_picture=self.pictures.get,
             config=config,
+            pin=None if config is None else PinGuesses(InstructorPin(config)),
         )
         self.port = thread.run(self.server.listen(HOST, port))
         self.url = f"http://{HOST}:{self.port}"

@@ -1,0 +1,288 @@
+"""An instructor's PIN locks settings, order and passing on the control at a seat."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from rastrainer_simulator.flow.session.preferences import OF_TRAINEES, OPTIONS
+from rastrainer_simulator.net.views.presenter import Hello
+from rastrainer_simulator.ops.instructor_pin import PIN_FILE
+from Testing.simulator.flow.mouse import Mouse
+from Testing.simulator.flow.trainee import STEP_S, Trainee
+
+PIN = "402817"
+OTHER = "402818"
+PAGE = 7
+
+
+@pytest.fixture(autouse=True)
+def _pin(outside):
+    outside.pin.set(PIN)
+
+
+def open_pin(trainee):
+    """Go from the start menu to where the PIN is entered."""
+    trainee.until_menu("start")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    trainee.choose("unlock")
+    trainee.until_menu("pin")
+
+
+def enter(trainee, digits=PIN):
+    """Choose one digit after the other, and the item that unlocks."""
+    for digit in digits:
+        trainee.choose(digit)
+    trainee.choose("unlock")
+
+
+def until_unlocked(trainee):
+    lock = trainee.presenter._session.lock
+    trainee.until(lambda: not lock.is_locked, "the lock open")
+    trainee.until_menu("settings")
+
+
+def said(trainee):
+    return [warning.text for warning in trainee.presenter.screen.warnings]
+
+
+def until_said(trainee, sentence):
+    trainee.until(lambda: any(sentence in text for text in said(trainee)), sentence)
+
+
+def enabled(trainee):
+    return {item.name for item in trainee.menu.items if item.is_enabled}
+
+
+def test_with_a_pin_only_language_and_sound_are_changed_without_it(trainee):
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    assert enabled(trainee) == {*OF_TRAINEES, "unlock", "back"}
+    before = trainee.presenter._session.preferences
+    trainee.focus("coarse")
+    trainee.tap("right", "accept")
+    assert trainee.presenter._session.preferences == before
+    assert trainee.item("coarse").help == "Locked: an instructor enters the PIN below."
+
+
+def test_without_a_pin_nothing_is_locked_and_the_order_is_in_the_file(trainee, outside):
+    outside.pin.set("")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    assert enabled(trainee) == {*OPTIONS, "back"} - {"order", "tutorial"}
+    assert "unlock" not in {item.name for item in trainee.menu.items}
+
+
+def test_the_pin_is_typed_and_then_the_order_can_be_chosen_and_locked_again(trainee):
+    open_pin(trainee)
+    trainee.hands.type("77")
+    for _ in range(2):
+        trainee.hands.key("Backspace")
+    trainee.hands.type(PIN[:3])
+    for digit in PIN[3:]:
+        trainee.hands.key(f"Numpad{digit}", digit)
+    trainee.tap("accept")
+    until_unlocked(trainee)
+    assert {"order", "tutorial", "coarse"} <= enabled(trainee)
+    trainee.focus("order")
+    trainee.tap("right")
+    assert trainee.presenter._session.preferences.order == "any"
+    trainee.choose("lock")
+    trainee.until(lambda: "order" not in enabled(trainee), "the lock")
+
+
+def test_the_pin_is_entered_by_a_gamepad(pilot):
+    open_pin(pilot)
+    enter(pilot)
+    until_unlocked(pilot)
+
+
+@pytest.mark.parametrize("kind", ["desktop", "page"])
+def test_the_pin_is_entered_by_clicks(loop, presenter, kind):
+    clicking = Trainee(loop, presenter, lambda it: Mouse(it, kind))
+    for menu, item in (("start", "settings"), ("settings", "unlock")):
+        clicking.until_menu(menu)
+        clicking.hands.click(item)
+    for item in (*PIN, "unlock"):
+        clicking.hands.click(item)
+    until_unlocked(clicking)
+    clicking.close()
+
+
+def test_the_pin_is_entered_in_a_headset(loop, presenter):
+    class Controllers:
+        def tap(self, control):
+            presenter.on_press(PAGE, {"accept": "touch"}.get(control, control))
+            worn.step(2)
+
+    worn = Trainee(loop, presenter, lambda _it: Controllers())
+    presenter.view_joined(PAGE, Hello("headset"))
+    open_pin(worn)
+    enter(worn)
+    until_unlocked(worn)
+    worn.close()
+
+
+def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_looked_at(trainee, outside):
+    open_pin(trainee)
+    lock = trainee.presenter._session.lock
+    trainee.hands.type("4028")
+    trainee.tap("accept")
+    assert trainee.item("unlock").help == "A PIN has 6 to 12 digits."
+    trainee.hands.type("18")
+    for number in range(5):
+        trainee.hands.type("" if number == 0 else OTHER)
+        trainee.tap("accept")
+        until_said(trainee, "wait 1 s" if number == 4 else "not the PIN of this seat")
+        trainee.until(lambda: trainee.menu.facts[0].value == "_", "the digits gone")
+        trainee.step(round(6.0 / STEP_S))
+    trainee.hands.type(PIN)
+    trainee.tap("accept")
+    until_said(trainee, "wait 1 s")
+    assert lock.is_locked
+    outside.now = 1.5
+    trainee.hands.type(PIN)
+    trainee.tap("accept")
+    until_unlocked(trainee)
+
+
+def test_boards_and_the_seat_guess_from_the_same_few(trainee, outside):
+    for _ in range(4):
+        assert not outside.services.pin.guess(OTHER).is_right
+    open_pin(trainee)
+    trainee.hands.type(OTHER)
+    trainee.tap("accept")
+    until_said(trainee, "too many wrong PINs")
+    assert outside.services.pin.guess(PIN).wait_s == 1.0
+
+
+@pytest.mark.parametrize("content", ["{}", "7"])
+def test_a_damaged_pin_file_unlocks_nothing_and_is_named(trainee, outside, content):
+    (outside.services.config / PIN_FILE).write_text(content, encoding="utf-8")
+    open_pin(trainee)
+    trainee.hands.type(PIN)
+    trainee.tap("accept")
+    until_said(trainee, PIN_FILE)
+    assert trainee.presenter._session.lock.is_locked
+
+
+def test_who_leaves_the_page_before_the_answer_unlocks_nothing(trainee):
+    open_pin(trainee)
+    session = trainee.presenter._session
+    trainee.hands.type(PIN)
+    session.pages.choose("unlock")
+    session.pages.choose("cancel")
+    trainee.until_menu("settings")
+    assert session.lock.take_answer() is None
+    assert session.lock.is_locked
+
+
+def unlock(trainee):
+    open_pin(trainee)
+    trainee.hands.type(PIN)
+    trainee.tap("accept")
+    until_unlocked(trainee)
+
+
+def begin_trial(trainee):
+    trainee.start("task-1")
+
+
+def change_trainee(trainee):
+    trainee.presenter._session.trainee = "P08"
+    trainee.step(2)
+
+
+def begin_tutorial(trainee):
+    trainee.presenter._session.begin_tutorial()
+    trainee.step(2)
+
+
+def test_it_is_locked_again_when_a_trial_begins_and_stays_so_in_its_menu(trainee):
+    trainee.presenter._session.trainee = "P07"
+    trainee.step(2)
+    unlock(trainee)
+    begin_trial(trainee)
+    assert trainee.presenter._session.lock.is_locked
+    trainee.tap("menu")
+    trainee.until_menu("trial")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    trainee.choose("unlock")
+    trainee.until_menu("pin")
+    trainee.hands.type(PIN)
+    trainee.tap("accept")
+    until_unlocked(trainee)
+    assert "order" in enabled(trainee)
+    assert trainee.item("coarse").help == "This cannot be changed until the trial has ended."
+    assert trainee.submit("Abort").ok
+    trainee.until_menu("experiment")
+    assert not trainee.presenter._session.lock.is_locked
+
+
+@pytest.mark.parametrize("event", [change_trainee, begin_tutorial])
+def test_it_is_locked_again_when_somebody_else_trains(trainee, event):
+    unlock(trainee)
+    trainee.presenter._session.trainee = "P07"
+    trainee.step(2)
+    trainee.presenter._session.pages.show_start()
+    unlock(trainee)
+    event(trainee)
+    assert trainee.presenter._session.lock.is_locked
+
+
+def press_menu(presenter):
+    presenter.on_key(PAGE, "KeyM", True, "m")
+    presenter.on_key(PAGE, "KeyM", False, "")
+
+
+def test_another_view_takes_the_control_of_who_rests_only_after_the_pin(trainee, presenter):
+    trainee.start("task-1")
+    trainee.hands.push(1.0, 0.0, 0.0, False)
+    trainee.step(2)
+    trainee.hands.push(0.0, 0.0, 0.0, False)
+    presenter.view_joined(PAGE, Hello("page"))
+    rest = round(31.0 / STEP_S)
+    trainee.step(rest)
+    press_menu(presenter)
+    trainee.step(2)
+    assert presenter.control.view == 1
+    until_said(trainee, "Only an instructor can pass it on: Menu, Settings, Instructor's PIN.")
+    trainee.tap("menu")
+    trainee.until_menu("trial")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+    trainee.choose("unlock")
+    trainee.until_menu("pin")
+    trainee.hands.type(PIN)
+    trainee.tap("accept")
+    until_unlocked(trainee)
+    trainee.step(rest)
+    press_menu(presenter)
+    trainee.step(2)
+    assert presenter.control.view == PAGE
+
+
+def test_no_screen_no_file_and_no_event_holds_the_pin(trainee, outside):
+    open_pin(trainee)
+    trainee.hands.type(PIN)
+    assert trainee.menu.facts[0].value == "••••••_"
+    trainee.tap("accept")
+    until_unlocked(trainee)
+    trainee.focus("volume")
+    trainee.tap("right")
+    watcher = trainee.watcher
+    assert PIN not in repr((watcher.screens, watcher.feedbacks, watcher.controls))
+    shown = [screen for screen in watcher.screens if screen.menu is not None]
+    typed = [screen for screen in shown if screen.menu.name == "pin"]
+    assert typed
+    assert all(screen.is_private for screen in typed)
+    # While it is typed, the focus stays where it unlocks, and only dots come.
+    focuses = {screen.menu.focus for screen in typed if re.search("•", str(screen.menu.facts))}
+    assert focuses == {"unlock"}
+    folder = outside.services.config.parent
+    written = [path for path in folder.rglob("*") if path.is_file()]
+    assert written
+    assert not [path for path in written if PIN.encode() in path.read_bytes()]

@@ -1,0 +1,109 @@
+"""What a private menu offers is sent to who operates, and to nobody else."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.net.views.presenter import Control, Feedback
+from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem, Screen
+from rastrainer_simulator.net.views.sessions import ViewRole
+
+SECRET = Screen(
+    menu=Menu(
+        "pin", "PIN", ("Enter it.",), (Fact("PIN", "••_"),), (MenuItem("4", "4"),), focus="4"
+    ),
+    is_private=True,
+)
+BARE = {"name": "pin", "title": "PIN", "paragraphs": ["Enter it."], "facts": [], "items": []}
+PLAIN = Screen(status=("plain",))
+
+
+def joined(served, connect, kind, role=ViewRole.VIEW):
+    view = connect(served, role)
+    return view, view.join(kind=kind)["view"]
+
+
+def screens_and_events(view):
+    """Return the screens and events up to the plain screen that ends a test."""
+    messages = view.all_until(
+        lambda message: message["type"] == "screen" and message["screen"]["status"] == ["plain"]
+    )
+    screens = [each["screen"] for each in messages if each["type"] == "screen"]
+    menus = [screen["menu"] for screen in screens if screen["menu"] is not None]
+    return menus, [each["kind"] for each in messages if each["type"] == "event"]
+
+
+def tell(served, control):
+    """Have somebody hold the control while the private menu is open, hear a click, and leave."""
+
+    def act(presenter):
+        presenter.control, presenter.screen = control, SECRET
+        presenter.tell(SECRET, control, Feedback(1, "focus"))
+
+    served.thread.call(act, served.presenter)
+
+
+def finish(served):
+    def act(presenter):
+        presenter.screen = PLAIN
+        presenter.tell(PLAIN)
+
+    served.thread.call(act, served.presenter)
+
+
+def is_bare(menu) -> bool:
+    return {name: menu[name] for name in BARE} == BARE and menu["focus"] == ""
+
+
+@pytest.fixture
+def seat(served, connect):
+    """Return views by what they are, and their numbers: two windows, two pages, a spectator."""
+    kinds = {"window": "desktop", "other window": "desktop", "page": "page", "other page": "page"}
+    views = {name: joined(served, connect, kind) for name, kind in kinds.items()}
+    views["spectator"] = joined(served, connect, "spectator", ViewRole.SPECTATOR)
+    for view, _number in views.values():
+        view.next("screen")
+    return views
+
+
+@pytest.mark.parametrize(
+    ("holder", "readers"),
+    [
+        ("page", {"page"}),
+        ("window", {"window", "other window"}),
+        ("gamepad", {"window", "other window"}),
+    ],
+)
+def test_only_the_views_before_who_operates_are_sent_the_items_the_focus_and_its_clicks(
+    served, seat, holder, readers
+):
+    number = seat[holder][1] if holder in seat else None
+    tell(served, Control(holder, number))
+    finish(served)
+    for name, (view, _number) in seat.items():
+        menus, events = screens_and_events(view)
+        # A view that reads slowly is sent only the latest screen.
+        assert all(is_bare(menu) is (name not in readers) for menu in menus), name
+        assert events == (["focus"] if name in readers else []), name
+
+
+def test_who_joins_meanwhile_is_sent_nothing_of_it(served, seat, connect):
+    tell(served, Control("page", seat["page"][1]))
+    late = connect(served)
+    late.join(kind="page")
+    assert is_bare(late.next("screen")["screen"]["menu"])
+
+
+def test_who_takes_the_control_is_sent_the_whole_menu_and_who_lost_it_none(served, seat):
+    (first, number), (second, other) = seat["page"], seat["other page"]
+    tell(served, Control("page", number))
+    assert not is_bare(first.next("screen")["screen"]["menu"])
+    assert is_bare(second.next("screen")["screen"]["menu"])
+    tell(served, Control("page", other))
+
+    def until(view, wanted):
+        while is_bare(view.next("screen")["screen"]["menu"]) is not wanted:
+            pass
+
+    until(first, True)
+    until(second, False)
