@@ -7,9 +7,12 @@ import re
 import numpy as np
 
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.net.views.screen import Menu
 from Testing.end_to_end.stream_trainee import LEAST_FINE_PUSH, LIFT_M, SINK_M, StreamTrainee
 from Testing.simulator.landmarked import LANDMARKS
 
+METHOD = "trace over the skin"
+"""As the experiment menu calls it."""
 CENTER_M = np.array([0.001, -0.012, 0.016])
 """Of the head, RAS."""
 COARSE = LANDMARKS[:3]
@@ -54,6 +57,12 @@ class DrawingTrainee(StreamTrainee):
         """(3,) float, World, m."""
         return self._in_world(CENTER_M)
 
+    def choose_method(self, method: str) -> None:
+        """Choose in the experiment menu by what is registered."""
+        self.focus("method")
+        while (before := self.value("method")) != method:
+            self.press("right", lambda b=before: self.value("method") != b, "another method")
+
     def touch_landmarks(self) -> None:
         """Touch the landmarks that begin a registration by surface."""
         for landmark in COARSE:
@@ -71,6 +80,23 @@ class DrawingTrainee(StreamTrainee):
             rings.append(self.view.trace["next"])
             self._draw_at(rings[-1])
         return rings
+
+    def accept_match(self) -> dict[str, str]:
+        """Have the trace registered when its match is known; return what is told of the match."""
+        self.press("menu", lambda: self.menu_name == "trial", "the menu")
+        self.choose("register")
+        self.until_menu("match")
+        self.until(lambda: self._is_matched(self.menu), "the match")
+        told = {fact.label: fact.value for fact in self.menu.facts}
+        self.choose("accept")
+        self.until_menu("result")
+        return told
+
+    @staticmethod
+    def _is_matched(menu: Menu | None) -> bool:
+        return menu is not None and any(
+            item.name == "accept" and item.is_enabled for item in menu.items
+        )
 
     def _draw_at(self, ring: dict) -> None:
         head = self.view.pose("head")[:3, :3]

@@ -1,4 +1,4 @@
-"""A registration by surface from the landmarks to the result by the controllers of a headset alone.
+"""A registration by surface from the menu to the result by the controllers of a headset alone.
 
 The trainee draws where the ring is. The simulator registers the trace and scores it itself.
 """
@@ -8,9 +8,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rastrainer.igtl.client import Client
-from rastrainer.protocol import MIN_TRACE_POINTS, PROTOCOL_VERSION
-from Testing.end_to_end.drawing_trainee import DrawingTrainee
+from rastrainer.protocol import MIN_TRACE_POINTS
+from Testing.end_to_end.drawing_trainee import METHOD, DrawingTrainee
 from Testing.simulator.landmarked import write_landmarked
 from Testing.web.chromium import enter_headset, open_page
 from Testing.web.hands import Controllers
@@ -43,14 +42,13 @@ def drawn(tmp_path_factory, browser) -> dict:
         page = open_page(browser, url, code, "metaQuest2", draws=False)
         enter_headset(page)
         drawer = HeadsetDrawer(place.view, Controllers(page))
-        start(place)
-        drawer.until(lambda: drawer.menu is None, "the trial")
+        drawer.go_to_experiment()
+        drawer.type_id(None)
+        drawer.choose_method(METHOD)
+        drawer.begin_task("task-1")
         drawer.touch_landmarks()
         seen = {"rings": drawer.draw_until(POINTS), "shown": page.evaluate(DRAWN)}
-        drawer.press("menu", lambda: drawer.menu is not None, "the menu")
-        drawer.until_menu("trial")
-        drawer.choose("register")
-        drawer.until_menu("result")
+        seen["match"] = drawer.accept_match()
         seen["operators"] = {entry["operator"] for entry in place.entries("input")} - {""}
         seen["traced"] = place.entries("trace")
         (registered,), (scored,) = place.entries("registration"), place.entries("scored")
@@ -58,16 +56,6 @@ def drawn(tmp_path_factory, browser) -> dict:
         seen["guided"] = [entry["guidance"] for entry in place.entries("guidance")]
         seen["problems"] = page.problems
     return seen
-
-
-def start(place: Place) -> None:
-    """Have a trial by surface begun, as Slicer does, which then leaves."""
-    with Client(port=place.simulator.port) as client:
-        hello = {"protocolVersion": PROTOCOL_VERSION, "client": "starter"}
-        assert client.send_command("Hello", hello, timeout=20).ok
-        begin = {"task": "task-1", "trainee": "P7", "method": "surface", "mode": "hmd"}
-        reply = client.send_command("StartTask", begin, timeout=20)
-        assert reply.ok, reply.error
 
 
 def test_the_trace_is_drawn_by_the_controllers_alone(drawn):
@@ -91,6 +79,8 @@ def test_each_ring_leads_to_another_place(drawn):
 
 
 def test_the_simulator_registers_the_trace_and_scores_it(drawn):
-    assert drawn["registered"]["freMm"] < 1.0
+    registered = drawn["registered"]
+    assert drawn["match"]["Residual"] == f"{registered['freMm']:.2f} mm"
+    assert registered["freMm"] < 1.0
     assert drawn["scored"]["details"]["scoreVersion"] == "3-surface"
     assert drawn["registered"]["expectedTreMm"] < 3.0

@@ -14,6 +14,7 @@ from rastrainer_simulator.flow.pages import (
     errors,
     experiment,
     introduction,
+    match,
     pin,
     procedure,
     result,
@@ -26,6 +27,7 @@ from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
+from rastrainer_simulator.flow.session.match_report import MatchReport
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.screen import Screen, without_secrets
@@ -99,6 +101,14 @@ class _SetPin:
     is_set = True
 
 
+def _matched() -> Future[MatchReport]:
+    """Return the longest report of a match: most of what may look wrong with one does."""
+    matched: Future[MatchReport] = Future()
+    wrong = ("slides", "several-minima", "few-inliers")
+    matched.set_result(MatchReport(0.42, 0.71, 2.31, (1.12, 5.55), 4.2, wrong))
+    return matched
+
+
 class _Loading:
     """A trial that is never loaded."""
 
@@ -149,6 +159,7 @@ def _pages(session) -> Iterator[SessionPage]:
     yield QuestionnairePage(session, QUESTIONNAIRE)
     for over_a_trial in (trial.TrialPage, trial.AbortPage, trial.PracticePage, trial.CompletePage):
         yield over_a_trial(session)
+    yield match.MatchPage(session, _matched())
     yield result.WaitingPage(session)
     yield result.ResultPage(session)
     yield errors.ErrorsPage(session)

@@ -1,5 +1,6 @@
 """A trace by the trainee's own controls: the touch control begins and ends a stroke."""
 
+from concurrent.futures import Future
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,8 @@ import pytest
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase
 from rastrainer.registration.trace_guidance import COVERED_MM
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.flow.pages.match import MatchPage
+from rastrainer_simulator.flow.session.match_report import MatchReport
 from rastrainer_simulator.net.views.presenter import TraceGuidance
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 
@@ -139,9 +142,36 @@ def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_con
     assert trainee.presenter.screen.status[1] == f"{count} of 30–500 points traced"
     trainee.tap("menu")
     trainee.until_menu("trial")
+    assert trainee.menu.paragraphs == (f"P07, {count} points are traced.",)
     trainee.choose("register")
-    trainee.until(lambda: trainee.state.training.phase is not Phase.COMPLETE, "the registration")
-    assert trainee.state.training.phase is Phase.REGISTERED
+    trainee.until_menu("match")
+    trainee.until(lambda: "cannot be matched" in trainee.menu.paragraphs[0], "the reason")
+    assert "are at the same place" in trainee.menu.paragraphs[0]
+    assert not trainee.item("accept").is_enabled
+    trainee.choose("draw")
+    trainee.until_menu(None)
+    assert trainee.state.training.phase is Phase.COMPLETE
+    register_matched(trainee)
+
+
+def register_matched(trainee):
+    """Accept a match that is known, of a trial whose trace can be registered."""
+    session = trainee.presenter._session
+    matched = Future()
+    session.pages.show(MatchPage(session, matched))
+    trainee.until_menu("match")
+    assert not trainee.item("accept").is_enabled
+    matched.set_result(MatchReport(0.42, 0.97, 0.31, (0.05, 1.2), 1.1))
+    trainee.until(lambda: trainee.item("accept").is_enabled, "the match")
+    facts = {fact.label: fact.value for fact in trainee.menu.facts}
+    assert facts == {
+        "Residual": "0.42 mm",
+        "Points that count": "97%",
+        "Expected error at the target (TRE), 95 % interval": "0.31 mm (0.05 to 1.20 mm)",
+    }
+    assert "A small residual does not mean a small error" in trainee.menu.paragraphs[0]
+    trainee.choose("accept")
+    trainee.until(lambda: trainee.state.training.phase is Phase.REGISTERED, "the registration")
 
 
 def test_the_method_is_chosen_in_the_experiment_menu_where_the_head_has_landmarks(trainee):

@@ -45,10 +45,12 @@ class TouchRegistration:
     Attributes:
         fits: by kind; rigid is always included.
         target_errors: expected error at the scenario's target, by kind.
+        match: of the trace, where the method has one.
     """
 
     fits: Mapping[str, Registration]
     target_errors: Mapping[str, TargetError]
+    match: SurfaceMatch | None = None
 
     @property
     def rigid(self) -> Registration:
@@ -101,7 +103,7 @@ def _by_trace(
     match = match_surface(given.trace_mm, _head(scenario), coarse.matrix)
     pause()
     error = surface_target_error(knowledge_of(match), scenario.target_position)
-    return TouchRegistration({RIGID: _matched(coarse, match)}, {RIGID: error})
+    return TouchRegistration({RIGID: _matched(coarse, match)}, {RIGID: error}, match)
 
 
 def _localization_error(fit: Registration, normals: np.ndarray) -> LocalizationError:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from rastrainer.protocol import TRIAL_RUN, AbortReason, CommandName, Phase
 from rastrainer_simulator.flow.pages.introduction import ControlsPage
+from rastrainer_simulator.flow.pages.match import MatchPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.start import SettingsPage
+from rastrainer_simulator.flow.session.match_report import look_at_match
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.net.views.screen import Menu
 
@@ -25,10 +27,12 @@ class TrialPage(SessionPage):
             items[1:1] = ["register"]
         items.append("finish" if training.task == TRIAL_RUN else "abort")
         key = "trial.complete" if is_complete else "trial.paused"
+        traced = 0 if training.trace is None else len(training.trace.points)
+        key = f"{key} trace" if traced else key
         return Menu(
             self.name,
             self.say("trial.title", task=task),
-            (self.say(key, trainee=training.trainee, kept=len(training.touches)),),
+            (self.say(key, trainee=training.trainee, kept=len(training.touches), traced=traced),),
             items=tuple(self.button(item) for item in items),
         )
 
@@ -38,7 +42,7 @@ class TrialPage(SessionPage):
         if item == "resume":
             self.back()
         elif item == "register":
-            session.do(CommandName.REGISTER)
+            self._register()
         elif item == "finish":
             session.do(CommandName.ABORT, {"reason": AbortReason.TRAINEE.value})
         else:
@@ -51,6 +55,15 @@ class TrialPage(SessionPage):
             self.session.do(CommandName.RESUME)
         else:
             self.session.pages.close()
+
+    def _register(self) -> None:
+        """Register the trial; where there is a trace, its match is looked at first."""
+        session = self.session
+        if session.training.trace is None:
+            session.do(CommandName.REGISTER)
+        else:
+            looked = look_at_match(session.training, session.scenario)
+            session.pages.open(MatchPage(session, looked))
 
     def pressed(self, control: ControlName) -> bool:
         """The control that pauses also resumes."""

@@ -315,6 +315,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "trial.paused": "{trainee}, the trial is paused with {kept} points touched. Its clock is "
         "stopped.",
         "trial.complete": "{trainee}, all {kept} points are touched.",
+        "trial.paused trace": "{trainee}, the trial is paused with {traced} points traced. Its "
+        "clock is stopped.",
+        "trial.complete trace": "{trainee}, {traced} points are traced.",
         "trial.resume": "Resume",
         "trial.register": "Register",
         "trial.controls": "Controls",
@@ -336,6 +339,28 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "complete.register": "Register",
         "complete.undo": "Undo the last touch",
         "complete.abort": "Abort the task",
+        "match.title": "Accept this match?",
+        "match.looking": "The trace is being matched to the skin …",
+        "match.impossible": "The trace cannot be matched: {reason}",
+        "match.residual and error": "The residual is how far the trace is off the skin. The error "
+        "is how far the target is from where it seems to be. A small residual does not mean a "
+        "small error. Once accepted, the points cannot be changed.",
+        "match.residual": "Residual",
+        "match.counts": "Points that count",
+        "match.expected": "Expected error at the target (TRE), 95 % interval",
+        "match.expected value": "{error:.2f} mm ({low:.2f} to {high:.2f} mm)",
+        "match.slides": "The match may slide: the head may be off by up to {slide:.1f} mm, however "
+        "small the residual is. Trace places that face other ways, such as nose, brows, temples "
+        "and cheeks.",
+        "match.several-minima": "The trace fits in several places. Trace more of the face.",
+        "match.not-converged": "The match had not settled when it was stopped. Trace more of the "
+        "face.",
+        "match.few-inliers": "Many points are off the skin. Keep the tip on the skin while you "
+        "draw.",
+        "match.far-points": "Some points are far off the skin and do not count.",
+        "match.poor-fit": "The trace does not fit this head. Were the landmarks exchanged?",
+        "match.accept": "Accept and register",
+        "match.draw": "Draw on",
         "waiting.title": "Registered",
         "waiting.slicer": "{trainee}, 3D Slicer is scoring your points.",
         "waiting.nobody": "{trainee}, your points are saved. 3D Slicer is not connected; it will "

@@ -425,6 +425,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "trial.paused": "{trainee}, der Versuch ist mit {kept} berührten Punkten angehalten. "
         "Seine Zeit steht still.",
         "trial.complete": "{trainee}, alle {kept} Punkte sind berührt.",
+        "trial.paused trace": "{trainee}, der Versuch ist mit {traced} gezogenen Punkten "
+        "angehalten. Seine Zeit steht still.",
+        "trial.complete trace": "{trainee}, {traced} Punkte sind gezogen.",
         "trial.resume": "Weitermachen",
         "trial.register": "Registrieren",
         "trial.controls": "Steuerung",
@@ -448,6 +451,27 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "complete.register": "Registrieren",
         "complete.undo": "Letzten Punkt zurücknehmen",
         "complete.abort": "Aufgabe abbrechen",
+        "match.title": "Diese Registrierung annehmen?",
+        "match.looking": "Die Spur wird an die Haut angepasst …",
+        "match.impossible": "Die Spur lässt sich nicht anpassen: {reason}",
+        "match.residual and error": "Das Residuum sagt, wie weit die Spur von der Haut abweicht, "
+        "der Fehler, wie weit das Ziel von dort liegt, wo es zu sein scheint. Ein kleines Residuum "
+        "bedeutet keinen kleinen Fehler. Danach lassen sich die Punkte nicht mehr ändern.",
+        "match.residual": "Residuum",
+        "match.counts": "Punkte, die zählen",
+        "match.expected": "Erwarteter Fehler am Ziel (TRE), 95-%-Intervall",
+        "match.expected value": "{error:.2f} mm ({low:.2f} bis {high:.2f} mm)",
+        "match.slides": "Die Lage kann verrutschen: Der Kopf kann um bis zu {slide:.1f} mm falsch "
+        "liegen, wie klein das Residuum auch ist. Zieh über Stellen, die anders gerichtet sind, "
+        "etwa Nase, Brauen, Schläfen und Wangen.",
+        "match.several-minima": "Die Spur passt an mehreren Stellen. Zieh über mehr vom Gesicht.",
+        "match.not-converged": "Die Anpassung kam nicht zur Ruhe. Zieh über mehr vom Gesicht.",
+        "match.few-inliers": "Viele Punkte liegen nicht auf der Haut. Lass die Spitze beim Ziehen "
+        "auf der Haut.",
+        "match.far-points": "Einige Punkte liegen weit von der Haut und zählen nicht.",
+        "match.poor-fit": "Die Spur passt nicht zu diesem Kopf. Wurden Landmarken vertauscht?",
+        "match.accept": "Annehmen und registrieren",
+        "match.draw": "Weiter ziehen",
         "waiting.title": "Registriert",
         "waiting.slicer": "{trainee}, 3D Slicer bewertet deine Punkte.",
         "waiting.nobody": "{trainee}, deine Punkte sind aufbewahrt. 3D Slicer ist nicht "
