@@ -63,6 +63,11 @@ class DrawingTrainee(StreamTrainee):
         while (before := self.value("method")) != method:
             self.press("right", lambda b=before: self.value("method") != b, "another method")
 
+    def begin_task(self, task: str) -> None:
+        """Choose a task in the experiment's menu; landmarks are marked in no scene."""
+        self.choose(task)
+        self.until_menu(None)
+
     def touch_landmarks(self) -> None:
         """Touch the landmarks that begin a registration by surface."""
         for landmark in COARSE:
