@@ -13,14 +13,21 @@ from rastrainer_simulator.vectors import Vector
 
 @dataclass(frozen=True)
 class TracedPoint:
-    """One point of a trace: where the tip was (World, m) and when.
+    """One point of a trace: where it was measured (World, m) and when.
 
-    `elapsed` is the trial's time in s, pauses excluded.
+    `elapsed` is the trial's time in s, pauses excluded; `tip` is where the tip was seen, if it was
+    elsewhere.
     """
 
     position: Vector
     sim_time: float
     elapsed: float
+    tip: Vector | None = None
+
+    @property
+    def seen(self) -> Vector:
+        """Where the tip was seen, World, m."""
+        return self.tip or self.position
 
 
 @dataclass(frozen=True)
@@ -77,7 +84,7 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class TouchState:
-    """One touched fiducial: where the tip was (World, m) and when.
+    """One touched fiducial: where it was measured (World, m) and when.
 
     `elapsed` is the trial's time in s, pauses excluded.
     """

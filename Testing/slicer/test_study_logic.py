@@ -466,7 +466,8 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
 def test_a_trial_of_a_study_is_started_by_the_method_of_its_protocol(lab, tmp_path):
     path = tmp_path / "methods.json"
     changed = {"questionnaires": [], "trialRun": {"minutes": 0}, "modes": ["desktop"]}
-    changed |= {"methods": {"task-1": "landmarks-surface"}}
+    skin = {"shiftMm": 2.0, "indentationMm": 0.0}
+    changed |= {"methods": {"task-1": "landmarks-surface"}, "skin": {"task-1": skin}}
     path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changed))
     lab.logic.begin(path)
     lab.logic.enroll()
@@ -476,6 +477,7 @@ def test_a_trial_of_a_study_is_started_by_the_method_of_its_protocol(lab, tmp_pa
     lab.logic.startTrial("task-1", "desktop", method="fiducials")
     lab.room.run_until(lambda: len(lab.room.sent("StartTask")) == 2)
     assert {start["method"] for start in lab.room.sent("StartTask")} == {"landmarks-surface"}
+    assert [start["skin"] for start in lab.room.sent("StartTask")] == [skin, skin]
     lab.tell(phase="running", mode="desktop", task="task-1", method="landmarks-surface")
     assert lab.logic.offProtocolSentence() == ""
     lab.tell(phase="running", mode="desktop", task="task-1", method="fiducials")

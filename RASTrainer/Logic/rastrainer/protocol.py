@@ -5,6 +5,7 @@ Both sides import this file, so they cannot diverge. `rastrainer.igtl` defines t
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Mapping
 from enum import Enum
@@ -215,9 +216,27 @@ class CommandName:
 SPEED_LIMIT_MM_S = 500.0
 WORLD_LIMIT_MM = 5000.0
 STAND_OFF_LIMIT_MM = 80.0
+SKIN_LIMIT_MM = 20.0
+SKIN_KEYS = ("shiftMm", "indentationMm")
 """The farthest that the guide's tip may be from the skin, along its axis, when it is locked."""
 FEED_LIMIT_MM_S = 50.0
 """Of `Feed`; drill and instrument have lower limits of their own."""
+
+
+def skin_amounts(value: Any) -> dict[str, float]:
+    """Accept how far the skin shifts (RMS) and is indented, mm; what is left out is 0.
+
+    Raises:
+        ValueError: anything else; the words follow "must be".
+    """
+    check = number(0, SKIN_LIMIT_MM)
+    with contextlib.suppress(ValueError):
+        if isinstance(value, Mapping) and set(value) <= set(SKIN_KEYS):
+            return {key: check(amount) for key, amount in value.items()}
+    raise ValueError(
+        f"an object of {' and '.join(SKIN_KEYS)}, each a number from 0 to {SKIN_LIMIT_MM:g} mm"
+    )
+
 
 _REGISTRATION: Mapping[str, Argument] = {
     "trialId": Argument(trial_id),
@@ -248,6 +267,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "seed": Argument(whole_number(0, 2**63 - 1), None),
         "procedure": Argument(text(40, 0), ""),
         "method": Argument(text(40, 0), ""),
+        "skin": Argument(skin_amounts, {}),
     },
     CommandName.JOG: {
         "velocityMmS": Argument(numbers(3, SPEED_LIMIT_MM_S, "mm/s")),
@@ -310,6 +330,7 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "procedure": Argument(text(40, 0), ""),
         "tutorial": Argument(one_of(*(rule.value for rule in TutorialRule)), ""),
         "method": Argument(text(40, 0), ""),
+        "skin": Argument(skin_amounts, {}),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},

@@ -159,13 +159,19 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
         raise InputError(f"An entry of the journal is not as it should be ({error!r}).") from None
 
 
+def _measured_mm(touch: Mapping[str, Any]) -> tuple[float, float, float]:
+    """Return where a touch was measured: where the tip was, unless the skin had shifted."""
+    x, y, z = touch.get("measuredMm", touch["positionMm"])
+    return x, y, z
+
+
 def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial:
     header, trajectory = entries[0], WholeRecording.of(entries).trajectory()
     touches = {entry["label"]: entry for entry in entries if entry["kind"] == "touch"}
     points = tuple(
         TouchedPoint(
             label=touch.label,
-            position_mm=tuple(touches[touch.label]["positionMm"]),
+            position_mm=_measured_mm(touches[touch.label]),
             sim_time_s=touches[touch.label]["simTime"] - header["tickS"],
             utc=touches[touch.label]["utc"],
         )

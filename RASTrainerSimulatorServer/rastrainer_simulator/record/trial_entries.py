@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import struct
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
@@ -72,6 +72,8 @@ class TrialEntries:
         self.trial_id = trial_id
         self.started_utc = started_utc
         self._seed = simulation.trial_seed
+        # Its seed is revealed with the truth.
+        self._skin = replace(simulation.truth.skin, seed=0)
         self._setup = simulation.setup
         self.versions = versions() | {"kinematics": simulation.kinematics_name}
         self._every = max(1, round(1.0 / (SAMPLE_HZ * dt)))
@@ -234,9 +236,10 @@ class TrialEntries:
         arguments = dict(command.arguments)
         if command.name == CommandName.START_TASK:
             arguments |= {"seed": self._seed, "trialId": self.trial_id}
-            # As in journals older than procedures and methods.
-            if not arguments.get("procedure"):
-                arguments.pop("procedure", None)
+            # As in journals older than procedures, methods and shifts of the skin.
+            for later in ("procedure", "skin"):
+                if not arguments.get(later):
+                    arguments.pop(later, None)
             if method_of(arguments.get("method")) is RegistrationMethod.FIDUCIALS:
                 arguments.pop("method", None)
         return {
@@ -312,6 +315,7 @@ class TrialEntries:
             procedure=self._procedure_record(training),
             method=training.method,
             trace=trace,
+            skin=self._skin,
         )
 
     def _procedure_record(self, training: TrainingState) -> ProcedureRecord | None:

@@ -14,7 +14,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.registration_state import TracedPoint, TraceState
 from rastrainer_simulator.state import Event, EventKind, TrainingState
 from rastrainer_simulator.training.rules import TOO_DEEP_MM, TouchMoment, TrainingSettings
-from rastrainer_simulator.vectors import distance
+from rastrainer_simulator.vectors import Vector, distance
 
 
 def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSettings) -> bool:
@@ -27,22 +27,38 @@ def takes_point(trace: TraceState | None, now: TouchMoment, settings: TrainingSe
     if MM_PER_M * now.depth > TOO_DEEP_MM:
         return False
     last = trace.points[-1:]
-    return not last or MM_PER_M * distance(now.tip, last[0].position) >= TRACE_SPACING_MM
+    return not last or MM_PER_M * distance(now.tip, last[0].seen) >= TRACE_SPACING_MM
 
 
-def with_point(state: TrainingState, now: TouchMoment, elapsed: float) -> TrainingState:
-    """Return the state of a trial with a point where the tip is; `elapsed` is its time, s."""
+def with_point(
+    state: TrainingState, now: TouchMoment, measured: Vector, elapsed: float
+) -> TrainingState:
+    """Return the state of a trial with a point where the tip is; `elapsed` is its time, s.
+
+    `measured` is where it is measured, World, m.
+    """
     assert state.trace is not None
-    point = TracedPoint(now.tip, now.sim_time, elapsed)
+    tip = None if measured == now.tip else now.tip
+    point = TracedPoint(measured, now.sim_time, elapsed, tip)
     return replace(state, trace=state.trace.with_point(point))
 
 
 def point_event(state: TrainingState, now: TouchMoment) -> Event:
     """Return the event of the point that was just traced."""
     assert state.trace is not None
-    place = [MM_PER_M * value for value in now.tip]
-    data = {"positionMm": place, "kept": len(state.trace.points)}
+    data = {
+        **tip_data(now, state.trace.points[-1].position),
+        "kept": len(state.trace.points),
+    }
     return Event(EventKind.TRACE, now.sim_time, data)
+
+
+def tip_data(now: TouchMoment, measured: Vector) -> dict[str, Any]:
+    """Return where the tip is, mm, and where it is measured, if that is elsewhere."""
+    place = {"positionMm": [MM_PER_M * value for value in now.tip]}
+    if measured == now.tip:
+        return place
+    return {**place, "measuredMm": [MM_PER_M * value for value in measured]}
 
 
 def stroke_data(trace: TraceState) -> dict[str, Any]:

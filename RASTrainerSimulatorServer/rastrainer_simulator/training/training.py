@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.skin_shift import SkinShift
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.scenario.method_task import TRACED_METHODS, method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
@@ -37,7 +39,7 @@ from rastrainer_simulator.training.rules import (
 )
 from rastrainer_simulator.training.trial_clock import KeptStates, TrialClock, trial_id, trial_seed
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, vector
 
 if TYPE_CHECKING:
     from rastrainer.scenario.scenario import Scenario
@@ -69,6 +71,7 @@ class Training:
         self._clock = TrialClock(0.0)
         self._task: Task | None = None
         self._fiducials: dict[str, Vector] = {}
+        self._mesh: HeadMesh | None = None
         self.trial_seed = 0
         self.truth = Truth.of(scenario, scenario.head_to_world)
         self.state = TrainingState(instruction=self._texts.say("idle"))
@@ -159,10 +162,12 @@ class Training:
     def _start(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         arguments = command.arguments
         chosen_procedure = arguments.get("procedure") or ""
+        skin = SkinShift.from_json(arguments.get("skin") or self._scenario.skin.amounts)
         try:
             method = method_of(arguments.get("method"))
             task = task_by_method(self._scenario, arguments["task"], method)
             self._phases = self._phases_of(chosen_procedure, task)
+            self._mesh = None if skin.is_none else read_head_mesh(self._scenario.head_mesh)
         except InputError as error:
             return TrainingReply(False, str(error))
         number = self._number
@@ -171,7 +176,10 @@ class Training:
         self.trial_seed = trial_seed(self._seed, number) if chosen is None else chosen
         self._task = task
         self.truth = Truth.of(
-            self._scenario, self._scenario.perturbed_head_to_world(self.trial_seed), task
+            self._scenario,
+            self._scenario.perturbed_head_to_world(self.trial_seed),
+            task,
+            skin if skin.is_none else replace(skin, seed=self.trial_seed),
         )
         places = self.truth.in_world(np.array(list(self.truth.fiducials.values()))) / MM_PER_M
         self._fiducials = dict(zip(self.truth.fiducials, map(tuple, places.tolist()), strict=True))
@@ -243,7 +251,7 @@ class Training:
         )
         place = {
             "label": label,
-            "positionMm": [MM_PER_M * value for value in now.tip],
+            **tracing.tip_data(now, measured := self._measured(now.tip)),
             "clearanceMm": MM_PER_M * now.tip_clearance,
             "depthMm": MM_PER_M * now.depth,
         }
@@ -253,7 +261,7 @@ class Training:
             return TrainingReply(
                 False, sentence, events=(Event(EventKind.REJECTED, now.sim_time, data),)
             )
-        touch = TouchState(label, now.tip, now.sim_time, self._clock.elapsed(now.sim_time))
+        touch = TouchState(label, measured, now.sim_time, self._clock.elapsed(now.sim_time))
         touches = (*state.touches, touch)
         data = {**place, "kept": len(touches)}
         event = Event(EventKind.TOUCH, now.sim_time, data)
@@ -282,12 +290,19 @@ class Training:
     def _traced(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Add a point to the stroke, which ends with the last one that a trial takes."""
         elapsed = self._clock.elapsed(now.sim_time)
-        self.state = tracing.with_point(self.state, now, elapsed)
+        self.state = tracing.with_point(self.state, now, self._measured(now.tip), elapsed)
         event, trace = tracing.point_event(self.state, now), self.state.trace
         if trace is None or not trace.is_full:
             return TrainingReply(True, events=(event,))
         over = self._stroke(tracing.ended(self.state), now)
         return replace(over, events=(event, *over.events))
+
+    def _measured(self, tip: Vector) -> Vector:
+        """Return where a tip is measured that the skin has shifted with, World, m."""
+        if self._mesh is None:
+            return tip
+        measured = self.truth.measured(MM_PER_M * np.array(tip), self._mesh)
+        return vector((measured / MM_PER_M).tolist())
 
     def _stroke(self, state: TrainingState, now: TouchMoment, **others: bool) -> TrainingReply:
         """Take on a state in which a stroke has begun, is ended or undone."""
@@ -463,7 +478,7 @@ class Training:
     def _leave(self) -> None:
         """Between trials the head is where it nominally is."""
         self.truth = Truth.of(self._scenario, self._scenario.head_to_world)
-        self._fiducials = {}
+        self._fiducials, self._mesh = {}, None
 
 
 def _interruption(state: TrainingState) -> str:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rastrainer.head.skin_shift import UNMOVED, SkinShift
 from rastrainer.registration.target_error import true_errors
 
 if TYPE_CHECKING:
+    from rastrainer.head.mesh import HeadMesh
     from rastrainer.scenario.scenario import Scenario
     from rastrainer.scenario.tasks import Task
 
@@ -23,17 +25,26 @@ class Truth:
         head_to_world: (4, 4) float, mm, from the MRI's RAS to World.
         target: (3,) float, RAS mm, where the true error of a registration is reported.
         fiducials: label → (3,) float, RAS mm, of the trial's task.
+        skin: how the skin lies on the head, compared with the images.
     """
 
     head_to_world: np.ndarray
     target: np.ndarray
     fiducials: Mapping[str, np.ndarray]
+    skin: SkinShift = UNMOVED
 
     @classmethod
-    def of(cls, scenario: Scenario, head_to_world: np.ndarray, task: Task | None = None) -> Truth:
+    def of(
+        cls,
+        scenario: Scenario,
+        head_to_world: np.ndarray,
+        task: Task | None = None,
+        skin: SkinShift | None = None,
+    ) -> Truth:
         """Return the truth of a trial of a task, or without one, by the head's pose, mm."""
         fiducials = dict(zip(task.labels, task.fiducials, strict=True)) if task else {}
-        return cls(np.asarray(head_to_world, dtype=float), scenario.target_position, fiducials)
+        pose = np.asarray(head_to_world, dtype=float)
+        return cls(pose, scenario.target_position, fiducials, skin or UNMOVED)
 
     def in_world(self, points: np.ndarray) -> np.ndarray:
         """Return a point of the head, or n of them, (3,) or (n, 3) float, RAS mm, in World, mm."""
@@ -42,6 +53,13 @@ class Truth:
     def in_head(self, point: np.ndarray) -> np.ndarray:
         """Return a point of World (mm) in the head (RAS mm)."""
         return self.head_to_world[:3, :3].T @ (point - self.head_to_world[:3, 3])
+
+    def measured(self, tip: np.ndarray, mesh: HeadMesh) -> np.ndarray:
+        """Return where a tip on the skin of the images is measured, (3,) float, World, mm.
+
+        `tip` is (3,) float, World, mm, and `mesh` the head of the images, RAS mm.
+        """
+        return self.in_world(self.skin.measured(self.in_head(tip)[None], mesh)[0])
 
     def target_error_mm(self, world_to_head: np.ndarray) -> float:
         """Return |WorldToHead · HeadToWorld(target) − target|, the true TRE of a registration.
@@ -67,6 +85,7 @@ class Truth:
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
             "trueTreMm": self.target_error_mm(world_to_head),
             "touchErrorsMm": self.touch_errors_mm(touches),
+            **self._told_skin(),
         }
 
     def to_json(self) -> dict[str, Any]:
@@ -75,7 +94,12 @@ class Truth:
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
             "target": [float(value) for value in self.target],
             "fiducials": {k: [float(v) for v in point] for k, point in self.fiducials.items()},
+            **self._told_skin(),
         }
+
+    def _told_skin(self) -> dict[str, Any]:
+        """Return nothing where the skin lies as in the images: as before it could shift."""
+        return {} if self.skin.is_none else {"skin": self.skin.to_json()}
 
     @classmethod
     def from_json(cls, value: Mapping[str, Any]) -> Truth:
@@ -84,4 +108,5 @@ class Truth:
             head_to_world=np.array(value["headToWorld"], dtype=float).reshape(4, 4),
             target=np.array(value["target"], dtype=float),
             fiducials={k: np.array(v, dtype=float) for k, v in value["fiducials"].items()},
+            skin=SkinShift.from_json(value.get("skin", {})),
         )

@@ -1,6 +1,7 @@
 """Writing and listing scenarios, and their set-ups."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.pose import Perturbation
+from rastrainer.head.skin_shift import UNMOVED, SkinShift
 from rastrainer.head.volume import read_head_volume
 from rastrainer.scenario.library import list_scenarios
 from rastrainer.scenario.scenario import load_scenario
@@ -28,6 +30,14 @@ def written(folder, skull=None, volume=None):
     with new_folder(folder) as made:
         write_scenario(made, made_up_scenario(), ball_head(), skull, volume)
     return load_scenario(folder)
+
+
+def test_a_scenario_is_read_back_with_its_skin(tmp_path):
+    skin = SkinShift(2.0, 0, 0.5)
+    with new_folder(tmp_path / "ball") as made:
+        write_scenario(made, replace(made_up_scenario(), skin=skin), ball_head(), None, None)
+    assert load_scenario(tmp_path / "ball").skin == skin
+    assert written(tmp_path / "plain").skin == UNMOVED
 
 
 def test_a_scenario_is_read_back_with_targets_and_trajectory(tmp_path):

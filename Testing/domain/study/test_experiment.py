@@ -417,3 +417,44 @@ def test_a_protocol_may_say_by_what_the_trials_of_a_task_are_registered():
         protocol(methods={"task-9": "surface"})
     with pytest.raises(InputError, match=r"methods.task-1 must be one of fiducials, landmarks, "):
         protocol(methods={"task-1": "scan"})
+
+
+def test_a_protocol_may_say_how_the_skin_shifts_in_the_trials_of_a_task_and_tells_no_trainee():
+    silent = protocol()
+    assert "skin" not in silent.to_json()
+    own = protocol(skin={"task-2": {"shiftMm": 2, "indentationMm": 0.5}, "task-3": {}})
+    assert study_protocol_from_json(json.loads(protocol_text(own))) == own
+    trials = {step.task: step for step in steps_for(own, 0) if step.kind is StepKind.TRIAL}
+    assert trials["task-2"].skin == {"shiftMm": 2.0, "indentationMm": 0.5}
+    assert trials["task-2"].sentence == trials["task-1"].sentence.replace("Task 1", "Task 2")
+    assert trials["task-2"].is_played_on(2.0, 0.5)
+    assert not trials["task-2"].is_played_on(0.0, 0.0)
+    assert not trials["task-3"].is_played_on(2.0, 0.0)
+    assert trials["task-1"].is_played_on(2.0, 0.0)
+    sent = StudyStep("P07", "trial", task="task-2", skin=trials["task-2"].skin).arguments()
+    assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).skin == sent["skin"]
+    assert "skin" not in StudyStep("P07", "trial", task="task-1").arguments()
+
+
+@pytest.mark.parametrize(
+    ("skin", "said"),
+    [
+        pytest.param({"task-9": {}}, r"skin.task-9 must be one of the study's tasks", id="task"),
+        pytest.param({"task-1": 2}, r"skin.task-1 must be an object", id="number"),
+        pytest.param(
+            {"task-1": {"shiftMm": -1}}, r"shiftMm must be a number from 0 to 20", id="negative"
+        ),
+        pytest.param(
+            {"task-1": {"shiftMm": float("nan")}}, r"shiftMm must be a number", id="not a number"
+        ),
+        pytest.param(
+            {"task-1": {"indentationMm": 21}}, r"indentationMm must be a number", id="too deep"
+        ),
+        pytest.param(
+            {"task-1": {"shift": 2}}, r"shift must be left out; a skin has shiftMm", id="name"
+        ),
+    ],
+)
+def test_a_protocol_whose_skin_cannot_be_is_refused_with_a_sentence(skin, said):
+    with pytest.raises(InputError, match=said):
+        protocol(skin=skin)

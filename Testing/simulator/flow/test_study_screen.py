@@ -247,3 +247,17 @@ def test_a_trial_of_a_study_is_registered_by_what_its_protocol_says(menu, guide)
     assert session.method_of("task-2") is RegistrationMethod.FIDUCIALS
     tell(menu, guide, StudyStep("P07"))
     assert session.method_of("task-2") is chosen
+
+
+def test_a_trial_of_a_study_has_the_skin_of_its_protocol(menu, guide):
+    session = menu.presenter._session
+    skin = {"shiftMm": 2.0, "indentationMm": 0.5}
+    tell(menu, guide, TASK_2)
+    known = menu.menu
+    tell(menu, guide, replace(TASK_2, skin=skin))
+    assert menu.menu == known
+    session.start_task("task-2")
+    menu.until_menu(None)
+    truth = session._control_loop.truth
+    assert truth.skin.amounts == skin
+    assert truth.skin.seed > 0

@@ -167,7 +167,8 @@ def register_matched(trainee):
     assert facts == {
         "Residual": "0.42 mm",
         "Points that count": "97%",
-        "Expected error at the target (TRE), 95 % interval": "0.31 mm (0.05 to 1.20 mm)",
+        "Expected error at the target (TRE)": "0.31 mm",
+        "95 % interval of that error": "0.05 to 1.20 mm",
     }
     assert "A small residual does not mean a small error" in trainee.menu.paragraphs[0]
     trainee.choose("accept")

@@ -8,20 +8,26 @@ distance: neighboring places move alike. Its size and its reach are stated, not 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.files.json_fields import Fields
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.protocol import SKIN_KEYS, SKIN_LIMIT_MM, skin_amounts
 
 REACH_MM = 50.0
 """Places that far apart move with a correlation of exp(−½)."""
 WAVES = 128
 BASE_MM = 30.0
 """So far above the flat base, where the images end, the shift grows from none to all."""
-LARGEST_MM = 20.0
+LARGEST_MM = SKIN_LIMIT_MM
+INVERSIONS = 8
+"""Steps by which a shift is taken back; each leaves a part of what was wrong, 4 % for 2 mm."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +51,11 @@ class SkinShift:
         for name, value in (("skin shift", self.rms_mm), ("indentation", self.indentation_mm)):
             if not 0.0 <= value <= LARGEST_MM:
                 raise InputError(f"The {name} must be 0 to {LARGEST_MM:g} mm, not {value:g} mm.")
+
+    @property
+    def is_none(self) -> bool:
+        """Whether the skin lies as in the images."""
+        return self.rms_mm == self.indentation_mm == 0.0
 
     @cached_property
     def _waves(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -78,3 +89,66 @@ class SkinShift:
             mesh: The head of the images.
         """
         return points + self.moved(points, mesh) - self.indentation_mm * normals
+
+    def measured(self, points: np.ndarray, mesh: HeadMesh) -> np.ndarray:
+        """Return where skin at points of the images is measured, (n, 3) float, RAS mm.
+
+        It is indented along the normal of the nearest vertex.
+
+        Args:
+            points: (n, 3) float, RAS mm.
+            mesh: The head of the images.
+        """
+        if self.indentation_mm == 0.0:
+            return points + self.moved(points, mesh)
+        squares = np.sum(mesh.vertices**2, axis=1) - 2.0 * points @ mesh.vertices.T
+        return self.touched(points, mesh.vertex_normals[squares.argmin(axis=1)], mesh)
+
+    def unmeasured(self, points: np.ndarray, mesh: HeadMesh) -> np.ndarray:
+        """Return the points of the images that `measured` puts at points (n, 3), RAS mm."""
+        found = np.asarray(points, dtype=float)
+        for _ in range(INVERSIONS):
+            found = found + points - self.measured(found, mesh)
+        return found
+
+    @property
+    def amounts(self) -> dict[str, float]:
+        """What everyone may know: no seed."""
+        return {"shiftMm": self.rms_mm, "indentationMm": self.indentation_mm}
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the amounts and the seed as a JSON object."""
+        return {**self.amounts, "seed": self.seed}
+
+    @classmethod
+    def from_json(cls, value: Any) -> SkinShift:
+        """Return the shift in a JSON object; what it leaves out is 0.
+
+        Raises:
+            ValueError: anything else; the words follow "must be".
+        """
+        seed = value.get("seed", 0) if isinstance(value, Mapping) else 0
+        if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+            raise ValueError("an object whose seed is a whole number from 0")
+        amounts = skin_amounts({key: value[key] for key in value if key != "seed"})
+        return cls(amounts.get("shiftMm", 0.0), seed, amounts.get("indentationMm", 0.0))
+
+
+UNMOVED = SkinShift()
+"""The skin lies as in the images."""
+
+
+def read_skin(fields: Fields, name: str = "skin") -> SkinShift:
+    """Return an optional field such as `{"shiftMm": 2, "indentationMm": 0.5}`.
+
+    Raises:
+        InputError: it is invalid.
+    """
+    if name not in fields.names():
+        return UNMOVED
+    entry = fields.fields(name)
+    for key in entry.names():
+        if key not in SKIN_KEYS:
+            raise entry.error(key[:40], f"left out; a skin has {' and '.join(SKIN_KEYS)}")
+    amounts = {key: entry.number(key, 0, LARGEST_MM) for key in entry.names()}
+    return SkinShift(amounts.get("shiftMm", 0.0), 0, amounts.get("indentationMm", 0.0))

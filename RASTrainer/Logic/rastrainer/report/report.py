@@ -25,6 +25,7 @@ from rastrainer.report.sections.paired_statistics import findings, order_caveat,
 from rastrainer.report.sections.passing import passing, started_trials
 from rastrainer.report.sections.procedures import procedures
 from rastrainer.report.sections.published_tables import paper_notes, published_tables
+from rastrainer.report.sections.shifted_skin import shifted_skin
 from rastrainer.report.sections.trainees import groups, questionnaires
 from rastrainer.report.sections.variation import variation
 from rastrainer.statistics.few_subjects import FEW_SUBJECTS
@@ -71,6 +72,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
     # Before anything that catches `InputError`.
     scipy_module("stats")
     by_method, compared_methods = methods_note(data), method_comparison(data)
+    skin = shifted_skin(data)
     data = with_one_score_version(with_ctps(with_one_method(data)))
     pairs = list(itertools.combinations(sorted(data.modes), 2))
     main = [compare_modes(data, MAIN_OUTCOMES, *pair) for pair in pairs]
@@ -95,6 +97,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         passing(data),
         calibration(data),
         compared_methods,
+        skin,
         procedures(data),
         motion(data, described[0] if described else ()),
         questionnaires(data),

@@ -17,6 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.head.pose import MAX_PERTURBATION, Perturbation, perturbed_pose
+from rastrainer.head.skin_shift import UNMOVED, SkinShift, read_skin
 from rastrainer.head.volume import VolumeFile, read_volume_file
 from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
 from rastrainer.procedure.plan import Procedure, read_procedures
@@ -111,6 +112,7 @@ class Scenario:
         volume: the images, or None.
         procedures: planned; a trial may carry one of them out.
         landmarks: by which a trial may be registered without fiducials, in order of touching.
+        skin: how the skin lies in trials that are not told otherwise; each has a seed of its own.
     """
 
     folder: Path
@@ -132,6 +134,7 @@ class Scenario:
     volume: VolumeFile | None = None
     procedures: tuple[Procedure, ...] = ()
     landmarks: tuple[Landmark, ...] = ()
+    skin: SkinShift = UNMOVED
 
     @property
     def preview(self) -> Path | None:
@@ -209,6 +212,7 @@ def _load(folder: Path) -> Scenario:
         volume=read_volume_file(fields),
         procedures=read_procedures(fields),
         landmarks=read_landmarks(fields),
+        skin=read_skin(fields),
     )
 
 

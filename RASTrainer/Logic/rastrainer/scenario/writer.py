@@ -154,6 +154,8 @@ def scenario_json(
         content["landmarks"] = [
             _named_point(each.name, each.position) for each in scenario.landmarks
         ]
+    if not scenario.skin.is_none:
+        content["skin"] = scenario.skin.amounts
     if scenario.procedures and has_skull:
         content["procedures"] = [procedure_json(each) for each in scenario.procedures]
     return content

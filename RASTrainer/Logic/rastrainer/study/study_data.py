@@ -241,6 +241,9 @@ def _trial_row(stored: StoredTrial, number: int) -> TrialRow:
         values |= _score_parts(score)
     if stored.true_tre_mm is not None:
         values["true_tre_mm"] = stored.true_tre_mm
+    if not record.skin.is_none:
+        values["skin_shift_mm"] = record.skin.rms_mm
+        values["skin_indentation_mm"] = record.skin.indentation_mm
     if stored.procedure is not None:
         values |= _procedure_values(stored.procedure)
     return TrialRow(
@@ -286,6 +289,7 @@ def _score_parts(score: TrialScore) -> dict[str, float]:
         # In the first version it is the expected TRE, which the values include already.
         "score_tre_mm": None if score.version == FIRST_SCORE_VERSION else score.measures.tre_mm,
         "score_common_bias_mm": score.measures.common_bias_mm,
+        "unshifted_tre_mm": score.unshifted_tre_mm,
         "score_time_desirability": score.time_desirability,
         "score_accuracy_desirability": score.accuracy_desirability,
         "score_safety_desirability": score.safety_desirability,

@@ -10,6 +10,7 @@ import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
+from rastrainer.head.skin_shift import UNMOVED, SkinShift
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.methods import RegistrationMethod
@@ -29,6 +30,7 @@ from rastrainer.trial.scoring import (
     score_trial,
     score_version,
 )
+from rastrainer.trial.skin_effect import skin_sentence, unshifted_tre_mm
 from rastrainer.trial.touch_registration import normals_at, register_trial
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
 from rastrainer.trial.trueness import CommonBias, common_bias, true_touch_errors
@@ -41,10 +43,12 @@ class RevealedTruth:
     Attributes:
         head_to_world: 16 numbers, row by row, mm, from MRI RAS to World.
         true_tre_mm: true error of the registration at the target.
+        skin: how the skin lay on the head; a study keeps no more of it than the record does.
     """
 
     head_to_world: tuple[float, ...]
     true_tre_mm: float
+    skin: SkinShift = UNMOVED
 
     @property
     def matrix(self) -> np.ndarray:
@@ -62,10 +66,12 @@ class RevealedTruth:
             return cls(
                 json_checks.numbers(16, 1e6)(answer.get("headToWorld")),
                 json_checks.number(0, 1e6)(answer.get("trueTreMm")),
+                SkinShift.from_json(answer.get("skin", {})),
             )
         except ValueError:
             raise InputError(
-                "The simulator's answer must hold headToWorld, 16 numbers, and trueTreMm."
+                "The simulator's answer must hold headToWorld, 16 numbers, trueTreMm, and skin, if "
+                "it has shifted."
             ) from None
 
 
@@ -156,8 +162,11 @@ class TrialAnalysis:
             score_reference(scenario, record.task, references, record.method),
             score_version(record.method),
         )
+        unshifted = unshifted_tre_mm(record, scenario, truth.matrix, truth.skin)
+        score = replace(score, unshifted_tre_mm=unshifted)
         normals = normals_at(scenario, record.task, self.rigid.labels, record.method)
         feedback = trial_feedback(score, self.rigid, normals, record.motion, trajectory, bias=bias)
+        feedback = replace(feedback, skin=skin_sentence(truth.skin, truth.true_tre_mm, unshifted))
         procedure = procedure_outcome(record, scenario, truth.matrix, references)
         return replace(self, truth=truth, score=score, feedback=feedback, procedure=procedure)
 
@@ -171,11 +180,15 @@ class TrialAnalysis:
         """
         bias = None if truth is None else self._common_bias(scenario, truth)
         advice = advise(score, self.feedback.touches, self.record.motion, bias)
+        skin = None
+        if truth is not None:
+            unshifted = None if score is None else score.unshifted_tre_mm
+            skin = skin_sentence(self.record.skin, truth.true_tre_mm, unshifted)
         return replace(
             self,
             truth=truth,
             score=score,
-            feedback=replace(self.feedback, score=score, advice=advice),
+            feedback=replace(self.feedback, score=score, advice=advice, skin=skin),
         )
 
     def _common_bias(self, scenario: Scenario, truth: RevealedTruth) -> CommonBias | None:

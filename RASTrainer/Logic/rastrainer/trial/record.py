@@ -14,6 +14,7 @@ import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
+from rastrainer.head.skin_shift import UNMOVED, SkinShift
 from rastrainer.json_checks import Argument, checked_keys
 from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.protocol import (
@@ -106,6 +107,7 @@ class TrialRecord:
         method: How the trial is registered; a `PLAYED_METHODS`.
         trace: The points that were traced over the skin, in order of time; empty where the method
             has no trace.
+        skin: how the skin lay on the head, its seed left out; the truth reveals that.
     """
 
     trial_id: str
@@ -127,6 +129,7 @@ class TrialRecord:
     procedure: ProcedureRecord | None = None
     method: RegistrationMethod = RegistrationMethod.FIDUCIALS
     trace: tuple[TracePoint, ...] = ()
+    skin: SkinShift = UNMOVED
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -165,7 +168,7 @@ class TrialRecord:
         """Return the JSON object that `from_json` reads."""
         values = record_to_json(self)
         # Records of touched fiducials alone stay as they were before there was anything else.
-        for added in ("procedure", "method", "trace"):
+        for added in ("procedure", "method", "trace", "skin"):
             del values[added]
         if self.procedure is not None:
             values["procedure"] = self.procedure.to_json()
@@ -173,6 +176,8 @@ class TrialRecord:
             values["method"] = self.method.value
         if self.trace:
             values["trace"] = [list(point) for point in self.trace]
+        if not self.skin.is_none:
+            values["skin"] = self.skin.amounts
         return values
 
 
@@ -378,4 +383,5 @@ _CHECKS = {
     "procedure": Argument(_optional(ProcedureRecord.from_json), None),
     "method": Argument(played_method, RegistrationMethod.FIDUCIALS),
     "trace": Argument(trace_points, ()),
+    "skin": Argument(SkinShift.from_json, UNMOVED),
 }

@@ -165,6 +165,8 @@ class TrialScore:
         measures: what was scored.
         reference: what it was measured against.
         version: of the formula and the references.
+        unshifted_tre_mm: true TRE at the target, had the skin not shifted; None where it had not.
+            It does not count.
     """
 
     score: float
@@ -177,6 +179,7 @@ class TrialScore:
     measures: ScoreMeasures
     reference: ScoreReference
     version: str = SCORE_VERSION
+    unshifted_tre_mm: float | None = None
 
     @property
     def acceptable(self) -> bool:
@@ -185,6 +188,7 @@ class TrialScore:
 
     def to_json(self) -> dict[str, Any]:
         """Return the score as a JSON object."""
+        unshifted = self.unshifted_tre_mm
         return {
             "score": self.score,
             "time_desirability": self.time_desirability,
@@ -199,6 +203,7 @@ class TrialScore:
             "reference_tre_mm": self.reference.tre_mm,
             "limit_mm": self.reference.limit_mm,
             "version": self.version,
+            **({} if unshifted is None else {"unshifted_tre_mm": unshifted}),
         }
 
     @classmethod
@@ -225,6 +230,7 @@ class TrialScore:
                 value["reference_time_s"], value["reference_tre_mm"], value["limit_mm"]
             ),
             version=value["version"],
+            unshifted_tre_mm=value.get("unshifted_tre_mm"),
         )
 
 

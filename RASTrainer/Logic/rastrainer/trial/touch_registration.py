@@ -100,7 +100,7 @@ def _by_trace(
     given: GivenPoints, scenario: Scenario, coarse: Registration, pause: Callable[[], None]
 ) -> TouchRegistration:
     """Return the rigid registration alone: a scaled or sheared head would fit any trace."""
-    match = match_surface(given.trace_mm, _head(scenario), coarse.matrix)
+    match = match_surface(given.trace_mm, head_of(scenario), coarse.matrix)
     pause()
     error = surface_target_error(knowledge_of(match), scenario.target_position)
     return TouchRegistration({RIGID: _matched(coarse, match)}, {RIGID: error}, match)
@@ -126,7 +126,7 @@ def _matched(coarse: Registration, match: SurfaceMatch) -> Registration:
     )
 
 
-def _head(scenario: Scenario) -> HeadMesh:
+def head_of(scenario: Scenario) -> HeadMesh:
     """Return the scenario's head, which is read once while its file is unchanged."""
     path = scenario.head_mesh
     return _read_head(path, path.stat().st_mtime_ns if path.is_file() else 0)

@@ -41,6 +41,7 @@ class TrialFeedback:
         advice: Up to three things to improve, the first first.
         progress: None where there is no history.
         paused_s: How long the trial was paused in all, as far as that is known.
+        skin: How the skin had shifted, and what that did; None where it had not.
     """
 
     score: TrialScore | None
@@ -49,6 +50,12 @@ class TrialFeedback:
     advice: tuple[Advice, ...]
     progress: TraineeProgress | None
     paused_s: float = 0.0
+    skin: Sentence | None = None
+
+    @property
+    def skin_sentences(self) -> tuple[Sentence, ...]:
+        """How the skin had shifted; none where it had not."""
+        return () if self.skin is None else (self.skin,)
 
     @property
     def score_sentences(self) -> tuple[str, ...]:
@@ -86,7 +93,8 @@ class TrialFeedback:
         """All sentences in display order."""
         progress = () if self.progress is None else self.progress.sentences
         improve = tuple(f"{i}. {a.sentence}" for i, a in enumerate(self.advice, start=1))
-        return (*self.score_sentences, *self.touch_sentences, *improve, *progress)
+        scored = (*self.score_sentences, *self.skin_sentences)
+        return (*scored, *self.touch_sentences, *improve, *progress)
 
     @property
     def short_sentences(self) -> list[Sentence]:
@@ -95,7 +103,8 @@ class TrialFeedback:
         Pass mark and competence come last and are always included.
         """
         progress = () if self.progress is None else self.progress.sentences
-        others = [*self.touch_sentences[:1], *(a.sentence for a in self.advice)]
+        touch = self.touch_sentences[:1]
+        others = [*self.skin_sentences, *touch, *(a.sentence for a in self.advice)]
         return [*others, *progress[max(0, len(others) + len(progress) - MAX_SHORT) :]]
 
 

@@ -6,6 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 ENGLISH: Mapping[str, str] = {
+    "skin": "The skin had shifted by {shift:.1f} mm (RMS) and was indented by "
+    "{indentation:.1f} mm: the true error at the target was {tre:.2f} mm.",
+    "skin and error": "The skin had shifted by {shift:.1f} mm (RMS) and was indented by "
+    "{indentation:.1f} mm: the true error at the target was {tre:.2f} mm, and would have been "
+    "{without:.2f} mm without that.",
     "touch": "Point {label} was {residual:.1f} mm off{where}{hurry}{tremor}.",
     "touch above": ", mostly in depth ({depth:.1f} mm above the skin)",
     "touch below": ", mostly in depth ({depth:.1f} mm below the skin)",

@@ -52,9 +52,10 @@ class MatchPage(SessionPage):
     def _facts(self, report: MatchReport) -> tuple[Fact, ...]:
         low, high = report.interval_mm
         tone = Tone.WARNING if report.codes else Tone.PLAIN
-        expected = self.say("match.expected value", error=report.expected_mm, low=low, high=high)
+        expected = self.say("result.mm", error=report.expected_mm)
         return (
             Fact(self.say("match.residual"), self.say("result.mm", error=report.residual_mm)),
             Fact(self.say("match.counts"), f"{report.inlier_share:.0%}"),
-            Fact(self.say("match.expected"), expected, tone),
+            Fact(self.say("result.expected tre"), expected, tone),
+            Fact(self.say("match.interval"), self.say("match.interval value", low=low, high=high)),
         )

@@ -306,7 +306,9 @@ class TrainingSession:
         trainee = self.trainee.strip()
         start = {"task": task, "trainee": trainee, "mode": self.mode}
         chosen = {"procedure": self.procedure_of(task), "method": self.method_of(task).value}
-        self.do(CommandName.START_TASK, {**start, **chosen})
+        step = self.study.step_of(trainee)
+        skin = {"skin": dict(step.skin)} if step is not None and step.skin else {}
+        self.do(CommandName.START_TASK, {**start, **chosen, **skin})
 
     def procedure_of(self, task: str) -> str:
         """Return the name of the procedure that follows the touches of a task; "" for none.

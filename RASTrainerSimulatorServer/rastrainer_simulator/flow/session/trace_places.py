@@ -112,7 +112,7 @@ class TracePlaces:
         except (RASTrainerError, OSError):
             _log.exception("The next place of a trace cannot be found")
             return None
-        world = np.array([point.position for point in trace.points]).reshape(-1, 3)
+        world = np.array([point.seen for point in trace.points]).reshape(-1, 3)
         places = transforms.apply(transforms.inverse(truth.head_to_world), MM_PER_M * world)
         found = guide.next_place(places, trace.is_on)
         if found is None:

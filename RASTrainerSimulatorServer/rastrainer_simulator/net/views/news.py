@@ -44,7 +44,7 @@ class TraceNews:
         if (is_known and wanted == self._guidance) or not self._pacer.is_due(time_s):
             return None
         known = sum(1 for _ in takewhile(_is_same, zip(self._points, points, strict=False)))
-        new = _in_head([point.position for point in points[known:]], now.head_to_world)
+        new = _in_head([point.seen for point in points[known:]], now.head_to_world)
         self._points, self._guidance = points, wanted
         self._places = [*self._places[:known], *new]
         return outgoing.trace(known, new, wanted)

@@ -347,8 +347,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "small error. Once accepted, the points cannot be changed.",
         "match.residual": "Residual",
         "match.counts": "Points that count",
-        "match.expected": "Expected error at the target (TRE), 95 % interval",
-        "match.expected value": "{error:.2f} mm ({low:.2f} to {high:.2f} mm)",
+        "match.interval": "95 % interval of that error",
+        "match.interval value": "{low:.2f} to {high:.2f} mm",
         "match.slides": "The match may slide: the head may be off by up to {slide:.1f} mm, however "
         "small the residual is. Trace places that face other ways, such as nose, brows, temples "
         "and cheeks.",

@@ -49,6 +49,11 @@ _ITEMS: Mapping[str, str] = {
 }
 
 _FEEDBACK: Mapping[str, str] = {
+    "feedback.skin": "Die Haut hatte sich um {shift:.1f} mm (RMS) verschoben und war "
+    "{indentation:.1f} mm eingedrückt: Der wahre Fehler am Ziel war {tre:.2f} mm.",
+    "feedback.skin and error": "Die Haut hatte sich um {shift:.1f} mm (RMS) verschoben und war "
+    "{indentation:.1f} mm eingedrückt: Der wahre Fehler am Ziel war {tre:.2f} mm und wäre sonst "
+    "{without:.2f} mm gewesen.",
     "feedback.touch": "Punkt {label} lag {residual:.1f} mm daneben{where}{hurry}{tremor}.",
     "feedback.touch above": ", vor allem in der Tiefe ({depth:.1f} mm über der Haut)",
     "feedback.touch below": ", vor allem in der Tiefe ({depth:.1f} mm unter der Haut)",
@@ -459,8 +464,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "bedeutet keinen kleinen Fehler. Danach lassen sich die Punkte nicht mehr ändern.",
         "match.residual": "Residuum",
         "match.counts": "Punkte, die zählen",
-        "match.expected": "Erwarteter Fehler am Ziel (TRE), 95-%-Intervall",
-        "match.expected value": "{error:.2f} mm ({low:.2f} bis {high:.2f} mm)",
+        "match.interval": "95-%-Intervall dieses Fehlers",
+        "match.interval value": "{low:.2f} bis {high:.2f} mm",
         "match.slides": "Die Lage kann verrutschen: Der Kopf kann um bis zu {slide:.1f} mm falsch "
         "liegen, wie klein das Residuum auch ist. Zieh über Stellen, die anders gerichtet sind, "
         "etwa Nase, Brauen, Schläfen und Wangen.",

@@ -140,15 +140,17 @@ class StudyLogic:
         """Start a trial for the chosen trainee, unless the study asks for something else first.
 
         Within a study, the protocol decides whether a trial run waits for the tutorial, by what a
-        trial is registered, and whether it continues with a procedure.
+        trial is registered, how its skin shifts, and whether it continues with a procedure.
 
         Raises:
             InputError: it does, or no trainee or task is chosen.
         """
+        skin: Mapping[str, float] = {}
         if self.protocol() is not None and self._trainees.chosen:
             step = self._progress().check_start(mode, task)
-            isTutorialFirst, procedure, method = True, step.procedure, step.method
-        self._training.start(self._trainees.chosen, task, mode, isTutorialFirst, procedure, method)
+            isTutorialFirst, procedure, method, skin = True, step.procedure, step.method, step.skin
+        trainee = self._trainees.chosen
+        self._training.start(trainee, task, mode, isTutorialFirst, procedure, method, skin)
 
     def offProtocolSentence(self) -> str:
         """Return a sentence while an enrolled trainee plays what the study has not requested."""

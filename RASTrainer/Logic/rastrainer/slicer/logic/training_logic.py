@@ -139,10 +139,12 @@ class TrainingLogic:
         isTutorialFirst: bool = False,
         procedure: str = "",
         method: str = "",
+        skin: Mapping[str, float] | None = None,
     ) -> None:
         """Start a trial, which continues with a procedure of the scenario if one is named.
 
-        It is registered by a `RegistrationMethod`, by fiducials if none is named.
+        It is registered by a `RegistrationMethod`, by fiducials if none is named. Its skin shifts
+        by `skin`, or as the scenario says.
 
         With `isTutorialFirst`, the simulator opens the tutorial instead of a trial run for trainees
         who have not done it yet with the device in use, unless the study or the simulator's setting
@@ -163,9 +165,9 @@ class TrainingLogic:
         else:
             wanted = {"task": task, "trainee": trainee, "mode": mode}
             isMarked = method == RegistrationMethod.FIDUCIALS.value
-            others = {"procedure": procedure, "method": "" if isMarked else method}
+            others = {"procedure": procedure, "method": "" if isMarked else method, "skin": skin}
             self._send(
-                CommandName.START_TASK, wanted | {key: name for key, name in others.items() if name}
+                CommandName.START_TASK, wanted | {key: each for key, each in others.items() if each}
             )
 
     def pause(self) -> None:

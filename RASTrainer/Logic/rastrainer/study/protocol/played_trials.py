@@ -9,6 +9,7 @@ from __future__ import annotations
 import sqlite3
 from dataclasses import replace
 from datetime import datetime
+from typing import Any
 
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.database.aborted_trials import unexplained
@@ -48,8 +49,9 @@ def _played_for(
     found = next(
         (
             (when, trial)
-            for when, trial, *played in _trials_of(connection, pseudonym)
+            for when, trial, *played, shift, indentation in _trials_of(connection, pseudonym)
             if played == [step.mode, step.task, step.procedure, step.method]
+            and step.is_played_on(shift, indentation)
             and trial not in counted
             and when >= since
         ),
@@ -62,17 +64,18 @@ def _played_for(
     return None if is_repeat else found[1]
 
 
-def _trials_of(
-    connection: sqlite3.Connection, pseudonym: str
-) -> list[tuple[datetime, str, str, str, str, str]]:
+def _trials_of(connection: sqlite3.Connection, pseudonym: str) -> list[tuple[Any, ...]]:
     """Return a trainee's finished trials, in order.
 
-    Each is its start, UUID, mode, task, procedure and method.
+    Each is its start, UUID, mode, task, procedure and method, and how far its skin had shifted and
+    was indented, mm.
     """
     rows = connection.execute(
         "SELECT started_utc, trial_id, mode, task, "
         "coalesce(json_extract(record_json, '$.procedure.procedure'), ''), "
-        "coalesce(json_extract(record_json, '$.method'), ?) "
+        "coalesce(json_extract(record_json, '$.method'), ?), "
+        "coalesce(json_extract(record_json, '$.skin.shiftMm'), 0), "
+        "coalesce(json_extract(record_json, '$.skin.indentationMm'), 0) "
         f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
         (RegistrationMethod.FIDUCIALS.value, pseudonym),
     ).fetchall()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 from rastrainer.protocol import TRIAL_RUN, Mode, StepKind
 from rastrainer.registration.methods import RegistrationMethod
@@ -44,6 +44,7 @@ class Step:
         tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
         procedure: That the trial continues with; "" for the touches alone.
         method: By what the trial is registered, a `PLAYED_METHODS`.
+        skin: How far the skin shifts and is indented; empty for what the scenario says.
     """
 
     name: str
@@ -58,6 +59,11 @@ class Step:
     tutorial: str = ""
     procedure: str = ""
     method: str = RegistrationMethod.FIDUCIALS.value
+    skin: Mapping[str, float] = field(default_factory=dict, hash=False)
+
+    def is_played_on(self, shift_mm: float, indentation_mm: float) -> bool:
+        """Return whether a trial on such skin is the step's; the scenario's may be any."""
+        return not self.skin or tuple(self.skin.values()) == (shift_mm, indentation_mm)
 
     @property
     def sentence(self) -> str:
@@ -144,6 +150,7 @@ def _in_mode(protocol: StudyProtocol, place: int, index: int, mode: str) -> Iter
                 ghost=protocol.ghost,
                 procedure=protocol.procedures.get(task, ""),
                 method=protocol.methods.get(task, RegistrationMethod.FIDUCIALS.value),
+                skin=protocol.skins.get(task, {}),
             )
             yield from _questions(protocol, AFTER_TASK, mode, name)
     yield from _questions(protocol, AFTER_MODE, mode, f"{mode}/after")

@@ -282,6 +282,12 @@ def _check_trial(
             f"The trial {trial_id} is not the one that the step {step.name} asks for: it was "
             f"{record.task} in the mode {record.mode}, registered by {record.method.value}."
         )
+    skin = record.skin
+    if not step.is_played_on(skin.rms_mm, skin.indentation_mm):
+        raise InputError(
+            f"The trial {trial_id} is not the one that the step {step.name} asks for: its skin had "
+            f"shifted by {skin.rms_mm:g} mm and was indented by {skin.indentation_mm:g} mm."
+        )
     if any(entry.details.get("trialId") == trial_id for entry in progress.entries):
         raise InputError(f"The trial {trial_id} already counts for an earlier step.")
 

@@ -6,10 +6,11 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
+from rastrainer.head.skin_shift import read_skin
 from rastrainer.json_checks import is_identifier
 from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, Mode, TutorialRule
 from rastrainer.scenario.method_task import PLAYED_METHODS
@@ -28,10 +29,11 @@ BEFORE_ALL, BEFORE_MODE, AFTER_TASK, AFTER_MODE, AFTER_ALL = OCCASIONS = (
 MAX_STEPS = 1000
 READABLE_SCORE_VERSIONS = (FIRST_SCORE_VERSION, "2", SCORE_VERSION)
 """A study started with an earlier one continues with the present; each score holds its own."""
+Value = TypeVar("Value")
 _KEYS = (
     *("formatVersion", "name", "title", "modes", "modeOrder", "tasks", "taskOrder"),
     *("repetitions", "trialRun", "breaks", "questionnaires", "scoring"),
-    *("guidance", "ghost", "tutorial", "procedures", "methods"),
+    *("guidance", "ghost", "tutorial", "procedures", "methods", "skin"),
 )
 
 
@@ -69,6 +71,8 @@ class StudyProtocol:
             with the registration.
         methods: By task, by what its trials are registered, a `PLAYED_METHODS`; without one, by its
             fiducials.
+        skins: By task, how far the skin shifts and is indented in its trials, as of `skin_amounts`;
+            without one, as the scenario says.
     """
 
     name: str
@@ -90,12 +94,17 @@ class StudyProtocol:
     tutorial: str = ""
     procedures: Mapping[str, str] = field(default_factory=dict)
     methods: Mapping[str, str] = field(default_factory=dict)
+    skins: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that the file holds."""
         mark = {} if self.pass_mark is None else {"passMark": self.pass_mark}
         chosen = {"guidance": self.guidance, "ghost": self.ghost, "tutorial": self.tutorial}
-        by_task = {"procedures": dict(self.procedures), "methods": dict(self.methods)}
+        by_task: dict[str, dict[str, Any]] = {
+            "procedures": dict(self.procedures),
+            "methods": dict(self.methods),
+            "skin": {task: dict(skin) for task, skin in self.skins.items()},
+        }
         return {
             "formatVersion": FORMAT_VERSION,
             "name": self.name,
@@ -205,6 +214,9 @@ def _protocol(fields: Fields) -> StudyProtocol:
         else "",
         procedures=_by_task(fields, "procedures", tasks, Fields.identifier),
         methods=_by_task(fields, "methods", tasks, _method),
+        skins=_by_task(
+            fields, "skin", tasks, lambda entries, task: read_skin(entries, task).amounts
+        ),
     )
     if len(modes) * len(tasks) * protocol.repetitions > MAX_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MAX_STEPS} trials")
@@ -212,8 +224,8 @@ def _protocol(fields: Fields) -> StudyProtocol:
 
 
 def _by_task(
-    fields: Fields, name: str, tasks: tuple[str, ...], read: Callable[[Fields, str], str]
-) -> dict[str, str]:
+    fields: Fields, name: str, tasks: tuple[str, ...], read: Callable[[Fields, str], Value]
+) -> dict[str, Value]:
     """Return an optional object from the study's tasks to what `read` finds for each."""
     if name not in fields.names():
         return {}

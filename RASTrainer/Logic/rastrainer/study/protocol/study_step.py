@@ -35,6 +35,8 @@ class StudyStep:
         procedure: To be carried out after the registration; "" for the touches alone.
         tutorial: A `TutorialRule` for a trial run; "" for the simulator's setting.
         method: By what the trial is registered, a `PLAYED_METHODS`; "" for its fiducials.
+        skin: How far the skin shifts and is indented, as of `skin_amounts`; empty for what the
+            scenario says.
     """
 
     trainee: str
@@ -51,6 +53,7 @@ class StudyStep:
     procedure: str = ""
     tutorial: str = ""
     method: str = ""
+    skin: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     @classmethod
     def of(cls, trainee: str, progress: Progress, now: datetime) -> StudyStep:
@@ -73,6 +76,7 @@ class StudyStep:
             procedure=step.procedure,
             tutorial=step.tutorial,
             method="" if step.method == RegistrationMethod.FIDUCIALS.value else step.method,
+            skin=step.skin,
         )
 
     @classmethod
@@ -91,7 +95,7 @@ class StudyStep:
 
     def arguments(self) -> dict[str, Any]:
         """Return the command arguments, without empty ones."""
-        return {name: value for name, value in asdict(self).items() if value not in ("", 0)}
+        return {name: value for name, value in asdict(self).items() if value not in ("", 0, {})}
 
 
 MAX_STEPS = 100_000

@@ -1,0 +1,119 @@
+"""What a shift of the skin did to a trial is told after it, stored, exported and reported."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rastrainer import transforms
+from rastrainer.errors import InputError
+from rastrainer.export.tidy_csv import trials_csv
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.skin_shift import UNMOVED, SkinShift
+from rastrainer.report.sections.shifted_skin import shifted_skin
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer.study.study_data import StudyData, trial_rows
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.record import TouchedPoint, TrialRecord
+from rastrainer.trial.skin_effect import unshifted_tre_mm
+from rastrainer.trial.submission import score_arguments
+from rastrainer_simulator.assets import asset_path
+from Testing.domain.report.test_report import words_of
+
+SKIN = SkinShift(4.0, 7, 0.5)
+UTC = "2024-05-17T09:30:00Z"
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return load_scenario(asset_path("scenarios", "colin27"))
+
+
+def touched(scenario, skin):
+    """Return a trial whose fiducials were touched exactly, on skin that lay so, and its pose."""
+    pose, task = scenario.perturbed_head_to_world(8), scenario.task("task-1")
+    places = skin.measured(task.fiducials, read_head_mesh(scenario.head_mesh))
+    points = tuple(
+        TouchedPoint(label, tuple(place), float(number), UTC)
+        for number, (label, place) in enumerate(
+            zip(task.labels, transforms.apply(pose, places).tolist(), strict=True)
+        )
+    )
+    motion = {
+        "unintended_contact_time_s": 0.0,
+        "unintended_contact_path_mm": 0.0,
+        "pressing_depth_mm": 0.0,
+    }
+    trial_id = "a3bb189e-8bf9-4888-9912-ace4e6543002"
+    whose = (trial_id, "P01", "task-1", "desktop", scenario.name)
+    record = TrialRecord(*whose, UTC, UTC, 60.0, points, 0, 0, {}, motion=motion)
+    return replace(record, skin=replace(skin, seed=0)), pose
+
+
+def scored(scenario, skin):
+    record, pose = touched(scenario, skin)
+    analysis = analyze_trial(record, scenario)
+    off = transforms.apply(analysis.rigid.matrix @ pose, scenario.target_position)
+    tre_mm = float(np.linalg.norm(off - scenario.target_position))
+    truth = RevealedTruth(tuple(pose.ravel().tolist()), tre_mm, skin)
+    return analysis.scored(scenario, truth), truth
+
+
+def test_the_error_without_the_shift_is_that_of_the_points_put_back(scenario):
+    record, pose = touched(scenario, SKIN)
+    assert unshifted_tre_mm(record, scenario, pose, SKIN) < 0.02
+    assert unshifted_tre_mm(record, scenario, pose, UNMOVED) is None
+
+
+def test_one_sentence_tells_what_it_was_and_what_it_did(scenario):
+    analysis, truth = scored(scenario, SKIN)
+    assert truth.true_tre_mm > 0.5
+    (told,) = analysis.feedback.skin_sentences
+    assert told == (
+        "The skin had shifted by 4.0 mm (RMS) and was indented by 0.5 mm: the true error at the "
+        f"target was {truth.true_tre_mm:.2f} mm, and would have been "
+        f"{analysis.score.unshifted_tre_mm:.2f} mm without that."
+    )
+    first = score_arguments(analysis)["details"]["feedback"][0]
+    assert (first["key"], first["text"]) == ("skin and error", told)
+    assert told in analysis.feedback.sentences
+
+
+def test_skin_as_in_the_images_leaves_score_and_record_as_they_were(scenario):
+    analysis, _truth = scored(scenario, UNMOVED)
+    assert analysis.feedback.skin_sentences == ()
+    assert "unshifted_tre_mm" not in analysis.score.to_json()
+    assert "skin" not in analysis.record.to_json()
+
+
+def test_a_study_keeps_it_and_its_tables_and_report_have_it(scenario, tmp_path):
+    analysis, truth = scored(scenario, SKIN)
+    record = analysis.record
+    with Study.open(tmp_path / "study.db") as study:
+        study.add_trial(
+            record, analysis.fits.values(), analysis.target_errors, delivered=record.to_json()
+        )
+        study.add_results(record.trial_id, score=analysis.score)
+        study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
+        (stored,) = study.history("P01")
+    again = analyze_trial(stored.record, scenario).scored_as(stored.score, scenario, stored.truth)
+    assert again.feedback.skin_sentences == analysis.feedback.skin_sentences
+    rows = trial_rows([stored])
+    header, values = (line.split(",") for line in trials_csv(rows).splitlines())
+    cells = dict(zip(header, values, strict=True))
+    assert (cells["skin_shift_mm"], cells["skin_indentation_mm"]) == ("4.0", "0.5")
+    assert float(cells["unshifted_tre_mm"]) == analysis.score.unshifted_tre_mm
+    words = words_of(shifted_skin(StudyData("Skin", tuple(rows))))
+    without = f"{truth.true_tre_mm:.2f} {analysis.score.unshifted_tre_mm:.2f}"
+    assert "4.0 0.5 Fiducials 1" in words
+    assert without in words
+    plain = replace(rows[0], values={"true_tre_mm": 1.0})
+    assert shifted_skin(StudyData("Skin", (plain,))) == ""
+
+
+def test_a_truth_whose_skin_cannot_be_is_refused():
+    answer = {"headToWorld": np.eye(4).ravel().tolist(), "trueTreMm": 1.0}
+    assert RevealedTruth.from_json(answer).skin == UNMOVED
+    with pytest.raises(InputError, match="and skin"):
+        RevealedTruth.from_json({**answer, "skin": {"shiftMm": 1.0, "seed": -1}})

@@ -1,0 +1,120 @@
+"""A trial on shifted skin: its points are measured with the skin, and that survives everything."""
+
+import numpy as np
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.skin_shift import UNMOVED, SkinShift
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.protocol import MIN_TRACE_POINTS, CommandName, Phase, check_arguments
+from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.record.aborted_archive import interrupted_attempt
+from rastrainer_simulator.record.trial_archive import archived_trial
+from rastrainer_simulator.replay.resimulation import replay
+from Testing.simulator.record.test_interrupted_trial import Server
+from Testing.simulator.record.test_recorded_trace import airy, stroke  # noqa: F401
+
+SKIN = {"shiftMm": 3.0, "indentationMm": 0.5}
+SEED = 11
+REGISTRATION = {"matrix": np.eye(4).ravel().tolist(), "freMm": 1.0, "expectedTreMm": 1.0}
+
+
+@pytest.fixture(scope="module")
+def simulation(airy):  # noqa: F811
+    return Simulation(airy, 3)
+
+
+def start(server, **others):
+    server.do(CommandName.ABORT)
+    begin = {"task": "task-1", "trainee": "P01", "method": "surface", "seed": SEED}
+    answer = server.do(CommandName.START_TASK, **begin, **others)
+    assert answer.ok, answer.message
+    while server.training.next_point is not None:
+        assert server.do(CommandName.CAPTURE).ok
+
+
+def measured(simulation, tips_mm):
+    """Return where tips (n, 3), World, mm, are measured in the trial of the seed."""
+    mesh, truth = read_head_mesh(simulation.setup.scenario.head_mesh), simulation.truth
+    assert truth.skin == SkinShift(3.0, SEED, 0.5)
+    in_head = np.array([truth.in_head(tip) for tip in np.array(tips_mm)])
+    return truth.in_world(truth.skin.measured(in_head, mesh))
+
+
+def test_touches_and_trace_are_measured_with_the_skin_through_a_kill_and_a_replay(
+    simulation, tmp_path
+):
+    with Server(simulation, tmp_path) as server:
+        start(server, skin=SKIN)
+        stroke(server, 60)
+        touched = [touch.position for touch in server.training.touches]
+        traced = server.training.trace.points
+        server.loop.stop()
+    entries = read_journal(server.path)
+    tips = [entry["positionMm"] for entry in entries.of_kind("trace")]
+    places = measured(simulation, tips)
+    assert np.linalg.norm(places - tips, axis=1).min() > 0.5
+    found = 1000.0 * np.array([point.position for point in traced])
+    np.testing.assert_allclose(found, places, atol=1e-9)
+    steps = np.linalg.norm(np.diff(tips, axis=0), axis=1)
+    assert (steps.min(), len(tips)) >= (1.0, len(traced))
+
+    with Server(simulation, tmp_path) as server:
+        assert server.taken_up.training.phase is Phase.PAUSED
+        assert [touch.position for touch in server.training.touches] == touched
+        again = [1000.0 * np.array(point.position) for point in server.training.trace.points]
+        np.testing.assert_allclose(again, found, atol=1e-9)
+        assert server.do(CommandName.RESUME).ok
+        while len(server.training.trace.points) < MIN_TRACE_POINTS:
+            stroke(server, 60, (0.2, 0.9, 0.1))
+        assert server.do(CommandName.REGISTER).ok
+        (record,) = server.loop.unacknowledged()
+        revealed = server.do(
+            CommandName.SUBMIT_REGISTRATION, trialId=record.trial_id, **REGISTRATION
+        )
+    assert record.skin == SkinShift(3.0, 0, 0.5)
+    assert record.to_json()["skin"] == SKIN
+    assert TrialRecord.from_json(record.to_json()) == record
+    np.testing.assert_allclose(record.trace_mm[: len(places)], places, atol=1e-9)
+    assert revealed.data["skin"] == {**SKIN, "seed": SEED}
+    reading = read_journal(server.path)
+    assert replay(reading, simulation.setup).difference is None
+    assert archived_trial(reading).truth.skin == SkinShift(3.0, SEED, 0.5)
+
+
+def test_the_journal_of_a_trial_on_skin_as_in_the_images_tells_of_no_skin(simulation, tmp_path):
+    with Server(simulation, tmp_path) as server:
+        start(server, skin={})
+        stroke(server, 60)
+    assert '"skin"' not in server.path.read_text(encoding="utf-8")
+    assert '"measuredMm"' not in server.path.read_text(encoding="utf-8")
+    assert simulation.truth.skin == UNMOVED
+
+
+def test_an_interrupted_trial_that_is_given_up_has_its_touches_as_they_were_measured(
+    simulation, tmp_path
+):
+    with Server(simulation, tmp_path) as server:
+        start(server, skin=SKIN)
+        kept = [1000.0 * np.array(touch.position) for touch in server.training.touches]
+        server.loop.stop()
+    interrupted = interrupted_attempt(read_journal(server.path))
+    np.testing.assert_allclose([p.position_mm for p in interrupted.points], kept, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "skin",
+    [
+        pytest.param({"shiftMm": -1}, id="negative"),
+        pytest.param({"shiftMm": float("nan")}, id="not a number"),
+        pytest.param({"indentationMm": 21}, id="too deep"),
+        pytest.param({"shift": 1}, id="another name"),
+        pytest.param(2.0, id="a number"),
+    ],
+)
+def test_a_skin_that_cannot_be_is_refused_with_a_sentence(skin):
+    begin = {"task": "task-1", "trainee": "P01", "skin": skin}
+    with pytest.raises(InputError, match="each a number from 0 to 20 mm"):
+        check_arguments(CommandName.START_TASK, begin)
