@@ -91,17 +91,19 @@ class DrawingTrainee(StreamTrainee):
         self.press("menu", lambda: self.menu_name == "trial", "the menu")
         self.choose("register")
         self.until_menu("match")
-        self.until(lambda: self._is_matched(self.menu), "the match")
-        told = {fact.label: fact.value for fact in self.menu.facts}
+        known: list[Menu] = []
+
+        def is_known() -> bool:
+            menu = self.menu
+            items = () if menu is None else menu.items
+            if any(item.name == "accept" and item.is_enabled for item in items):
+                known.append(menu)
+            return bool(known)
+
+        self.until(is_known, "the match")
         self.choose("accept")
         self.until_menu("result")
-        return told
-
-    @staticmethod
-    def _is_matched(menu: Menu | None) -> bool:
-        return menu is not None and any(
-            item.name == "accept" and item.is_enabled for item in menu.items
-        )
+        return {fact.label: fact.value for fact in known[0].facts}
 
     def _draw_at(self, ring: dict) -> None:
         head = self.view.pose("head")[:3, :3]
