@@ -177,14 +177,6 @@ NOT_IN_THE_TOUR = {
     "restoreLineButton": "the tour removes no line; the host's tests press it",
     "raiseLineButton": "the tour's procedure has one line; the host's tests press it",
     "placeCheckpointButton": "the tour's procedure has its checkpoints; the host's tests press it",
-    **dict.fromkeys(
-        (
-            *("proposeLandmarksButton", "showLandmarksButton", "placeLandmarkButton"),
-            *("removeLandmarkButton", "undoLandmarkButton", "checkLandmarksButton"),
-            "saveLandmarksButton",
-        ),
-        "the tour's head has its landmarks; the host's tests press it",
-    ),
 }
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import tour_afterward
 import tour_end
+import tour_landmarks
 import tour_procedure
 import tour_scenarios
 import tour_trial
@@ -38,6 +39,7 @@ STEPS: tuple[tuple[str, Callable[[Tour], str | None]], ...] = (
     ("Drill", tour_procedure.drill),
     ("Insert the instrument", tour_procedure.insert),
     ("Save and load the scene", tour_afterward.save_and_load_scene),
+    ("Place the landmarks of a head", tour_landmarks.place),
     ("Save a scenario and add it", tour_scenarios.zip_file),
     ("Preview and check a head", tour_scenarios.preview_and_check),
     ("Make a scenario from a volume", tour_scenarios.scenario_from_volume),
