@@ -30,8 +30,11 @@ def write_recorded_trial(
     seconds: float = 3.0,
     trainee: str = "T-001",
     touch_every_s: int = 1,
+    traced: int = 0,
 ) -> np.ndarray:
     """Write the journal of a trial with a touch each second, or more seldom.
+
+    `traced` points are left after that, one at each sample, and then no more.
 
     Returns:
         Its tips (n, 3) float, mm.
@@ -60,6 +63,9 @@ def write_recorded_trial(
             touch = {"label": str(count), "positionMm": tip.tolist(), "kept": count}
             stamp = {"tick": 5 * number, "simTime": START_S + time + TICK_S}
             entries.append({"kind": "touch", **stamp, **touch})
+        elif number < traced:
+            point = {"positionMm": tip.tolist(), "kept": number + 1}
+            entries.append({"kind": "trace", **stamp, **point})
     lines, previous = [], NO_LINE
     for n, entry in enumerate(entries, start=1):
         line, previous = encode_line(n, previous, entry)

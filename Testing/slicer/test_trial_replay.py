@@ -78,6 +78,23 @@ def test_touches_come_when_they_were_made(scene, replayed):  # noqa: ARG001
     assert node(scene, "touches").GetNthControlPointLabel(2) == "3"
 
 
+def test_a_trace_grows_as_it_was_drawn_on_the_head_and_goes_with_the_replay(scene, tmp_path):
+    tips = write_recorded_trial(tmp_path, TRIAL, traced=45)
+    track = find_track(tmp_path, TRIAL)
+    showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
+    counts = []
+    for seconds in (0.02, 0.3, 0.5, 3.0):
+        goTo(scene, seconds)
+        counts.append(node(scene, "trace").GetPolyData().GetNumberOfPoints())
+    assert counts == [0, 10, 20, 45]
+    trace = node(scene, "trace")
+    last = np.array(trace.GetPolyData().GetPoint(44))
+    np.testing.assert_allclose(last, tips[44], atol=1e-3)
+    assert trace.GetParentTransformNode() is node(scene, "WorldToHead")
+    removeReplay(scene)
+    assert scene.GetFirstNodeByName("Trial 1: trace") is None
+
+
 def test_another_trial_takes_the_place_of_the_one_before(scene, replayed, tmp_path):
     before = shown(scene)
     write_recorded_trial(tmp_path / "other", TRIAL, seconds=1.0)
@@ -96,6 +113,17 @@ def test_a_replay_is_saved_with_the_scene(headless_scene, replayed, tmp_path):
     again = HeadlessScene()
     again.load(tmp_path / "trial.mrb")
     assert findReplay(again.scene).GetNumberOfItems() == replayed.GetNumberOfItems()
+
+
+def test_a_replayed_trace_is_saved_with_the_scene(headless_scene, scene, tmp_path):
+    write_recorded_trial(tmp_path, TRIAL, traced=45)
+    track = find_track(tmp_path, TRIAL)
+    showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
+    headless_scene.save(tmp_path / "trial.mrb")
+    again = HeadlessScene()
+    again.load(tmp_path / "trial.mrb")
+    goTo(again.scene, 3.0)
+    assert node(again.scene, "trace").GetPolyData().GetNumberOfPoints() == 45
 
 
 def test_a_journal_of_another_robot_or_none_at_all_is_reported(scene, tips, tmp_path):  # noqa: ARG001

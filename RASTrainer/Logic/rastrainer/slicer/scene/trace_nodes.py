@@ -31,12 +31,7 @@ def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
     draw next is marked.
     """
     node = findOrAddNode(scene, MODEL, Role.TRACED_POINTS, _("Traced points"))
-    node.SetSelectable(False)
-    display = node.GetDisplayNode()
-    display.SetRepresentation(display.PointsRepresentation)
-    display.SetPointSize(POINT_PIXELS)
-    display.SetColor(TOUCH_COLOR)
-    display.SetLighting(False)
+    drawAsPoints(node)
     node.SetAndObservePolyData(pointCloud(trace.places))
     head = findNode(scene, MODEL, Role.HEAD_MODEL)
     if isGuided and len(trace.places):
@@ -44,6 +39,16 @@ def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
     elif head is not None:
         uncolorHead(head, DISTANCE_SCALARS)
     _showNext(scene, trace.next_place if isGuided else None)
+
+
+def drawAsPoints(node: Any) -> None:
+    """Draw a model as the points of a trace."""
+    node.SetSelectable(False)
+    display = node.GetDisplayNode()
+    display.SetRepresentation(display.PointsRepresentation)
+    display.SetPointSize(POINT_PIXELS)
+    display.SetColor(TOUCH_COLOR)
+    display.SetLighting(False)
 
 
 def forgetTrace(scene: Any) -> None:

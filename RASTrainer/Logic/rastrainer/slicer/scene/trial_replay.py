@@ -1,4 +1,4 @@
-"""A recorded trial as a Sequence: the tool, the touches and the clearance over time."""
+"""A recorded trial as a Sequence: tool, touches, trace and clearance over time."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from rastrainer.slicer.scene.scene import (
     findOrAddNode,
     nodesOfClass,
 )
+from rastrainer.slicer.scene.trace_nodes import drawAsPoints, pointCloud
 from rastrainer.slicer.scene.urdf import ArmChain
 
 SAMPLE_HZ = 10.0
@@ -35,7 +36,9 @@ TOUCH_COLOR = (0.95, 0.55, 0.1)
 TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
 _PLACE, _TOOL, _TIP = "place", "tool", "tool model"
-_TOUCHES, _CLEARANCE = "touches", "clearance"
+_TOUCHES, _TRACE, _CLEARANCE = "touches", "trace", "clearance"
+POINTS_A_STATE = 10
+"""Of a trace: so many more of its points are shown each time."""
 
 
 def showReplay(
@@ -104,11 +107,18 @@ def _fillScene(
     _checkIsThere(browser)
     times = trajectory.times_s[rows]
     total, done = 2 * len(rows) + len(trajectory.touches) + 1, 0
-    for proxy, states in (
+    shown = [
         (tool, zip(times, _toolStates(tool, poses), strict=True)),
         (touches, _touchStates(touches, trajectory)),
         (clearance, zip(times, _clearanceStates(trajectory.clearance_mm[rows]), strict=True)),
-    ):
+    ]
+    if trajectory.traced:
+        trace = _node(scene, "vtkMRMLModelNode", _TRACE, f"{name}: trace")
+        drawAsPoints(trace)
+        trace.SetAndObserveTransformNodeID(placed.GetID())
+        shown.append((trace, _traceStates(trace, trajectory)))
+        total += 1 + -(-len(trajectory.traced) // POINTS_A_STATE)
+    for proxy, states in shown:
         sequence = _node(scene, "vtkMRMLSequenceNode", f"{proxy.GetName()} sequence", "")
         sequence.SetName(f"{proxy.GetName()} sequence")
         sequence.SetIndexName("time")
@@ -252,6 +262,16 @@ def _touchStates(touches: Any, trajectory: Trajectory) -> Any:
         state.SetLocked(True)
         for touch in made[:count]:
             state.AddControlPoint(vtk.vtkVector3d(*touch.position_mm), touch.label)
+        yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
+
+
+def _traceStates(trace: Any, trajectory: Trajectory) -> Any:
+    """Yield what has been traced so far, at the start and after some points each."""
+    made = trajectory.traced
+    places = np.array([point.position_mm for point in made])
+    for count in (*range(0, len(made), POINTS_A_STATE), len(made)):
+        state = type(trace)()
+        state.SetAndObservePolyData(pointCloud(places[:count]))
         yield made[count - 1].time_s if count else float(trajectory.times_s[0]), state
 
 
