@@ -91,6 +91,31 @@ def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_
 
 
 @pytest.mark.soak
+def test_after_a_trial_on_shifted_skin_one_sentence_tells_of_it_and_none_before(trainee, outside):
+    skin = {"shiftMm": 3.0, "indentationMm": 0.5}
+    start = {"task": "task-1", "trainee": "P07", "seed": 5, "skin": skin}
+    assert trainee.submit("StartTask", **start).ok
+    trainee.until_menu(None)
+    trainee.play("task-1")
+    assert "skin had" not in str(trainee.presenter.screen)
+    trainee.tap("touch")
+    trainee.until_menu("complete")
+    trainee.choose("register")
+    trainee.until_menu("waiting")
+    assert "skin had" not in str(trainee.menu)
+    trainee.until_menu("result")
+    trial = trainee.state.training.trial_id
+    (own,) = entries_of(outside, trial, "scored")
+    (told,) = [each for each in own["details"]["feedback"] if each["key"] == "skin and error"]
+    assert told["text"] in trainee.menu.paragraphs
+    assert told["text"].startswith(
+        "The skin had shifted by 3.0 mm (RMS) and was indented by 0.5 mm"
+    )
+    assert told["values"]["tre"] == pytest.approx(trainee.state.training.result.true_tre_mm)
+    assert told["values"]["without"] < told["values"]["tre"]
+
+
+@pytest.mark.soak
 def test_while_slicer_is_connected_or_a_study_is_led_the_simulator_scores_nothing(trainee, outside):
     outside.has_slicer = True
     trial = register(trainee)
