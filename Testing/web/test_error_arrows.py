@@ -25,7 +25,7 @@ def test_arrows_come_with_the_screen_and_go_with_it(browser, served):
     served.tell(Screen(errors=arrows, hints=(Hint("Esc", "Result", "back"), Hint("D", "Turn"))))
     wait_for(page, "page.errors.group.children.length === 6")
     drawn = page.evaluate(DRAWN)
-    assert [color for color, *_place in drawn] == ["3ccb7f", "ffb92e", "ff5252"]
+    assert [color for color, *_place in drawn] == ["8ff0d0", "ffe000", "ef5f66"]
     assert [place for _color, *place in drawn] == [pytest.approx(list(each.end)) for each in arrows]
     # Who has only a mouse gets back, too.
     assert page.locator("#hints button").count() == 1

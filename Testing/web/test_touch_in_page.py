@@ -11,7 +11,7 @@ from Testing.simulator.flow.conftest import put_back
 from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import open_page
 
-RED = 0xFF0D0D
+RED = 0xC7001A
 DRAW = """
 (changes) => {
   const state = { ...page.state, ...changes };

@@ -159,7 +159,7 @@ ICON_SIZE = 64
 NIGHT, SKIN, ARM = rgba(0x0E1726), rgba(0xD9A88C), rgba(0xF07818)
 DISKS: tuple[tuple[int, int, int, Color], ...] = (
     (42, 42, 17, SKIN),
-    (34, 31, 4, rgba(0xFFCC0D)),
+    (34, 31, 4, rgba(0xFFE14A)),
     (46, 31, 4, rgba(0x199E40)),
     (53, 40, 4, rgba(0x199E40)),
 )

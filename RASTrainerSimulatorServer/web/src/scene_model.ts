@@ -34,15 +34,15 @@ const PULSE_COLOR = new Color(1, 0.97, 0.75);
 
 /** sRGB, as in the simulator's scene/nodes.py. */
 export const COLORS = {
-  waiting: new Color().setRGB(0.1, 0.24, 0.62, "srgb"),
-  next: new Color().setRGB(1.0, 0.8, 0.05, "srgb"),
-  touched: new Color().setRGB(0.1, 0.62, 0.25, "srgb"),
-  free: new Color().setRGB(0.05, 0.3, 1.0, "srgb"),
-  near: new Color().setRGB(0.35, 0.85, 1.0, "srgb"),
-  onSkin: new Color().setRGB(0.2, 0.85, 0.4, "srgb"),
+  waiting: new Color().setRGB(0.07, 0.2, 0.6, "srgb"),
+  next: new Color().setRGB(1.0, 0.88, 0.29, "srgb"),
+  touched: new Color().setRGB(0.18, 0.6, 0.29, "srgb"),
+  free: new Color().setRGB(0.06, 0.27, 0.91, "srgb"),
+  near: new Color().setRGB(0.29, 0.65, 1.0, "srgb"),
+  onSkin: new Color().setRGB(0.65, 1.0, 0.4, "srgb"),
   traced: new Color().setRGB(0.02, 0.13, 0.42, "srgb"),
   covered: new Color().setRGB(0.34, 0.71, 0.91, "srgb"),
-  error: new Color().setRGB(1.0, 0.05, 0.05, "srgb"),
+  error: new Color().setRGB(0.78, 0.0, 0.1, "srgb"),
 };
 
 const WHITE = new Color(1, 1, 1);

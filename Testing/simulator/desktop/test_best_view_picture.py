@@ -26,7 +26,7 @@ from Testing.simulator.desktop.conftest import SIZE
 
 TASK, SEED, STEP_S = "task-5", 3, 0.05
 BEHIND = ("9", "10", "11", "12", "13", "14", "15")
-NEXT_COLOR = ((225, 170, 0), (255, 255, 215))
+NEXT_COLOR = ((250, 215, 60), (255, 255, 200))
 MIDDLE = 40
 """Half the side of the square about the main picture's middle, pixels: the fiducial is there."""
 

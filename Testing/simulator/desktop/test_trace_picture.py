@@ -9,7 +9,7 @@ from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_trace import ShownTrace, SkinPaint
 from Testing.simulator.desktop.conftest import SCREEN, state_text
 
-MARKS, RING = ((0, 15, 80), (30, 60, 130)), ((240, 190, 0), (255, 220, 40))
+MARKS, RING = ((0, 15, 80), (30, 60, 130)), ((240, 210, 50), (255, 235, 100))
 PAINT = ((40, 100, 140), (120, 210, 255))
 AHEAD = [[x, -98.0, 20.0] for x in np.arange(-20.0, 21.0, 2.0)]
 """Points on the forehead of the ball that is the head, mm."""

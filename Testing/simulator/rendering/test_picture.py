@@ -113,7 +113,7 @@ def tip(picture):
 
 
 def test_the_tool_tip_is_blue_when_free_and_light_blue_when_near_or_touching(tip):
-    blue, light = ((0, 40, 200), (60, 110, 255)), ((60, 190, 230), (120, 240, 255))
+    blue, light = ((0, 40, 190), (60, 110, 255)), ((55, 140, 230), (110, 190, 255))
     free = tip(Proximity.FREE)
     assert _share(free, *blue) > 1e-4
     assert _share(free, *light) == 0
@@ -125,9 +125,9 @@ def test_the_tool_tip_is_blue_when_free_and_light_blue_when_near_or_touching(tip
 
 def test_fiducials_are_colored_by_their_state_and_numbered(picture, head_to_world):
     pixels = picture(camera=close_up(head_to_world[:3, 3]))
-    assert _share(pixels, (10, 130, 40), (60, 190, 90)) > 1e-4, "touched: green"
-    assert _share(pixels, (220, 180, 0), (255, 225, 60)) > 1e-4, "next: yellow"
-    assert _share(pixels, (10, 40, 130), (60, 90, 190)) > 1e-4, "waiting: blue"
+    assert _share(pixels, (20, 120, 45), (90, 190, 110)) > 1e-4, "touched: green"
+    assert _share(pixels, (220, 190, 40), (255, 240, 100)) > 1e-4, "next: yellow"
+    assert _share(pixels, (0, 30, 125), (60, 90, 190)) > 1e-4, "waiting: blue"
     assert _share(pixels, (0, 0, 20), (60, 60, 80)) > 1e-4, "numbers: nearly black"
 
 

@@ -35,9 +35,9 @@ from rastrainer.procedure.record import DEPTH_LIMIT_MM, PlacedInstrument, Proced
 
 SAME_MM = 1e-3
 """Plans are written with four decimals."""
-PLANNED_COLOR = (0x3C / 255, 0xCB / 255, 0x7F / 255)
-REGISTERED_COLOR = (1.0, 0xB9 / 255, 0x2E / 255)
-PLACED_COLOR = (0x5A / 255, 0xA2 / 255, 1.0)
+PLANNED_COLOR = (0x8F / 255, 0xF0 / 255, 0xD0 / 255)
+REGISTERED_COLOR = (1.0, 0xE0 / 255, 0.0)
+PLACED_COLOR = (0x3F / 255, 0x8F / 255, 0xE0 / 255)
 """Of the planned lines, of those as the registration showed them and of what was placed, sRGB, and
 of the errors by registration and hand: the same in every picture. Green, yellow and blue are told
 apart by people who are blind to red or green, too."""

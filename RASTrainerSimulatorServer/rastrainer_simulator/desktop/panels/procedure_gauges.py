@@ -12,7 +12,7 @@ import numpy as np
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
-from rastrainer_simulator.net.views.screen import DepthRuler
+from rastrainer_simulator.net.views.screen import DepthRuler, Tone
 from rastrainer_simulator.ops.texts.texts import Texts
 
 EYE_WIDTH, EYE_HEIGHT = 360, 420
@@ -80,7 +80,7 @@ def paint_bulls_eye(look: BullsEye, brush: Brush) -> np.ndarray:
     for along, across in ((1, 0), (0, 1)):
         ends = [(middle - s * cross * along, middle - s * cross * across) for s in (1, -1)]
         canvas.stroke(ends, brush.px(2), theme.CAP_EDGE)
-    color = theme.ON_SKIN if look.is_good else theme.TARGET
+    color = theme.TONES[Tone.GOOD if look.is_good else Tone.WARNING]
     entry, target = (_shown(place, middle, brush) for place in (look.entry, look.target))
     canvas.stroke([entry, target], brush.px(4), color)
     _circle(canvas, target, brush.px(RING), color, brush.px(5))
@@ -184,10 +184,10 @@ def _marks(canvas: Canvas, look: DepthGauge, brush: Brush, y: Callable[[float], 
     """Mark entry, tables of the skull and target, with their depths beside the track."""
     ruler = look.ruler
     marks = (
-        (ruler.entry, theme.ON_SKIN),
-        (ruler.outer, theme.TARGET),
-        (ruler.inner, theme.TARGET),
-        (ruler.target, theme.ON_SKIN),
+        (ruler.entry, theme.TONES[Tone.GOOD]),
+        (ruler.outer, theme.TONES[Tone.WARNING]),
+        (ruler.inner, theme.TONES[Tone.WARNING]),
+        (ruler.target, theme.TONES[Tone.GOOD]),
     )
     left = brush.px(TRACK_LEFT) - 4
     wide = brush.px(TRACK_WIDTH) + 4 + brush.px(20)

@@ -39,21 +39,21 @@ ACCENT = rgba(0x1F74E8)
 ACCENT_EDGE = rgba(0xBFDBFF)
 
 TONES: dict[Tone, Color] = {
-    Tone.PLAIN: rgba(0x5AA2FF),
-    Tone.GOOD: rgba(0x3CCB7F),
-    Tone.WARNING: rgba(0xFFB92E),
-    Tone.ERROR: rgba(0xFF5252),
+    Tone.PLAIN: rgba(0x3F8FE0),
+    Tone.GOOD: rgba(0x8FF0D0),
+    Tone.WARNING: rgba(0xFFE000),
+    Tone.ERROR: rgba(0xEF5F66),
 }
 BANNERS: dict[Tone, Color] = {
-    Tone.PLAIN: rgba(0x23457A, 0.96),
-    Tone.GOOD: rgba(0x16653D, 0.96),
-    Tone.WARNING: rgba(0x8A5600, 0.96),
-    Tone.ERROR: rgba(0xB3141E, 0.96),
+    Tone.PLAIN: rgba(0x0F2F70, 0.96),
+    Tone.GOOD: rgba(0x35786A, 0.96),
+    Tone.WARNING: rgba(0x806F00, 0.96),
+    Tone.ERROR: rgba(0x700D18, 0.96),
 }
 CONTACT = rgba(0xE5101C)
-NEAR = rgba(0xFFFFFF)
-ON_SKIN = rgba(0x3CCB7F)
-TARGET = rgba(0xFFCC0D)
+NEAR = rgba(0x4AA5FF)
+ON_SKIN = rgba(0xA6FF66)
+TARGET = rgba(0xFFE14A)
 INSET_EDGE = rgba(0xFFFFFF)
 
 

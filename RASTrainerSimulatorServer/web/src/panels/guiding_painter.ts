@@ -7,7 +7,7 @@ export const GUIDING_WIDTH = 360;
 export const GUIDING_HEIGHT = 440;
 const PAD = 24;
 const GOOD = TONES.good;
-const OFF = "#ffcc0d";
+const OFF = TONES.warning;
 const FIGURE = { size: 40, color: COLORS.text, isBold: true };
 /** So that three digits of millimeters leave a gap before the angle. */
 const PAIR = { ...FIGURE, size: 34 };

@@ -15,17 +15,17 @@ export const COLORS = {
 };
 
 export const TONES: Readonly<Record<Tone, string>> = {
-  plain: "#5aa2ff",
-  good: "#3ccb7f",
-  warning: "#ffb92e",
-  error: "#ff5252",
+  plain: "#3f8fe0",
+  good: "#8ff0d0",
+  warning: "#ffe000",
+  error: "#ef5f66",
 };
 
 export const BANNERS: Readonly<Record<Tone, string>> = {
-  plain: "#23457a",
-  good: "#16653d",
-  warning: "#8a5600",
-  error: "#b3141e",
+  plain: "#0f2f70",
+  good: "#35786a",
+  warning: "#806f00",
+  error: "#700d18",
 };
 
 const FAMILY = 'system-ui, "Segoe UI", Roboto, "Noto Sans", sans-serif';

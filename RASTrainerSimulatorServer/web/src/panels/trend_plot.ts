@@ -8,7 +8,7 @@ const HEIGHT = 580;
 const TOP = 60;
 const BOTTOM = 560;
 const BROADEST_BAR = 110;
-const LINE = "#ffcc0d";
+const LINE = "#ffe14a";
 
 /** Return the drawing as the address of a picture. */
 export function trendPlot(trend: ScoreTrend): string {

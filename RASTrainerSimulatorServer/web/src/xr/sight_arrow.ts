@@ -11,7 +11,7 @@ const IN_SIGHT_RAD = 0.45;
 const AHEAD_M = 0.6;
 const DOWN_M = 0.16;
 const LENGTH_M = 0.1;
-const COLOR = 0xffcc0d;
+const COLOR = 0xffe14a;
 /** After the boards. */
 const ORDER = 30;
 

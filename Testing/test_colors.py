@@ -1,0 +1,84 @@
+"""Colors that tell things apart do so for people who are blind to red, green or blue, too."""
+
+from __future__ import annotations
+
+import re
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from coloraide import Color
+
+from rastrainer.procedure.errors import PLACED_COLOR, PLANNED_COLOR, REGISTERED_COLOR
+from rastrainer_simulator.desktop.panels import theme
+from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.scene import nodes
+
+WEB = Path(__file__).parents[1] / "RASTrainerSimulatorServer" / "web"
+LEAST_DIFFERENCE = 19.0
+"""CIEDE2000; 1 is about what can be seen side by side."""
+LEAST_CONTRAST = 4.5
+"""WCAG 2.1, 1.4.3."""
+KINDS_OF_SIGHT = ("", "protan", "deutan", "tritan")
+TOLD_APART = {
+    "tones": list(theme.TONES.values()),
+    "banners": list(theme.BANNERS.values()),
+    "tip": [
+        each.color for each in (nodes.TIP_FREE, nodes.TIP_NEAR, nodes.TIP_ON_SKIN, nodes.TIP_ERROR)
+    ],
+    "ring": [theme.NEAR, theme.ON_SKIN, theme.CONTACT],
+    "fiducials": [each.color for each in (nodes.WAITING, nodes.NEXT, nodes.TOUCHED)],
+    "lines of a procedure": [PLANNED_COLOR, REGISTERED_COLOR, PLACED_COLOR],
+}
+
+
+def as_color(values) -> Color:
+    return Color("srgb", list(values[:3]))
+
+
+def in_hex(values) -> str:
+    return as_color(values).to_string(hex=True)
+
+
+def seen(color: Color, sight: str) -> Color:
+    """Return what a color looks like to someone with that deficiency, wholly, or with none."""
+    return color.filter(sight) if sight else color
+
+
+@pytest.mark.parametrize("sight", KINDS_OF_SIGHT, ids=lambda sight: sight or "all cones")
+@pytest.mark.parametrize("name", TOLD_APART)
+def test_colors_with_different_meanings_differ_for_every_kind_of_sight(name, sight):
+    shown = [seen(as_color(values), sight) for values in TOLD_APART[name]]
+    differences = [one.delta_e(other, method="2000") for one, other in combinations(shown, 2)]
+    assert min(differences) >= LEAST_DIFFERENCE
+
+
+@pytest.mark.parametrize("tone", Tone, ids=lambda tone: tone.value)
+def test_text_is_legible_in_every_tone_and_on_every_banner(tone):
+    text, panel = as_color(theme.TEXT), as_color(theme.NIGHT)
+    assert as_color(theme.TONES[tone]).contrast(panel) >= LEAST_CONTRAST
+    assert text.contrast(as_color(theme.BANNERS[tone])) >= LEAST_CONTRAST
+
+
+def test_page_and_headset_have_the_colors_of_the_window():
+    pen = (WEB / "src" / "panels" / "pen.ts").read_text(encoding="utf-8")
+    style = (WEB / "static" / "page.css").read_text(encoding="utf-8")
+    for tone in Tone:
+        color, banner = in_hex(theme.TONES[tone]), in_hex(theme.BANNERS[tone])
+        assert re.findall(rf'  {tone.value}: "(#\w+)"', pen) == [color, banner]
+        assert f"--{tone.value}: {color};" in style
+    model = (WEB / "src" / "scene_model.ts").read_text(encoding="utf-8")
+    found = dict(re.findall(r"(\w+): new Color\(\)\.setRGB\(([^)]*), \"srgb\"\)", model))
+    materials = {
+        "waiting": nodes.WAITING,
+        "next": nodes.NEXT,
+        "touched": nodes.TOUCHED,
+        "free": nodes.TIP_FREE,
+        "near": nodes.TIP_NEAR,
+        "onSkin": nodes.TIP_ON_SKIN,
+        "error": nodes.TIP_ERROR,
+        "traced": nodes.TRACED,
+        "covered": nodes.COVERED,
+    }
+    colors = {name: tuple(map(float, values.split(", "))) for name, values in found.items()}
+    assert colors == {name: material.color for name, material in materials.items()}
