@@ -72,7 +72,7 @@ def test_a_pin_that_is_typed_in_one_page_is_seen_by_no_other_and_in_no_file(plac
     other.tap("KeyM")
     other.until(lambda screen: "Only an instructor can pass it on" in json.dumps(screen))
     page.send(type="item", name="unlock")
-    dots = page.until_menu("pin")["menu"]["facts"][0]["value"]
+    dots = page.until_menu("pin")["menu"]["items"][0]["value"]
     assert dots == "_"
     page.send(type="item", name=PIN[0])
     for digit in PIN[1:]:

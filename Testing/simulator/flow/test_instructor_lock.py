@@ -136,7 +136,7 @@ def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_looked_at(trainee,
         trainee.hands.type("" if number == 0 else OTHER)
         trainee.tap("accept")
         until_said(trainee, "wait 1 s" if number == 4 else "not the PIN of this seat")
-        trainee.until(lambda: trainee.menu.facts[0].value == "_", "the digits gone")
+        trainee.until(lambda: trainee.item("unlock").value == "_", "the digits gone")
         trainee.step(round(6.0 / STEP_S))
     trainee.hands.type(PIN)
     trainee.tap("accept")
@@ -268,7 +268,7 @@ def test_another_view_takes_the_control_of_who_rests_only_after_the_pin(trainee,
 def test_no_screen_no_file_and_no_event_holds_the_pin(trainee, outside):
     open_pin(trainee)
     trainee.hands.type(PIN)
-    assert trainee.menu.facts[0].value == "••••••_"
+    assert trainee.item("unlock").value == "••••••_"
     trainee.tap("accept")
     until_unlocked(trainee)
     trainee.focus("volume")
@@ -280,7 +280,7 @@ def test_no_screen_no_file_and_no_event_holds_the_pin(trainee, outside):
     assert typed
     assert all(screen.is_private for screen in typed)
     # While it is typed, the focus stays where it unlocks, and only dots come.
-    focuses = {screen.menu.focus for screen in typed if re.search("•", str(screen.menu.facts))}
+    focuses = {screen.menu.focus for screen in typed if re.search("•", str(screen.menu.items))}
     assert focuses == {"unlock"}
     folder = outside.services.config.parent
     written = [path for path in folder.rglob("*") if path.is_file()]

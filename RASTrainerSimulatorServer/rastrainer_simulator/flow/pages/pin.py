@@ -9,7 +9,7 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
-from rastrainer_simulator.net.views.screen import Fact, Menu
+from rastrainer_simulator.net.views.screen import Menu
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN
 
 DIGITS = "1234567890"
@@ -24,7 +24,6 @@ class PinPage(SessionPage):
     """
 
     name = "pin"
-    first = "unlock"
     is_private = True
 
     def __init__(self, session: TrainingSession) -> None:
@@ -36,14 +35,11 @@ class PinPage(SessionPage):
         is_whole = len(self._pin) >= SHORTEST_PIN
         digits = tuple(self.button(digit, label=digit) for digit in DIGITS)
         help_ = "" if is_whole else self.say("pin.too short")
-        unlock = self.button("unlock", is_enabled=is_whole, help=help_)
-        return Menu(
-            self.name,
-            self.say("pin.title"),
-            (self.say("pin.text"),),
-            (Fact(self.say("pin.entered"), "•" * len(self._pin) + "_"),),
-            (*digits, self.button("delete"), unlock, self.button("cancel")),
-        )
+        dots = "•" * len(self._pin) + "_"
+        # First, so that the dots are seen wherever the digits need more room than there is.
+        unlock = self.button("unlock", value=dots, is_enabled=is_whole, help=help_)
+        items = (unlock, *digits, self.button("delete"), self.button("cancel"))
+        return Menu(self.name, self.say("pin.title"), (self.say("pin.text"),), items=items)
 
     def accept(self, item: str) -> None:
         """Take a digit or take it back, have the PIN looked at, or leave."""
