@@ -32,7 +32,7 @@ LAYERS = {
         rastrainer.motion, rastrainer.scenario
         rastrainer.journal, rastrainer.trial
         rastrainer.study.database
-        rastrainer.study.protocol
+        rastrainer.study.protocol, rastrainer.study.rating
         rastrainer.study
         rastrainer.export, rastrainer.report.elements
         rastrainer.report.sections
@@ -65,7 +65,7 @@ LAYERS = {
         rastrainer_simulator.flow.session
         rastrainer_simulator.flow.pages
         rastrainer_simulator.flow
-        rastrainer_simulator.board
+        rastrainer_simulator.board, rastrainer_simulator.rating
         rastrainer_simulator.server
         rastrainer_simulator.cli.doctor
         rastrainer_simulator.cli

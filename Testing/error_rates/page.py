@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from Testing.error_rates import (
+    agreement,
     biased_aim,
     cheats,
     cohort,
@@ -35,6 +36,7 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[int], Sequence[Row]]]] = {
     "effect sizes": (modes.EFFECT_HEADER, modes.coverage),
     "recovery": (recovery.HEADER, recovery.parameters),
     "recovery intervals": (recovery.COVERAGE_HEADER, recovery.coverage),
+    "agreement": (agreement.HEADER, agreement.intervals),
     "played cohort": (cohort.HEADER, cohort.recovered),
     "throughput": (cheats.THROUGHPUT_HEADER, cheats.offsets),
     "aborted trials": (cheats.ABORTED_HEADER, cheats.competence),

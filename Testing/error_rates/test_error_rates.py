@@ -18,6 +18,7 @@ from Testing.error_rates.played import COLIN27, WAYS, all_keys, play, seeds, sto
 from Testing.error_rates.registered import common_biases, errors_along_skin, registered_errors
 
 FEW = {
+    "agreement": 40,
     "biased aim": 5,
     "methods": 2,
     "equal hands": 25,

@@ -14,6 +14,7 @@ from rastrainer.export.tidy_csv import (
     aborted_touches_csv,
     answers_csv,
     procedures_csv,
+    ratings_csv,
     scores_csv,
     touches_csv,
     trials_csv,
@@ -92,6 +93,7 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         write_text(folder / "aborted_touches.csv", aborted_touches_csv(data.aborted))
         write_text(folder / "scores.csv", scores_csv(data))
         write_text(folder / "answers.csv", answers_csv(data))
+        write_text(folder / "ratings.csv", ratings_csv(data))
     elif name == "xapi":
         write_text(folder / "statements.json", statements_text(data, arguments.home_page))
     else:

@@ -28,6 +28,7 @@ SUBCOMMANDS = {
     "window": "rastrainer_simulator.cli.window",
     "doctor": "rastrainer_simulator.cli.doctor_command",
     "replay": "rastrainer_simulator.cli.replay",
+    "rate": "rastrainer_simulator.cli.rate",
     "verify": "rastrainer_simulator.cli.verify",
     "simulate-cohort": "rastrainer_simulator.cli.cohort",
     "demo": "rastrainer_simulator.cli.demo",

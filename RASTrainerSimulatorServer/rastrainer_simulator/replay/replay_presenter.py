@@ -64,9 +64,10 @@ class Player:
         playback: the trial.
     """
 
-    def __init__(self, playback: Playback, end: Callable[[], None]) -> None:
-        """`end` is called when the viewer ends it."""
+    def __init__(self, playback: Playback, end: Callable[[], None], blinded: str = "") -> None:
+        """`end` is called when the viewer ends it; `blinded` as of `ReplayPresenter`."""
         self.playback = playback
+        self._blinded = blinded
         self._handlers: Mapping[PlayerAction, Callable[[], None]] = {
             PlayerAction.PLAY: lambda: playback.pause(playback.is_playing),
             PlayerAction.BACK: lambda: playback.play_from(playback.time_s - STEP_S),
@@ -85,8 +86,10 @@ class Player:
         playback, say = self.playback, texts.say
         trial = playback.trial
         task = playback.setup.scenario.task(trial.task)
-        instruction = say("replay.title", task=task.title, trainee=trial.trainee)
-        if trial.worst is not None and playback.speed != 1.0:
+        instruction: str = say("replay.title", task=task.title, trainee=trial.trainee)
+        if self._blinded:
+            instruction = self._blinded
+        elif trial.worst is not None and playback.speed != 1.0:
             instruction = say("replay.worst", point=trial.worst[0])
         kept = len(playback.latest.training.touches)
         status = [
@@ -105,7 +108,7 @@ class Player:
 
     def _show_worst(self) -> None:
         worst = self.playback.trial.worst
-        if worst is not None:
+        if worst is not None and not self._blinded:
             _label, begin, end = worst
             self.playback.play_from(begin, end, SLOWLY)
 
@@ -150,10 +153,14 @@ _PRESSES = {
     ControlName.TOUCH.value: PlayerAction.PLAY,
     ControlName.UNDO.value: PlayerAction.END,
 }
+RATE = "rate"
+"""The item of the hint by which a rater who clicks leaves the replay."""
+_HINT_OF_WORST = "hint.worst"
+_OF_RATERS = {"hint.end": "hint.rate"}
 _HINTS = (
     (("Space",), "hint.play"),
     (("ArrowLeft", "ArrowRight"), "hint.seek"),
-    (("ArrowUp",), "hint.worst"),
+    (("ArrowUp",), _HINT_OF_WORST),
     (("KeyC",), "hint.camera"),
     (("Escape",), "hint.end"),
 )
@@ -170,8 +177,18 @@ class ReplayPresenter:
 
     control = Control()
 
-    def __init__(self, playback: Playback, language: str, end: Callable[[], None]) -> None:
-        """`language` is a BCP 47 tag; `end` is called when the user has seen enough."""
+    def __init__(
+        self, playback: Playback, language: str, end: Callable[[], None], blinded: str = ""
+    ) -> None:
+        """Play a trial.
+
+        Args:
+            playback: it.
+            language: BCP 47 tag.
+            end: called when the user has seen enough.
+            blinded: what a rater reads in place of task and trainee, who also is not led to the
+                worst touch, which only the truth tells; "" for everybody else.
+        """
         self._playback = playback
         self._language = language
         self._texts = Texts(LANGUAGES[language])
@@ -182,7 +199,8 @@ class ReplayPresenter:
         self._best = BestViews()
         self._is_looking_for_views = False
         self._wants_worst = False
-        self._player = Player(playback, end)
+        self._player = Player(playback, end, blinded)
+        self._blinded = blinded
         self.screen = self._make_screen()
         playback.changed = self._refresh
         playback.subscribe(self._feel)
@@ -267,7 +285,7 @@ class ReplayPresenter:
             return
         self._player.do(action)
         if action in (PlayerAction.WORST, PlayerAction.CAMERA):
-            self._wants_worst = action is PlayerAction.WORST
+            self._wants_worst = action is PlayerAction.WORST and not self._blinded
         if self._wants_worst and not self._is_looking_for_views:
             self._look_for_views()
 
@@ -311,9 +329,14 @@ class ReplayPresenter:
         self._subscribers.publish(news)
 
     def _make_screen(self) -> Screen:
-        hints = tuple(self._hint(codes, key) for codes, key in _HINTS)
+        hints = tuple(
+            self._hint(codes, _OF_RATERS.get(key, key) if self._blinded else key)
+            for codes, key in _HINTS
+            if not (self._blinded and key == _HINT_OF_WORST)
+        )
         return self._player.screen(self._texts, hints, self._language)
 
     def _hint(self, codes: tuple[str, ...], key: str) -> Hint:
         labels = (input_label(self._texts, "keyboard", code) for code in codes)
-        return Hint(reduce(pair_label, labels), self._texts.say(key))
+        item = RATE if key == _OF_RATERS["hint.end"] else ""
+        return Hint(reduce(pair_label, labels), self._texts.say(key), item)

@@ -43,7 +43,7 @@ async def _serve(
     playback: Playback, port: int | None, has_window: bool, announce: Callable
 ) -> None:
     stop = asyncio.Event()
-    presenter = ReplayPresenter(playback, _language(), stop.set)
+    presenter = ReplayPresenter(playback, preferred_language(), stop.set)
     window: DesktopProcess | None = None
     tasks: list[asyncio.Task[None]] = []
     with stop_on_signals(asyncio.get_running_loop(), stop):
@@ -64,7 +64,8 @@ async def _serve(
             await views.close()
 
 
-def _language() -> str:
+def preferred_language() -> str:
+    """Return the language of the user's settings, a BCP 47 tag."""
     with contextlib.suppress(InputError):
         return read_preferences(config_folder() / PREFERENCES_FILE).language
     return Preferences().language

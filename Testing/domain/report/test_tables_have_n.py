@@ -11,6 +11,7 @@ from rastrainer.study.study_data import read_study_data
 from Testing.domain.report.studied_procedures import with_procedures
 from Testing.domain.report.test_aborted_in_report import path  # noqa: F401
 from Testing.domain.report.test_methods_in_report import played
+from Testing.domain.report.test_raters_in_report import rated
 from Testing.domain.report.test_report import PUBLISHED, cohort
 from Testing.domain.statistics.test_variation import drawn
 
@@ -22,6 +23,9 @@ WORDS = {
 }
 """Tables without numbers of trials."""
 FIRST_CELLS = {
+    "Domain",
+    "Form",
+    "Rating",
     "Task",
     "Outcome",
     "Source of variation [95 %]",
@@ -74,6 +78,7 @@ def drawn_pages():
         in_two_groups(cohort(30, tasks=6)),
         with_procedures(cohort(4)),
         played(4),
+        rated(),
     )
     return [report_html(data, "today") for data in studies]
 

@@ -44,6 +44,7 @@ PROCEDURE_COLUMNS = (
     *("plunge_mm", "nearest_no_go", "kept_mm", "alignments"),
     *("aligning_s", "drilling_s", "inserting_s", "procedure_score", "procedure_score_version"),
 )
+RATING_COLUMNS = ("trial_id", "rater", "form", "domain", "mark")
 QUESTIONNAIRE_COLUMNS = ("trainee", "mode", "step", "questionnaire")
 
 
@@ -237,6 +238,16 @@ def answers_csv(data: StudyData) -> str:
         )
     ]
     return csv_text([*QUESTIONNAIRE_COLUMNS, "item", "answer"], rows)
+
+
+def ratings_csv(data: StudyData) -> str:
+    """Return the marks of raters as CSV, one domain per row."""
+    rows = [
+        [rating.trial_id, plain_cell(rating.rater), rating.form, domain, mark]
+        for rating in data.ratings
+        for domain, mark in sorted(rating.marks.items())
+    ]
+    return csv_text(RATING_COLUMNS, rows)
 
 
 def _step_cells(answered: QuestionnaireAnswers) -> list[str]:

@@ -12,6 +12,7 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.rating.rating_store import RatingStore
 
 FORMAT = "RASTrainer trainee 3"
 
@@ -35,6 +36,11 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
                 "repeat_reason": stored.repeat_reason,
             }
             for stored in AbortedTrials(study).of(pseudonym)
+        ],
+        "ratings": [
+            {"trial_id": rating.trial_id, "form": rating.form, "marks": dict(rating.marks)}
+            for rating in RatingStore(study).ratings()
+            if rating.trial_id in {trial.record.trial_id for trial in trials}
         ],
     }
     write_json(path, document)

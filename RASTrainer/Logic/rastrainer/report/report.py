@@ -25,6 +25,7 @@ from rastrainer.report.sections.paired_statistics import findings, order_caveat,
 from rastrainer.report.sections.passing import passing, started_trials
 from rastrainer.report.sections.procedures import procedures
 from rastrainer.report.sections.published_tables import paper_notes, published_tables
+from rastrainer.report.sections.raters import raters
 from rastrainer.report.sections.shifted_skin import shifted_skin
 from rastrainer.report.sections.trainees import groups, questionnaires
 from rastrainer.report.sections.variation import variation
@@ -100,6 +101,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         skin,
         procedures(data),
         motion(data, described[0] if described else ()),
+        raters(data),
         questionnaires(data),
         groups(data),
         limits(data, everything),

@@ -17,6 +17,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure, StoredTrial
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.study.rating.rating_store import Rating, RatingStore
 from rastrainer.study.study_notes import StudyNotes, read_notes
 from rastrainer.trial.ctps import Trial, read_trials
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, TrialScore
@@ -75,6 +76,7 @@ class StudyData:
         has_order: Whether the order of the trials is known.
         gap: What is missing of an incomplete virtual cohort, as a sentence; else "".
         aborted: Aborted trials, including trial runs, by trainee in order.
+        ratings: Forms that raters have filled in for replays of the trials.
     """
 
     title: str
@@ -90,6 +92,7 @@ class StudyData:
     has_order: bool = False
     gap: str = ""
     aborted: tuple[StoredAborted, ...] = ()
+    ratings: tuple[Rating, ...] = ()
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -179,8 +182,10 @@ def _from_database(path: Path) -> StudyData:
         enrolled = [name for name in progress.enrolled() if name in consenting]
         asked = {name: set(progress.played(name).counted_trials) for name in enrolled}
         trials, versions, beside = [], defaultdict(set), 0
+        rateable: set[str] = set()
         for pseudonym in sorted(consenting):
             history = [t for t in study.history(pseudonym) if t.record.task != TRIAL_RUN]
+            rateable |= {trial.record.trial_id for trial in history}
             if pseudonym in asked:
                 played, ids = len(history), asked[pseudonym]
                 history = [trial for trial in history if trial.record.trial_id in ids]
@@ -206,6 +211,9 @@ def _from_database(path: Path) -> StudyData:
             gap="" if cohort is None else cohort.gap,
             aborted=tuple(
                 stored for name in sorted(consenting) for stored in AbortedTrials(study).of(name)
+            ),
+            ratings=tuple(
+                rating for rating in RatingStore(study).ratings() if rating.trial_id in rateable
             ),
         )
 

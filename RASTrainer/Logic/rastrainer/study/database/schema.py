@@ -168,4 +168,31 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         """,
         "CREATE INDEX procedure_outcomes_of_trial ON procedure_outcomes (trial_id)",
     ),
+    (
+        # Which replays each rater marks, by the number that is shown instead of the trial; and the
+        # marks. The latest mark of a domain counts, NULL is one that was taken back.
+        """
+        CREATE TABLE rated_replays (
+            rater TEXT NOT NULL,
+            number INTEGER NOT NULL CHECK (number > 0),
+            trial_id TEXT NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            stored_utc TEXT NOT NULL,
+            PRIMARY KEY (rater, number),
+            UNIQUE (rater, trial_id)
+        )
+        """,
+        """
+        CREATE TABLE rating_marks (
+            id INTEGER PRIMARY KEY,
+            mark_id TEXT NOT NULL UNIQUE,
+            rater TEXT NOT NULL,
+            trial_id TEXT NOT NULL REFERENCES trials (trial_id) ON DELETE CASCADE,
+            form TEXT NOT NULL,
+            domain TEXT NOT NULL,
+            mark INTEGER CHECK (mark BETWEEN 1 AND 5),
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX rating_marks_of_trial ON rating_marks (trial_id, rater)",
+    ),
 )

@@ -1,0 +1,1 @@
+"""Blinded rating of replays: forms, marks and who has marked what."""

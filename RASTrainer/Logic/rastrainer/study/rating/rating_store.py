@@ -1,0 +1,174 @@
+"""Marks of raters in a study's database: each stored once, none overwritten, the latest count."""
+
+from __future__ import annotations
+
+import random
+import sqlite3
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+from rastrainer import json_checks
+from rastrainer.errors import InputError
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import utc_now
+from rastrainer.study.rating.forms import FORMS, MARKS, RatingForm, find_form
+
+
+@dataclass(frozen=True)
+class Rating:
+    """All marks that a rater gave a trial on one form.
+
+    Attributes:
+        rater: Pseudonym.
+        trial_id: UUID.
+        form: Its name.
+        marks: By domain, each 1 to 5.
+    """
+
+    rater: str
+    trial_id: str
+    form: str
+    marks: Mapping[str, int]
+
+    @property
+    def total(self) -> int:
+        """The sum of the marks."""
+        return sum(self.marks.values())
+
+
+class RatingStore:
+    """The ratings of one study. One thread may use it."""
+
+    def __init__(self, study: Study) -> None:
+        self._database = study.database
+
+    def assign(
+        self, rater: str, trial_ids: Collection[str], count: int, chance: random.Random
+    ) -> tuple[str, ...]:
+        """Give a rater the replays of so many trials; return their trials in the rater's order.
+
+        All raters get the same trials: those that somebody has, and more of `trial_ids`, drawn at
+        random, where these are too few. Each rater gets them in an order of their own. What a rater
+        has already keeps its place.
+
+        Args:
+            rater: Pseudonym.
+            trial_ids: Of the trials that can be shown.
+            count: How many there shall be at least; fewer if there are no more.
+            chance: Draws and shuffles.
+
+        Raises:
+            InputError: the rater's name cannot be a pseudonym, or a trial is unknown.
+        """
+        try:
+            rater = json_checks.pseudonym()(rater)
+        except ValueError as error:
+            raise InputError(f"The name of a rater must be {error}.") from None
+        with self._database.writing() as connection:
+            rows = connection.execute("SELECT DISTINCT trial_id FROM rated_replays").fetchall()
+            chosen = {trial_id for (trial_id,) in rows}
+            # Sorted: the same chance draws the same trials.
+            others = sorted(set(trial_ids) - chosen)
+            missing = min(max(0, count - len(chosen)), len(others))
+            chosen |= set(chance.sample(others, missing))
+            present = _order(connection, rater)
+            added = sorted(chosen - set(present))
+            chance.shuffle(added)
+            last = connection.execute(
+                "SELECT coalesce(max(number), 0) FROM rated_replays WHERE rater = ?", (rater,)
+            ).fetchone()[0]
+            for number, trial_id in enumerate(added, start=last + 1):
+                connection.execute(
+                    "INSERT INTO rated_replays VALUES (?, ?, ?, ?)",
+                    (rater, number, trial_id, utc_now()),
+                )
+            return (*present, *added)
+
+    def give(
+        self,
+        mark_id: str,
+        rater: str,
+        trial_id: str,
+        form: RatingForm,
+        domain: str,
+        mark: int | None,
+    ) -> bool:
+        """Store a mark, or with None that the latest is taken back; return whether it was new.
+
+        Args:
+            mark_id: UUID of this mark: the same one again changes nothing.
+            rater: Pseudonym.
+            trial_id: Of a trial that the rater was given.
+            form: Which form.
+            domain: Name of one of its domains.
+            mark: 1 to 5.
+
+        Raises:
+            InputError: no such domain or mark, the rater was not given the trial, or another mark
+                has the UUID.
+        """
+        if domain not in {each.name for each in form.domains}:
+            raise InputError(f"{form.title} has no domain {domain[:40]!r}.")
+        if mark is not None and (isinstance(mark, bool) or mark not in MARKS):
+            raise InputError(f"A mark is a whole number from {MARKS[0]} to {MARKS[-1]}.")
+        told = (rater, trial_id, form.name, domain, mark)
+        with self._database.writing() as connection:
+            row = connection.execute(
+                "SELECT rater, trial_id, form, domain, mark FROM rating_marks WHERE mark_id = ?",
+                (mark_id,),
+            ).fetchone()
+            if row is not None and row != told:
+                raise InputError(f"Another mark is stored under the UUID {mark_id[:40]}.")
+            if row is not None:
+                return False
+            if trial_id not in _order(connection, rater):
+                raise InputError(f"The rater {rater[:64]} was not given this replay.")
+            connection.execute(
+                "INSERT INTO rating_marks (mark_id, rater, trial_id, form, domain, mark, "
+                "stored_utc) VALUES (?, ?, ?, ?, ?, ?, ?)",
+                (mark_id, *told, utc_now()),
+            )
+            return True
+
+    def marks(self, rater: str, trial_id: str) -> dict[str, int]:
+        """Return the marks that count, by domain, in the order in which they were given."""
+        with self._database.reading() as connection:
+            rows = connection.execute(
+                "SELECT domain, mark FROM rating_marks WHERE rater = ? AND trial_id = ? "
+                "ORDER BY id",
+                (rater, trial_id),
+            ).fetchall()
+        return _latest(rows)
+
+    def ratings(self) -> tuple[Rating, ...]:
+        """Return every form that a rater has filled in, by form, rater and trial."""
+        with self._database.reading() as connection:
+            rows = connection.execute(
+                "SELECT form, rater, trial_id, domain, mark FROM rating_marks ORDER BY id"
+            ).fetchall()
+        given: dict[tuple[str, str, str], list[tuple[str, int | None]]] = {}
+        for form, rater, trial_id, domain, mark in rows:
+            given.setdefault((form, rater, trial_id), []).append((domain, mark))
+        found = []
+        for (form, rater, trial_id), marks in sorted(given.items()):
+            latest = _latest(marks)
+            if form in FORMS and set(latest) == {each.name for each in find_form(form).domains}:
+                found.append(Rating(rater, trial_id, form, latest))
+        return tuple(found)
+
+
+def _order(connection: sqlite3.Connection, rater: str) -> list[str]:
+    rows = connection.execute(
+        "SELECT trial_id FROM rated_replays WHERE rater = ? ORDER BY number", (rater,)
+    ).fetchall()
+    return [trial_id for (trial_id,) in rows]
+
+
+def _latest(marks: Sequence[tuple[str, int | None]]) -> dict[str, int]:
+    """Return the latest mark of each domain that was not taken back."""
+    latest: dict[str, int] = {}
+    for domain, mark in marks:
+        latest.pop(domain, None)
+        if mark is not None:
+            latest[domain] = mark
+    return latest

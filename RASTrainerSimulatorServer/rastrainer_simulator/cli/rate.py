@@ -1,0 +1,96 @@
+"""`rastrainer rate STUDY --rater NAME`: mark replays on rating forms, without knowing whose."""
+
+from __future__ import annotations
+
+import argparse
+import random
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.study.database.study import Study
+from rastrainer.study.rating.forms import FORMS, find_form
+from rastrainer.study.rating.rating_store import RatingStore
+from rastrainer.study.rating.rating_work import RatingWork
+from rastrainer_simulator.cli.simulator import DEFAULT_RECORDS
+
+REPLAYS = 20
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the subcommand to the parser of `rastrainer`."""
+    parser = subparsers.add_parser(
+        "rate",
+        help="mark replays of a study's trials on GEARS and OSATS forms, blinded",
+        description=(
+            "Shows the replays of trials in the window and to every view, under shuffled numbers, "
+            "without trainee, date, score or mode, and takes a rater's marks, which are kept in "
+            "the study. All raters get the same trials, each in another order. Work can be left "
+            "at any time; the same command takes it up. The study's report tells how far raters "
+            "agree."
+        ),
+    )
+    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    parser.add_argument(
+        "--rater", required=True, metavar="NAME", help="a pseudonym of who rates, such as R1"
+    )
+    parser.add_argument(
+        "--records",
+        type=Path,
+        metavar="DIR",
+        default=DEFAULT_RECORDS,
+        help="folder of the trials' journals (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--replays",
+        type=int,
+        default=REPLAYS,
+        metavar="N",
+        help="how many trials are drawn for all raters (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--form",
+        action="append",
+        choices=list(FORMS),
+        help="may be given several times (default: all)",
+    )
+    parser.add_argument(
+        "--scenario", type=Path, metavar="DIR", help="the scenario they were recorded with"
+    )
+    parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
+    parser.add_argument(
+        "--window", action=argparse.BooleanOptionalAction, default=True, help="open the window"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Let the rater work, say how far that went, and return the exit status.
+
+    Raises:
+        InputError: an argument is not usable, there is nothing to rate, or a replay cannot be
+            shown.
+    """
+    port = arguments.view_port
+    if port is not None and not 0 <= port < 65536:
+        raise InputError("--view-port must be a number from 0 to 65535.")
+    if arguments.replays < 1:
+        raise InputError("--replays must be at least 1.")
+    if not arguments.study.is_file():
+        raise InputError(f"There is no file {arguments.study}.")
+    # Only here: the robot and the scenario take time to import.
+    from rastrainer_simulator.server.rating_server import serve_rating, trials_to_show
+
+    forms = [find_form(name) for name in dict.fromkeys(arguments.form or FORMS)]
+    with Study.open(arguments.study) as study:
+        store = RatingStore(study)
+        trials = trials_to_show(study, arguments.records)
+        order = store.assign(arguments.rater, trials, arguments.replays, random.SystemRandom())
+        work = RatingWork(store, arguments.rater, order, forms)
+        _tell(f"has {len(order)} replays for {arguments.rater}, {work.rated} rated")
+        serve_rating(work, arguments.records, arguments.scenario, port, arguments.window, _tell)
+        _tell(f"is left: {work.rated} of {len(order)} replays are rated")
+    return 0
+
+
+def _tell(what: str) -> None:
+    print(f"RASTrainer rating {what}", flush=True)

@@ -1,0 +1,1 @@
+"""Blinded rating: a rater watches replays under numbers, and marks each on forms."""

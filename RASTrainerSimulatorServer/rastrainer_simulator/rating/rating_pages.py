@@ -1,0 +1,182 @@
+"""What a rater reads and chooses: one domain a page, the marks of a replay, and the end."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future
+from typing import Any, Protocol
+
+from rastrainer.errors import InputError
+from rastrainer.study.rating.forms import HIGHEST, LOWEST, MARKS, RatingDomain, RatingForm
+from rastrainer.study.rating.rating_work import RatingWork
+from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
+from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem
+from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.replay.playback import Playback
+
+_MARK = "mark "
+_KEYS = {f"{key}{mark}": mark for key in ("Digit", "Numpad") for mark in MARKS}
+_SENTENCES = {LOWEST: "low", (LOWEST + HIGHEST) // 2: "middle", HIGHEST: "high"}
+"""Marks that a sentence describes."""
+
+
+class RatingDesk(Protocol):
+    """What the pages need of the program."""
+
+    work: RatingWork
+    texts: Texts
+    pages: OpenPages
+
+    def watch(self) -> None:
+        """Show the present replay again."""
+
+    def load(self) -> None:
+        """Load the present replay, and show it."""
+
+    def rate(self) -> None:
+        """Open what is to be marked, or was."""
+
+    def leave(self) -> None:
+        """End the program."""
+
+
+class RatingPage(Page):
+    """A page of the desk."""
+
+    def __init__(self, desk: RatingDesk) -> None:
+        self.desk = desk
+
+    def say(self, key: str, **values: object) -> str:
+        """Return a sentence in the chosen language, with the replay's place among all."""
+        work = self.desk.work
+        place = {"number": work.place + 1, "count": len(work.trial_ids)}
+        return self.desk.texts.say(key, **place, **values)
+
+    def button(self, name: str, **others: Any) -> MenuItem:
+        """Return a button; its label is that of its name on all pages."""
+        return MenuItem(name, self.say(f"rating.{name}"), **others)
+
+    def back(self) -> None:
+        """Watch the replay again."""
+        self.desk.watch()
+
+    def accept(self, item: str) -> None:
+        """Do what every page offers."""
+        desk = self.desk
+        if item == "undo":
+            desk.work.undo()
+            desk.rate()
+        elif item == "watch":
+            desk.watch()
+        elif item == "previous":
+            desk.work.go_back()
+            desk.load()
+        elif item == "leave":
+            desk.leave()
+
+
+class DomainPage(RatingPage):
+    """Takes one mark, and goes on to the next domain."""
+
+    name = "rating"
+    # Not on a mark, which would be given more often than others.
+    first = "watch"
+
+    def __init__(self, desk: RatingDesk, form: RatingForm, domain: RatingDomain) -> None:
+        super().__init__(desk)
+        self._form, self._domain = form, domain
+
+    def menu(self) -> Menu:
+        """Return the marks, three of them with what they mean."""
+        domain = self._domain.name
+        marks = (MenuItem(f"{_MARK}{mark}", self._label(mark)) for mark in MARKS)
+        others = ["undo"] if self.desk.work.marks else []
+        buttons = (self.button(name) for name in (*others, "watch", "leave"))
+        title = self.say("rating.title", form=self._form.title, domain=self.say(f"rate.{domain}"))
+        text = self.say("rating.text")
+        return Menu(self.name, title, (text,), items=(*marks, *buttons))
+
+    def accept(self, item: str) -> None:
+        """Take a mark, or do what every page offers."""
+        if item.startswith(_MARK):
+            self._give(int(item.removeprefix(_MARK)))
+        else:
+            super().accept(item)
+
+    def input_pressed(self, device: InputDevice, name: str) -> bool:
+        """Take a mark that is typed."""
+        if device is not InputDevice.KEYBOARD or name not in _KEYS:
+            return False
+        self._give(_KEYS[name])
+        return True
+
+    def _give(self, mark: int) -> None:
+        self.desk.work.give(mark)
+        self.desk.rate()
+
+    def _label(self, mark: int) -> str:
+        if mark not in _SENTENCES:
+            return str(mark)
+        sentence = self.say(f"rate.{self._domain.name}.{_SENTENCES[mark]}")
+        return self.say("rating.mark", mark=mark, sentence=sentence)
+
+
+class RatedPage(RatingPage):
+    """Shows the marks of a replay, and leads to the next one."""
+
+    name = "rated"
+    first = "next"
+
+    def menu(self) -> Menu:
+        """Return the marks, and where one can go."""
+        work = self.desk.work
+        marks = work.marks
+        facts = tuple(
+            Fact(f"{form.title}: {self.say(f'rate.{domain.name}')}", str(marks[domain.name]))
+            for form in work.forms
+            for domain in form.domains
+            if domain.name in marks
+        )
+        is_last = work.rated == len(work.trial_ids)
+        title = self.say("rated.all" if is_last else "rated.title")
+        text = self.say("rated.all text" if is_last else "rated.text", rated=work.rated)
+        names = [
+            *([] if is_last else ["next"]),
+            "undo",
+            "watch",
+            *(["previous"] if work.place else []),
+            "leave",
+        ]
+        return Menu(self.name, title, (text,), facts, tuple(map(self.button, names)))
+
+    def accept(self, item: str) -> None:
+        """Go on, or do what every page offers."""
+        if item == "next":
+            self.desk.work.go_on()
+            self.desk.load()
+        else:
+            super().accept(item)
+
+
+class LoadingPage(RatingPage):
+    """Waits for a replay; says why where it cannot be shown."""
+
+    name = "rating-loading"
+
+    def __init__(self, desk: RatingDesk, loading: Future[Playback]) -> None:
+        super().__init__(desk)
+        self._loading = loading
+
+    def menu(self) -> Menu:
+        """Return what is waited for."""
+        problem = ""
+        if self._loading.done():
+            error = self._loading.exception()
+            problem = str(error) if isinstance(error, InputError) else ""
+        text = problem or self.say("rating-loading.text")
+        names = ["previous"] if self.desk.work.place else []
+        buttons = tuple(map(self.button, (*names, "leave")))
+        return Menu(self.name, self.say("rating-loading.title"), (text,), items=buttons)
+
+    def back(self) -> None:
+        """There is nothing to go back to yet."""

@@ -1,0 +1,295 @@
+"""What views show and take while a rater watches replays and marks them."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+
+from rastrainer.errors import InputError
+from rastrainer.study.rating.rating_work import RatingWork
+from rastrainer_simulator.flow.session.open_pages import OpenPages
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.control_name import ControlContext, ControlName
+from rastrainer_simulator.input.inputs import InputDevice, w3c_gamepad_inputs
+from rastrainer_simulator.loop.results import Subscribers
+from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, FeedbackEvent
+from rastrainer_simulator.net.views.presenter import (
+    Control,
+    Feedback,
+    Frames,
+    Hello,
+    InstructorOrder,
+    Seat,
+    TraceGuidance,
+    ViewUpdate,
+)
+from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
+from rastrainer_simulator.rating.shown_playback import ShownPlayback
+from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
+from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.viewpoint.view_control import Pictures
+
+_DOWN = 0.5
+_REPEATED = ("ArrowLeft", "ArrowRight")
+_IN_MENUS = {ControlName.TOUCH: ControlName.ACCEPT, ControlName.UNDO: ControlName.BACK}
+
+
+class RatingPresenter:
+    """A `Presenter` for one rater: replays under numbers, and the pages of the forms over them.
+
+    Attributes:
+        work: what is marked.
+        texts: in the chosen language.
+        pages: which are open; none while a replay is watched.
+        shown: the states that the views show.
+        screen: what is read.
+        control: free.
+    """
+
+    control = Control()
+
+    def __init__(
+        self,
+        work: RatingWork,
+        first: Playback,
+        load: Callable[[str], Future[Playback]],
+        language: str,
+        end: Callable[[], None],
+    ) -> None:
+        """Begin with a replay.
+
+        Args:
+            work: what is marked; its present replay is `first`.
+            first: a playback of that trial.
+            load: begins to load the playback of a trial, by its UUID.
+            language: BCP 47 tag.
+            end: called when the rater leaves.
+        """
+        self.work = work
+        self.texts = Texts(LANGUAGES[language])
+        self.pages = OpenPages(self._happened)
+        self.shown = ShownPlayback(first)
+        self._language, self._load, self._end = language, load, end
+        self._subscribers: Subscribers[ViewUpdate] = Subscribers()
+        self._loading: Future[Playback] | None = None
+        self._held: dict[int, tuple[frozenset[int], frozenset[int]]] = {}
+        self._keys: dict[int, set[str]] = {}
+        self._problem = ""
+        self._count = 0
+        self.screen = Screen()
+        self._watch(first)
+        if work.open_domain is None:
+            self.rate()
+
+    def advance(self, dt: float) -> None:
+        """Advance by `dt` seconds: show what is loaded."""
+        self.pages.advance(dt)
+        loading = self._loading
+        if loading is None or not loading.done():
+            return
+        self._loading = None
+        if loading.exception() is None:
+            self._watch(loading.result())
+        else:
+            # The page says why.
+            self._refresh()
+
+    def watch(self) -> None:
+        """Show the present replay again, from where it was left or, at its end, the beginning."""
+        self.pages.show(None)
+        self.shown.playback.pause(False)
+        self._refresh()
+
+    def load(self) -> None:
+        """Load the present replay, and show it."""
+        self._loading = self._load(self.work.trial_id)
+        self.pages.show(LoadingPage(self, self._loading))
+        self._refresh()
+
+    def rate(self) -> None:
+        """Open the next domain that has no mark, or the marks of the replay."""
+        self.shown.playback.pause(True)
+        open_ = self.work.open_domain
+        self.pages.show(RatedPage(self) if open_ is None else DomainPage(self, *open_))
+        self._refresh()
+
+    def leave(self) -> None:
+        """End the program."""
+        self._end()
+
+    def subscribe(self, listener: Callable[[ViewUpdate], None]) -> Callable[[], None]:
+        """Have `listener` called with each new screen and event; returns what ends that."""
+        return self._subscribers.add(listener)
+
+    def pictures(self, now: SimulationState) -> Pictures:
+        """Return where the picture of a state is looked from."""
+        return self._replay.pictures(now)
+
+    def ghost(self, now: SimulationState) -> None:
+        """A recorded trial has none beside it."""
+
+    def trace_guidance(self, now: SimulationState) -> TraceGuidance:
+        """Return what is drawn of a trace."""
+        return self._replay.trace_guidance(now)
+
+    def seat(self) -> Seat:
+        """Nobody trains here."""
+        return Seat()
+
+    def instruct(self, order: InstructorOrder, text: str) -> str:
+        """A recorded trial takes no orders."""
+        return self._replay.instruct(order, text)
+
+    def view_joined(self, view: int, hello: Hello) -> None:
+        """Take note of a view."""
+
+    def view_left(self, view: int) -> None:
+        """Forget a view."""
+        self._held.pop(view, None)
+        self._keys.pop(view, None)
+        self._replay.view_left(view)
+
+    def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
+        """Take a key: of the page that is open, else of the replay.
+
+        One that is held is taken once, or it would mark one domain after the other; only the
+        arrows go on through the replay.
+        """
+        keys = self._keys.setdefault(view, set())
+        is_again = is_down and code in keys
+        (keys.add if is_down else keys.discard)(code)
+        if self.pages.top is None:
+            if not is_again or code in _REPEATED:
+                self._replay.on_key(view, code, is_down, text)
+        elif is_down and not is_again:
+            self._do(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
+
+    def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
+        """Take a gamepad: what is newly pressed is for the page that is open, else the replay."""
+        now = _pressed(axes), _pressed(buttons)
+        before = self._held.get(view, (frozenset(), frozenset()))
+        self._held[view] = now
+        moved, tapped = (
+            [value * (number in new - old) for number, value in enumerate(values)]
+            for values, new, old in zip((axes, buttons), now, before, strict=True)
+        )
+        if self.pages.top is not None:
+            inputs = w3c_gamepad_inputs(moved, tapped)
+            names = [name for name, value in inputs.items() if value > _DOWN]
+            self._do(lambda: self._pad_pressed(names))
+            return
+        # Let go at once: a button that has led from the form back here is not pressed anew.
+        self._replay.on_pad(view, axes, tapped)
+        self._replay.on_pad(view, axes, ())
+
+    def on_press(self, view: int, control: str) -> None:
+        """Take a button of an XR controller, or of a touch screen."""
+        if self.pages.top is None:
+            self._replay.on_press(view, control)
+        elif control in ControlName._value2member_map_:
+            name = ControlName(control)
+            self._do(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
+
+    def on_sticks(self, view: int, *positions: object) -> None:
+        """Nobody drives."""
+
+    def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
+        """Turn the view."""
+        self._replay.on_orbit(view, around_deg, higher_deg, zoom)
+
+    def on_item(self, view: int, name: str) -> None:  # noqa: ARG002
+        """Take a click on an item of the page, or on the hint that leads to the form."""
+        if self.pages.top is None and name == RATE:
+            self._do(self.rate)
+        else:
+            self._do(lambda: self.pages.choose(name))
+
+    def on_text(self, view: int, name: str, value: str) -> None:
+        """There is nothing to be written."""
+
+    def on_frames(self, view: int, frames: Frames) -> None:
+        """Nothing is recorded."""
+
+    def on_visibility(self, view: int, is_visible: bool) -> None:
+        """Stand still while nobody looks."""
+        self._replay.on_visibility(view, is_visible)
+
+    def on_silence(self, view: int) -> None:
+        """Stand still while nobody looks."""
+        self._replay.on_silence(view)
+
+    def _watch(self, playback: Playback) -> None:
+        """Show a replay from its beginning, under its number."""
+        place = {"number": self.work.place + 1, "count": len(self.work.trial_ids)}
+        blinded = self.texts.say("rating.replay", **place)
+        self.shown.show(playback)
+        self._replay = ReplayPresenter(playback, self._language, self.rate, blinded)
+        self._replay.subscribe(self._pass_on)
+        self.pages.show(None)
+        self._refresh()
+
+    def _pass_on(self, update: ViewUpdate) -> None:
+        """Pass on what the replay tells, while it is watched."""
+        if self.pages.top is not None:
+            return
+        if isinstance(update, Screen):
+            self._refresh()
+        else:
+            self._subscribers.publish(update)
+
+    def _pad_pressed(self, names: Sequence[str]) -> None:
+        for name in names:
+            self._page_pressed(InputDevice.GAMEPAD, name)
+
+    def _page_pressed(self, device: InputDevice, name: str) -> None:
+        page = self.pages.top
+        if page is None or page.input_pressed(device, name):
+            return
+        control = DEFAULT_BINDINGS.control(device, name, ControlContext.MENU)
+        if control is not None:
+            self.pages.pressed(control)
+
+    def _do(self, act: Callable[[], None]) -> None:
+        """Do what was asked for, and say what went wrong."""
+        self._problem = ""
+        try:
+            act()
+        except InputError as error:
+            self._problem = str(error)
+            self._happened(FeedbackEvent.ERROR)
+        self._refresh()
+
+    def _refresh(self) -> None:
+        menu = self.pages.menu()
+        problem = (ScreenMessage(self._problem, Tone.ERROR),) if self._problem else ()
+        screen = self._replay.screen if menu is None else self._menu_screen()
+        screen = dataclasses.replace(screen, warnings=(*screen.warnings, *problem))
+        if screen != self.screen:
+            self.screen = screen
+            self._subscribers.publish(screen)
+
+    def _menu_screen(self) -> Screen:
+        def label(code: str) -> str:
+            return input_label(self.texts, InputDevice.KEYBOARD.value, code)
+
+        say = self.texts.say
+        choose = Hint(pair_label(label("ArrowUp"), label("ArrowDown")), say("hint.choose"))
+        accept = Hint(label("Enter"), say("hint.accept"))
+        hints = (choose, accept, Hint(label("Escape"), say("hint.back")))
+        return Screen(menu=self.pages.menu(), hints=hints, language=self._language)
+
+    def _happened(self, what: FeedbackEvent) -> None:
+        effect = FEEDBACK_EFFECTS[what]
+        self._count += 1
+        data = {"rumbleMs": round(1000.0 * effect.seconds)}
+        told = Feedback(self._count, what.value, effect.sound, 1.0, effect.rumble, data)
+        self._subscribers.publish(told)
+
+
+def _pressed(values: Sequence[float]) -> frozenset[int]:
+    """Return which axes or buttons are away from rest."""
+    return frozenset(number for number, value in enumerate(values) if abs(value) > _DOWN)

@@ -1,0 +1,375 @@
+"""Replays are rated blinded: under numbers, in any view, kept mark by mark, taken up again."""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+import secrets
+import sqlite3
+import subprocess
+import sys
+from concurrent.futures import Future
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.journal.folder import journals
+from rastrainer.study.database.study import STUDY_FILE, Study
+from rastrainer.study.rating.forms import GEARS, OSATS
+from rastrainer.study.rating.rating_store import RatingStore
+from rastrainer.study.rating.rating_work import RatingWork
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.presenter import Feedback, Hello, Seat
+from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.rating.rating_presenter import RatingPresenter
+from rastrainer_simulator.server.rating_server import load_replay, trials_to_show
+from rastrainer_simulator.virtual.cohort import RECORDS
+from Testing.simulator.net.views.served import ViewClient
+
+VIEW = 1
+PRESSED, AT_REST = 1.0, (0.0,) * 17
+
+
+class Rater:
+    """Somebody at the desk, with the replays of a study."""
+
+    def __init__(self, folder, study, rater="R1", forms=(GEARS, OSATS), language="en"):
+        self.records = folder / RECORDS
+        store = RatingStore(study)
+        trials = trials_to_show(study, self.records)
+        order = store.assign(rater, trials, 3, random.Random(rater))
+        self.work = RatingWork(store, rater, order, forms)
+        self.store, self.messages, self.left = store, [], []
+        self.loaded: list[str] = []
+        first = load_replay(self.records, None, self.work.trial_id)
+        self.desk = RatingPresenter(
+            self.work, first, self._load, language, lambda: self.left.append(True)
+        )
+        self.desk.subscribe(self.messages.append)
+        self.desk.view_joined(VIEW, Hello("page"))
+
+    def _load(self, trial_id):
+        self.loaded.append(trial_id)
+        loading: Future = Future()
+        try:
+            loading.set_result(load_replay(self.records, None, trial_id))
+        except InputError as error:
+            loading.set_exception(error)
+        return loading
+
+    def key(self, *codes):
+        for code in codes:
+            for is_down in (True, False):
+                self.desk.on_key(VIEW, code, is_down, "")
+
+    def click(self, *items):
+        for item in items:
+            menu = self.desk.screen.menu
+            hints = [hint.item for hint in self.desk.screen.hints]
+            assert item in [*hints, *([] if menu is None else [each.name for each in menu.items])]
+            self.desk.on_item(VIEW, item)
+
+    @property
+    def menu(self):
+        return self.desk.screen.menu
+
+
+@pytest.fixture
+def study(copied):
+    with Study.open(copied / STUDY_FILE) as opened:
+        yield opened
+
+
+@pytest.fixture
+def rater(copied, study):
+    return Rater(copied, study)
+
+
+def test_a_replay_is_watched_and_marked_by_keys_one_domain_after_the_other(rater):
+    assert rater.menu is None
+    assert rater.desk.screen.instruction.text == "Replay 1 of 3: watch it, then rate it"
+    rater.key("Escape")
+    assert not rater.desk.shown.playback.is_playing
+    titles = []
+    for mark in (1, 2, 3, 4, 5, 4, 3, 2):
+        titles.append(rater.menu.title)
+        rater.key(f"Digit{mark}" if mark % 2 else f"Numpad{mark}")
+    assert titles[0] == "GEARS: Depth perception"
+    assert titles[-1] == "OSATS global rating: Flow of operation and forward planning"
+    assert rater.menu.name == "rated"
+    assert [fact.value for fact in rater.menu.facts] == list("12345432")
+    assert rater.work.rated == 1
+
+
+def test_marks_are_given_by_clicks_and_the_three_sentences_are_there(rater):
+    rater.click("rate")
+    labels = [item.label for item in rater.menu.items if item.name.startswith("mark")]
+    assert labels[0] == "1: Misjudges depth again and again; far off or pressed in"
+    assert (labels[1], labels[3]) == ("2", "4")
+    assert rater.menu.focus == "watch"
+    rater.click("mark 4", "mark 2", "undo", "mark 5")
+    assert rater.work.marks == {"gears_depth": 4, "gears_efficiency": 5}
+    rater.click("watch")
+    assert rater.menu is None
+    assert rater.desk.shown.playback.is_playing
+
+
+def test_marks_are_given_by_a_gamepad_and_by_controllers(rater):
+    def press(button):
+        held = tuple(PRESSED if number == button else 0.0 for number in range(17))
+        rater.desk.on_pad(VIEW, (0.0,) * 4, held)
+        rater.desk.on_pad(VIEW, (0.0,) * 4, AT_REST)
+
+    press(9)
+    assert rater.menu.name == "rating"
+    # From "watch" over the end to the first mark, and one on.
+    for _ in range(3):
+        press(13)
+    press(0)
+    assert rater.work.marks == {"gears_depth": 2}
+    for control in ("down", "down", "touch"):
+        rater.desk.on_press(VIEW, control)
+    assert rater.work.marks == {"gears_depth": 2, "gears_efficiency": 1}
+    press(1)
+    assert rater.menu is None
+
+
+def test_a_key_or_button_that_is_held_is_taken_once(rater):
+    for _ in range(3):
+        rater.desk.on_key(VIEW, "Escape", True, "")
+    assert rater.menu.name == "rating"
+    for _ in range(5):
+        rater.desk.on_key(VIEW, "Digit4", True, "")
+    assert rater.work.marks == {"gears_depth": 4}
+    rater.desk.on_key(VIEW, "Digit4", False, "")
+    back = tuple(PRESSED if number == 1 else 0.0 for number in range(17))
+    for _ in range(5):
+        rater.desk.on_pad(VIEW, (0.0,) * 4, back)
+    assert rater.menu is None
+    assert rater.desk.shown.playback.is_playing
+
+
+def rate_all(rater, mark=3):
+    for _ in rater.work.trial_ids:
+        rater.key("Escape")
+        while rater.menu.name == "rating":
+            rater.key(f"Digit{mark}")
+        if "next" in {item.name for item in rater.menu.items}:
+            rater.click("next")
+            rater.desk.advance(0.01)
+
+
+def test_after_a_replay_comes_the_next_and_after_the_last_the_thanks(rater):
+    first = rater.desk.shown.playback
+    rate_all(rater)
+    assert rater.desk.shown.playback is not first
+    assert rater.loaded == list(rater.work.trial_ids[1:])
+    assert rater.menu.title == "All 3 replays are rated"
+    rater.click("previous")
+    rater.desk.advance(0.01)
+    assert rater.desk.screen.instruction.text.startswith("Replay 2 of 3")
+    rater.key("Escape")
+    rater.click("undo")
+    assert rater.work.rated == 2
+    rater.click("leave")
+    assert rater.left == [True]
+    assert len(rater.store.ratings()) == 5
+
+
+def test_work_that_was_left_begins_at_the_replay_and_domain_where_it_was(copied, study, rater):
+    rate_all_but = [f"Digit{mark}" for mark in (1, 2, 3, 4, 5, 1, 2, 3)]
+    rater.key("Escape", *rate_all_but)
+    rater.click("next")
+    rater.desk.advance(0.01)
+    rater.key("Escape", "Digit5")
+    again = Rater(copied, study)
+    assert again.desk.screen.instruction.text == "Replay 2 of 3: watch it, then rate it"
+    again.key("Escape")
+    assert again.menu.title == "GEARS: Efficiency"
+
+
+def test_who_has_rated_all_is_told_so(copied, study, rater):
+    rate_all(rater)
+    assert Rater(copied, study).menu.title == "All 3 replays are rated"
+
+
+def everything_told(rater):
+    """Return all that a view could have been sent."""
+    desk = rater.desk
+    told = [outgoing.screen(m) for m in rater.messages if isinstance(m, Screen)]
+    told += [outgoing.event(m) for m in rater.messages if isinstance(m, Feedback)]
+    state = desk.shown.latest
+    told.append(outgoing.state(state, 0, desk.pictures(state), None))
+    setup = desk.shown.setup
+    told.append(outgoing.scene("0" * 64, setup.scenario, state.training.task, setup.settings.axes))
+    return "\n".join(told)
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_nothing_tells_whose_trial_it_is_when_how_good_and_in_which_mode(copied, study, language):
+    rater = Rater(copied, study, language=language)
+    rater.desk.advance(0.1)
+    for code in ("ArrowUp", "KeyT", "ArrowRight", "KeyC", "Space"):
+        rater.key(code)
+        rater.desk.shown.playback.advance(1.0)
+    assert rater.desk.shown.playback.speed == 1.0
+    rater.desk.shown.playback.play_from(1e6)
+    rater.desk.shown.playback.advance(1.0)
+    rate_all(rater)
+    told = everything_told(rater)
+    for trial_id in rater.work.trial_ids:
+        record = study.trial(trial_id).record
+        for secret in (record.trial_id, record.trainee, record.started_utc[:10]):
+            assert secret not in told, secret
+    for name in ("trainee", "score", "mode", "startedUtc", "trialId", "trueTreMm"):
+        assert f'"{name}"' not in told, name
+    assert not re.search(r"\b(hmd|headset|Worst touch|schlechteste Berührung)\b", told)
+    assert rater.desk.seat() == Seat()
+
+
+def test_a_replay_whose_journal_is_damaged_says_so_without_naming_it(rater):
+    rater.key("Escape", *["Digit3"] * 8)
+    following = rater.work.trial_ids[1]
+    (path,) = rater.records.glob(f"*{following}*")
+    path.write_bytes(b"nothing")
+    rater.click("next")
+    rater.desk.advance(0.01)
+    (text,) = rater.menu.paragraphs
+    assert text.startswith("This replay cannot be shown: its journal is damaged")
+    assert following not in text
+    rater.click("leave")
+    assert rater.left == [True]
+
+
+def test_a_mark_that_cannot_be_stored_is_told_and_given_again(rater, study):
+    rater.key("Escape")
+    other = sqlite3.connect(study.database.path, isolation_level=None)
+    other.execute("BEGIN IMMEDIATE")
+    study.database._lock_wait._most_s = 0.0
+    rater.key("Digit4")
+    (warning,) = rater.desk.screen.warnings
+    assert rater.work.marks == {}
+    assert warning.text
+    other.execute("ROLLBACK")
+    other.close()
+    rater.key("Digit4")
+    assert rater.work.marks == {"gears_depth": 4}
+    assert rater.desk.screen.warnings == ()
+
+
+def test_only_trials_with_consent_and_a_journal_are_rated(copied, study):
+    every = trials_to_show(study, copied / RECORDS)
+    assert len(every) == 4
+    journals(copied / RECORDS)[0].unlink()
+    assert len(trials_to_show(study, copied / RECORDS)) == 3
+    for trainee in study.trainees():
+        study.set_consent(trainee.pseudonym, False)
+    with pytest.raises(InputError, match="There is nothing to rate"):
+        trials_to_show(study, copied / RECORDS)
+
+
+class RatingProcess:
+    """`rastrainer rate` as a process, and a page that joins it."""
+
+    def __init__(self, folder, loop_thread, cache):
+        key = secrets.token_hex(32)
+        words = ["rate", str(folder / STUDY_FILE), "--records", str(folder / RECORDS)]
+        words += ["--rater", "R1", "--replays", "2", "--no-window", "--view-port", "0"]
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "rastrainer_simulator.cli.main", *words],
+            env={**os.environ, "RASTRAINER_VIEW_KEY": key, "XDG_CACHE_HOME": str(cache)},
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        self.lines = [self._process.stdout.readline() for _ in range(2)]
+        url = re.search(r"http://\S+?:\d+", self.lines[1])[0]
+        self._view = ViewClient(loop_thread, url, key)
+        self._view.join()
+
+    def press(self, code):
+        self.hold(code)
+        self._view.send({"type": "key", "code": code, "isDown": False, "text": ""})
+
+    def hold(self, code):
+        self._view.send({"type": "key", "code": code, "isDown": True, "text": ""})
+
+    def until(self, condition):
+        """Read on until a screen is as wanted, and return it."""
+
+        def is_wanted(message):
+            return message["type"] == "screen" and condition(message["screen"])
+
+        return self._view.all_until(is_wanted)[-1]["screen"]
+
+    def end(self, has_left):
+        """End it by force, or wait until it has ended of itself; return what it said last."""
+        try:
+            if not has_left:
+                self._process.kill()
+            status = self._process.wait(60)
+            assert (status == 0) is has_left
+            return self._process.stdout.read()
+        finally:
+            self._view.__exit__()
+            self._process.kill()
+            self._process.stdout.close()
+
+
+def titled(text):
+    return lambda screen: screen["menu"] is not None and text in screen["menu"]["title"]
+
+
+@pytest.mark.parametrize(
+    "is_killed", [False, pytest.param(True, marks=pytest.mark.soak)], ids=["left", "killed"]
+)
+def test_the_program_takes_marks_and_goes_on_where_it_was_even_if_killed(
+    copied, loop_thread, tmp_path, is_killed
+):
+    rating = RatingProcess(copied, loop_thread, tmp_path)
+    assert rating.lines[0] == "RASTrainer rating has 2 replays for R1, 0 rated\n"
+    rating.until(lambda screen: "Replay 1 of 2" in screen["instruction"]["text"])
+    rating.press("Escape")
+    rating.until(titled("Depth perception"))
+    rating.press("Digit4")
+    rating.until(titled("Efficiency"))
+    if is_killed:
+        rating.end(has_left=False)
+        rating = RatingProcess(copied, loop_thread, tmp_path)
+        rating.until(lambda screen: "Replay 1 of 2" in screen["instruction"]["text"])
+        rating.press("Escape")
+        rating.until(titled("Efficiency"))
+    for _ in range(7):
+        rating.press("Digit3")
+    rating.until(titled("is rated"))
+    # From the first item over the end to the last.
+    rating.press("ArrowUp")
+    rating.until(lambda screen: screen["menu"]["focus"] == "leave")
+    # Not let go: it ends the program.
+    rating.hold("Enter")
+    assert "1 of 2 replays are rated" in rating.end(has_left=True)
+    with Study.open(copied / STUDY_FILE) as study:
+        data = RatingStore(study).ratings()
+    assert {each.form: each.total for each in data} == {"gears": 13, "osats": 12}
+    assert (
+        main(["export", str(copied / STUDY_FILE), "-o", str(tmp_path / "out"), "--format", "csv"])
+        == 0
+    )
+    rows = (tmp_path / "out" / "csv" / "ratings.csv").read_text(encoding="utf-8").splitlines()
+    assert rows[0] == "trial_id,rater,form,domain,mark"
+    assert f"{data[0].trial_id},R1,gears,gears_depth,4" in rows
+    assert len(rows) == 9
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--view-port", "70000"], "--view-port must be"),
+        (["--replays", "0"], "--replays must be at least 1"),
+        (["--records", "nowhere"], "There is nothing to rate"),
+    ],
+)
+def test_what_cannot_be_rated_is_one_sentence(copied, capsys, words, sentence):
+    assert main(["rate", str(copied / STUDY_FILE), "--rater", "R1", *words]) == 2
+    assert sentence in capsys.readouterr().err
