@@ -129,7 +129,13 @@ def test_a_seat_is_watched_live_from_the_board(browser, board, simulator):
     page.context.close()
 
 
-@pytest.mark.parametrize("locale", [pytest.param("en-US", marks=pytest.mark.soak), "de-DE"])
+@pytest.mark.parametrize(
+    "locale",
+    [
+        "de-DE",
+        *(pytest.param(tag, marks=pytest.mark.soak) for tag in ("en-US", "fr-CA", "es-MX")),
+    ],
+)
 def test_the_board_breaks_no_rule_of_accessibility_and_fits_every_size(
     browser, board, simulator, locale
 ):

@@ -1,4 +1,4 @@
-"""Everyone can use the page: screen readers, zoom, phones and large displays, in both languages."""
+"""Everyone can use the page: screen readers, zoom, phones and large displays, in every language."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
-from Testing.simulator.flow.every_page import every_screen
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+from Testing.simulator.flow.languages import LONGEST, LONGEST_OR_EACH, letters, screens_in
 from Testing.web.chromium import accessibility_checker, open_page
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
@@ -76,9 +77,12 @@ OVERLAPS = """() => {
 }"""
 
 
-@pytest.fixture(scope="module", params=[pytest.param("en", marks=pytest.mark.soak), "de"])
+@pytest.fixture(
+    scope="module",
+    params=["de", *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES if tag != "de")],
+)
 def place(request, tmp_path_factory):
-    """A place in German, whose words are longer; in English in the soak tests."""
+    """A place in German, whose words are long; in every other language in the soak tests."""
     folder = tmp_path_factory.mktemp(request.param)
     language = request.param
     with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS, language=language) as place:
@@ -115,15 +119,14 @@ def complaints(page, screen: str, sizes: tuple[str, ...]) -> list[str]:
 
 
 @LOOKED_AT
-@pytest.mark.parametrize("language", ["en", pytest.param("de", marks=pytest.mark.soak)])
+@pytest.mark.parametrize("language", LONGEST_OR_EACH)
 def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_any_size(
     browser, served, loop, outside, language, sizes
 ):
     page = checked_page(browser, served.url, served.code)
-    preferences = Preferences(language=language)
-    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, preferences)
+    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
     found = []
-    for name, screen in every_screen(presenter).items():
+    for name, screen in screens_in(presenter, language).items():
         served.tell(screen)
         menu = "" if screen.menu is None else screen.menu.name
         page.wait_for_selector(f"body[data-menu='{menu}']", state="attached")
@@ -133,35 +136,38 @@ def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_
     assert found == []
 
 
-AT_WORK = {
-    "en": Screen(
-        status=("Task 4", "12 of 15 points", "2:31", "Point 13: 120 mm right, back"),
-        instruction=ScreenMessage("P07, point 12 is recorded. Now touch point 13.", Tone.GOOD),
-        warnings=(
-            ScreenMessage("The tip is on the skin away from the point: lift it.", Tone.ERROR),
-            ScreenMessage("The head is in the arm's way: approach from another side.", Tone.ERROR),
+def at_work(language: str) -> Screen:
+    """Return a trial with two warnings."""
+    say = Texts(LANGUAGES[language]).say
+    ways = ", ".join(say(f"way.{way}") for way in ("right", "back"))
+    point = say("status.point", point="13")
+    return Screen(
+        language=language,
+        status=(
+            say("task.task-4"),
+            say("status.points", kept=12, count=15),
+            "2:31",
+            say("status.toward", name=point, distance=120, direction=ways),
         ),
-    ),
-    "de": Screen(
-        language="de",
-        status=("Aufgabe 4", "12 von 15 Punkten", "2:31", "Punkt 13: 120 mm rechts, hinten"),
-        instruction=ScreenMessage("P07, Punkt 12 ist erfasst. Berühre jetzt Punkt 13.", Tone.GOOD),
+        instruction=ScreenMessage(say("touched", trainee="P07", label="12", point="13"), Tone.GOOD),
         warnings=(
-            ScreenMessage("Die Spitze liegt neben dem Punkt auf der Haut: Heb sie ab.", Tone.ERROR),
-            ScreenMessage("Der Kopf ist dem Arm im Weg: Komm von einer anderen Seite.", Tone.ERROR),
+            ScreenMessage(say("warning.elsewhere"), Tone.ERROR),
+            ScreenMessage(say("warning.obstacle.links"), Tone.ERROR),
         ),
-    ),
-}
+    )
+
+
 AT_A_GUIDE = """(procedure) => {
   page.touch.takeState({ ...page.state, procedure });
   page.overlay.showInset("Along the skin");
 }"""
 
 
-@pytest.mark.parametrize("language", AT_WORK)
+@pytest.mark.parametrize("language", LONGEST_OR_EACH)
 def test_what_a_thumb_works_with_overlaps_nothing_at_any_size(browser, served, language):
     page = checked_page(browser, served.url, served.code, has_touch=True)
-    screen = AT_WORK[language]
+    spoken = LANGUAGES if language == LONGEST else [language]
+    screen = max(map(at_work, spoken), key=letters)
     served.tell(screen)
     page.wait_for_selector(f"#instruction:has-text('{screen.instruction.text}')")
     page.wait_for_selector("#touch-controls")
@@ -198,12 +204,20 @@ def test_no_part_of_a_trial_breaks_a_rule_of_accessibility_or_overlaps_at_any_si
 NAMES_OF_PICTURE = {
     "en": "Robot, head and operating room",
     "de": "Roboter, Kopf und Operationssaal",
+    "fr": "Robot, tête et salle d’opération",
+    "es": "Robot, cabeza y quirófano",
 }
-NOBODY_DRIVES = {"en": "Nobody drives the robot yet", "de": "Noch steuert niemand den Roboter"}
+NOBODY_DRIVES = {
+    "en": "Nobody drives the robot yet",
+    "de": "Noch steuert niemand den Roboter",
+    "fr": "Personne ne pilote encore le robot",
+    "es": "Nadie maneja aún el robot",
+}
 
 
 def test_the_page_says_its_language(browser, served):
     page = checked_page(browser, served.url, served.code)
+    assert NAMES_OF_PICTURE.keys() == LANGUAGES.keys()
     for language, name in NAMES_OF_PICTURE.items():
         served.tell(Screen(language=language))
         page.wait_for_selector(f"html[lang={language}]")

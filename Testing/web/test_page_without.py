@@ -28,11 +28,13 @@ def address(place) -> str:
     return f"{place.simulator.url}/#code={place.simulator.code}"
 
 
-def test_without_javascript_the_page_says_so_in_both_languages(place, browser):
+def test_without_javascript_the_page_says_so_in_every_language(place, browser):
     page = new_page(browser, java_script_enabled=False)
     page.goto(place.simulator.url)
     assert "RASTrainer needs JavaScript" in page.inner_text("body")
     assert "RASTrainer braucht JavaScript" in page.inner_text("[lang=de]")
+    assert "RASTrainer a besoin de JavaScript" in page.inner_text("[lang=fr]")
+    assert "RASTrainer necesita JavaScript" in page.inner_text("[lang=es]")
     page.context.close()
 
 

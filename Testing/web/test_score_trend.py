@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from Testing.simulator.flow.scored_journals import task_menu
 from Testing.web.chromium import open_page, wait_for
 
@@ -18,7 +19,10 @@ def page(browser, served):
     assert page.problems == []
 
 
-@pytest.mark.parametrize("language", ["en", pytest.param("de", marks=pytest.mark.soak)])
+@pytest.mark.parametrize(
+    "language",
+    ["en", *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES if tag != "en")],
+)
 def test_the_plot_stands_beside_the_tasks_and_every_score_is_its_text(
     page, served, loop, outside, language
 ):

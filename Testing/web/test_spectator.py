@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rastrainer_simulator.net.views.screen import Hint, Menu, MenuItem, Screen, ScreenMessage
+from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 from Testing.web.chromium import (
@@ -166,7 +167,10 @@ def _vector(pose: list[float]) -> str:
     return f"{{ x: {x}, y: {y}, z: {z} }}"
 
 
-@pytest.mark.parametrize("language", [pytest.param("en", marks=pytest.mark.soak), "de"])
+@pytest.mark.parametrize(
+    "language",
+    ["de", *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES if tag != "de")],
+)
 def test_what_a_spectator_sees_breaks_no_rule_of_accessibility(browser, served, language):
     page = watch(browser, served)
     page.evaluate(accessibility_checker())

@@ -19,6 +19,7 @@ from rastrainer_simulator.net.views.screen import ErrorArrow, Screen, Tone
 from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, state_text
 from Testing.simulator.flow.conftest import loop, outside, presenter, shared  # noqa: F401
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
+from Testing.simulator.flow.languages import SHORT_AND_LONG
 
 
 @pytest.fixture
@@ -73,8 +74,15 @@ def test_the_errors_of_the_touches_are_drawn_in_the_color_of_their_size(show):
         assert with_arrow > without + 50, tone
 
 
-@pytest.mark.parametrize("language", ["en", "de"])
-@pytest.mark.parametrize("size", [(1280, 720), (1920, 1080)])
+@pytest.mark.parametrize("language", SHORT_AND_LONG)
+@pytest.mark.parametrize(
+    "size",
+    [
+        (1280, 720),
+        pytest.param((1920, 1080), marks=pytest.mark.soak),
+        pytest.param((3840, 2160), marks=pytest.mark.soak),
+    ],
+)
 def test_no_item_of_any_page_is_clipped(presenter, monkeypatch, language, size):  # noqa: F811
     session = presenter._session
     session.prefer(replace(session.preferences, language=language))

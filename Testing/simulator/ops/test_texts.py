@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import re
 from string import Formatter
 
 import pytest
@@ -11,7 +12,7 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import GAMEPAD_INPUTS, InputDevice, SourceKind
 from rastrainer_simulator.ops.texts.english import ENGLISH
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, pair_label
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
 
 
 def fields(sentence):
@@ -24,6 +25,36 @@ def test_a_language_has_every_sentence_with_the_same_values(language):
     assert set(table) == set(ENGLISH)
     assert [key for key in ENGLISH if fields(table[key]) != fields(ENGLISH[key])] == []
     assert [key for key in table if not table[key].strip()] == []
+
+
+def test_every_language_is_offered_by_its_own_name_in_all_of_them():
+    for tag in LANGUAGES:
+        assert len({table[f"settings.language.{tag}"] for table in LANGUAGES.values()}) == 1
+
+
+def test_french_has_no_break_before_signs_of_two_parts_and_curved_apostrophes():
+    for text in LANGUAGES["fr"].values():
+        said = "".join(written for written, *_ in Formatter().parse(text))
+        assert re.findall(r"[^\u202f][;:!?%»]|«[^\u202f]|'", f" {said}") == [], text
+    assert LANGUAGES["fr"]["waiting.problem"].endswith("lui-même\u202f: {reason}")
+
+
+def test_a_question_and_an_exclamation_are_opened_in_spanish():
+    for text in LANGUAGES["es"].values():
+        assert (text.count("?"), text.count("!")) == (text.count("¿"), text.count("¡"))
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_two_ways_of_a_stick_or_of_arrow_keys_share_the_name_of_the_stick(language):
+    texts = Texts(LANGUAGES[language])
+    for device, name, pairs in (
+        (InputDevice.GAMEPAD, "leftx", ("-leftx", "+leftx", "-lefty", "+lefty")),
+        (InputDevice.GAMEPAD, "rightx", ("-rightx", "+rightx", "-righty", "+righty")),
+        (InputDevice.KEYBOARD, "Arrow", ("ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown")),
+    ):
+        first, second, up, down = (input_label(texts, device.value, each) for each in pairs)
+        assert len(pair_label(first, second)) < len(f"{first} / {second}"), name
+        assert len(pair_label(up, down)) < len(f"{up} / {down}"), name
 
 
 def test_every_key_that_the_code_makes_of_a_name_has_its_sentence():

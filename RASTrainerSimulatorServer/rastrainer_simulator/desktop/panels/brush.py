@@ -17,6 +17,8 @@ from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
 _DPI = 72
 _MEASURE_HEIGHT = "x"
 _BASELINE_SHARE = 0.70
+_IN_THE_FONT = str.maketrans({"\u202f": "\u00a0"})
+"""What stands for what the font lacks: for the narrow no-break space, the wide one."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,8 @@ class Brush:
         lines: list[str] = []
         for paragraph in text.split("\n"):
             line = ""
-            for word in paragraph.split():
+            # Not at the spaces of French, which do not break.
+            for word in filter(None, paragraph.split(" ")):
                 longer = f"{line} {word}".strip()
                 if self.width(longer, style) <= width:
                     line = longer
@@ -91,7 +94,8 @@ class Brush:
 
 @lru_cache(maxsize=2000)
 def _set(text: str, pixels: int, is_bold: bool) -> Letters:
-    return Letters(_coverage(text, pixels, is_bold), _descent(pixels, is_bold))
+    coverage = _coverage(text.translate(_IN_THE_FONT), pixels, is_bold)
+    return Letters(coverage, _descent(pixels, is_bold))
 
 
 @lru_cache(maxsize=100)

@@ -514,6 +514,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.language help": "Language of all screens.",
         "settings.language.en": "English",
         "settings.language.de": "Deutsch",
+        "settings.language.fr": "Français",
+        "settings.language.es": "Español",
         "settings.volume": "Volume",
         "settings.volume help": "Volume of all sounds.",
         "settings.muted": "Mute",

@@ -634,6 +634,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.language help": "Sprache aller Bildschirme.",
         "settings.language.en": "English",
         "settings.language.de": "Deutsch",
+        "settings.language.fr": "Français",
+        "settings.language.es": "Español",
         "settings.volume": "Lautstärke",
         "settings.volume help": "Lautstärke aller Töne.",
         "settings.muted": "Stumm",

@@ -6,9 +6,16 @@ from collections.abc import Mapping
 from string import Formatter
 
 from rastrainer_simulator.ops.texts.english import ENGLISH
+from rastrainer_simulator.ops.texts.french import FRENCH
 from rastrainer_simulator.ops.texts.german import GERMAN
+from rastrainer_simulator.ops.texts.spanish import SPANISH
 
-LANGUAGES: Mapping[str, Mapping[str, str]] = {"en": ENGLISH, "de": GERMAN}
+LANGUAGES: Mapping[str, Mapping[str, str]] = {
+    "en": ENGLISH,
+    "de": GERMAN,
+    "fr": FRENCH,
+    "es": SPANISH,
+}
 """BCP 47 tag → table. What a table lacks is said in English."""
 
 

@@ -1,0 +1,51 @@
+"""Page and board say the same in every language, by the names that the menus have for inputs."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from rastrainer_simulator.ops.texts.texts import LANGUAGES
+
+TEXTS = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web" / "src" / "texts"
+FILES = {"en": "english.ts", "de": "german.ts", "fr": "french.ts", "es": "spanish.ts"}
+ENTRY = re.compile(r'^  "?([^"\n]+?)"?:\s+"((?:[^"\\\n]|\\.)*)",$', re.MULTILINE)
+DRAWN = {
+    "part.leftStick": "gamepad.leftstick",
+    "part.rightStick": "gamepad.rightstick",
+    "part.cross": "gamepad.dpup",
+    "part.back": "gamepad.back",
+    "part.start": "gamepad.start",
+    "part.trigger": "headset.fine",
+    "part.space": "keyboard.Space",
+    "part.enter": "keyboard.Enter",
+    "part.backspace": "keyboard.Backspace",
+    "part.leftShift": "keyboard.ShiftLeft",
+    "part.rightShift": "keyboard.ShiftRight",
+}
+"""What a drawing colors, and the name of the input that the simulator's menus have for it."""
+
+
+def tables(language: str) -> list[dict[str, str]]:
+    """Return the texts of the page and of the board by their names."""
+    source = (TEXTS / FILES[language]).read_text(encoding="utf-8")
+    _, page, board = re.split(r"^export const (?:PAGE|BOARD)", source, flags=re.MULTILINE)
+    return [dict(ENTRY.findall(part)) for part in (page, board)]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_pages_say_the_same_with_the_same_values(language):
+    for table, english in zip(tables(language), tables("en"), strict=True):
+        assert len(english) > 50
+        assert table.keys() == english.keys()
+        for name, text in english.items():
+            assert set(re.findall(r"{\w+}", table[name])) == set(re.findall(r"{\w+}", text)), name
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_a_drawing_colors_has_the_name_that_the_menus_have_for_it(language):
+    page, table = tables(language)[0], LANGUAGES[language]
+    for part, name in DRAWN.items():
+        assert f"{table[name]} ".startswith(f"{page[part]} "), part
