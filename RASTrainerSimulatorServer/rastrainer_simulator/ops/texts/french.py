@@ -2,7 +2,7 @@
 
 Point: point. Touch, as a noun: pointage. Fiducial: marqueur. Landmark: repère. Registration:
 recalage. Target: cible. Trial: essai. Trial run: prise en main. Trace: tracé. Stroke: trait.
-Undo: retirer. Abort: abandonner.
+Undo: retirer. Abort: abandonner. Match: ajustement.
 """
 
 from __future__ import annotations
@@ -53,6 +53,11 @@ _ITEMS: Mapping[str, str] = {
     "ssq_burping": "Éructations",
     "ssq.low": "pas du tout",
     "ssq.high": "fortement",
+    "feedback.skin": "La peau s'était déplacée de {shift:.1f} mm (RMS) et était enfoncée de "
+    "{indentation:.1f} mm : l'erreur vraie à la cible était de {tre:.2f} mm.",
+    "feedback.skin and error": "La peau s'était déplacée de {shift:.1f} mm (RMS) et était enfoncée "
+    "de {indentation:.1f} mm : l'erreur vraie à la cible était de {tre:.2f} mm, et aurait été sans "
+    "cela de {without:.2f} mm.",
 }
 
 _FEEDBACK: Mapping[str, str] = {
@@ -404,6 +409,17 @@ _TABLE: Mapping[str, str] = {
     "clicked-id.delete": "Effacer",
     "clicked-id.done": "Terminé",
     "character.back": "Retour",
+    "pin.title": "PIN du formateur",
+    "pin.text": "Il déverrouille les réglages, l'ordre des tâches et le passage des commandes, "
+    "jusqu'à ce que le stagiaire change ou qu'un essai commence.",
+    "pin.entered": "PIN",
+    "pin.too short": "Un PIN a 6 à 12 chiffres.",
+    "pin.delete": "Effacer",
+    "pin.unlock": "Déverrouiller",
+    "pin.cancel": "Annuler",
+    "pin.unlocked": "Déverrouillé jusqu'à ce que le stagiaire change ou qu'un essai commence.",
+    "pin.wrong": "Ce n'est pas le PIN de ce poste.",
+    "pin.wait": "Il y a eu trop de PIN erronés : attendez {seconds} s.",
     "keyboard.title": "Votre identifiant",
     "keyboard.row": "Écrire",
     "keyboard.delete": "Effacer",
@@ -412,6 +428,9 @@ _TABLE: Mapping[str, str] = {
     "trial.paused": "{trainee}, l'essai est en pause avec {kept} points touchés. Son chronomètre "
     "est arrêté.",
     "trial.complete": "{trainee}, les {kept} points sont touchés.",
+    "trial.paused trace": "{trainee}, l'essai est en pause avec {traced} points tracés. Son "
+    "chronomètre est arrêté.",
+    "trial.complete trace": "{trainee}, {traced} points sont tracés.",
     "trial.resume": "Reprendre",
     "trial.register": "Recaler",
     "trial.controls": "Commandes",
@@ -435,6 +454,28 @@ _TABLE: Mapping[str, str] = {
     "complete.register": "Recaler",
     "complete.undo": "Retirer le dernier pointage",
     "complete.abort": "Abandonner la tâche",
+    "match.title": "Accepter cet ajustement ?",
+    "match.looking": "Le tracé est en cours d'ajustement à la peau …",
+    "match.impossible": "Le tracé ne peut pas être ajusté : {reason}",
+    "match.residual and error": "Le résidu est la distance du tracé à la peau. L'erreur est la "
+    "distance de la cible à l'endroit où elle semble être. Un petit résidu ne signifie pas une "
+    "petite erreur. Après cela, les points ne peuvent plus être modifiés.",
+    "match.residual": "Résidu",
+    "match.counts": "Points qui comptent",
+    "match.interval": "Intervalle à 95 % de cette erreur",
+    "match.interval value": "{low:.2f} à {high:.2f} mm",
+    "match.slides": "L'ajustement peut glisser : la tête peut être décalée de {slide:.1f} mm au "
+    "plus, si petit que soit le résidu. Tracez des endroits orientés autrement, comme le nez, les "
+    "sourcils, les tempes et les joues.",
+    "match.several-minima": "Le tracé s'ajuste à plusieurs endroits. Tracez davantage le visage.",
+    "match.not-converged": "L'ajustement n'était pas stable à son arrêt. Tracez davantage le "
+    "visage.",
+    "match.few-inliers": "Beaucoup de points sont hors de la peau. Gardez la pointe sur la peau "
+    "pendant le tracé.",
+    "match.far-points": "Certains points sont loin de la peau et ne comptent pas.",
+    "match.poor-fit": "Le tracé ne s'ajuste pas à cette tête. Des repères ont-ils été échangés ?",
+    "match.accept": "Accepter et recaler",
+    "match.draw": "Continuer le tracé",
     "waiting.title": "Recalé",
     "waiting.slicer": "{trainee}, 3D Slicer note vos points.",
     "waiting.nobody": "{trainee}, vos points sont conservés. 3D Slicer n'est pas connecté ; il les "
@@ -584,6 +625,9 @@ _TABLE: Mapping[str, str] = {
     # Settings.
     "settings.title": "Réglages",
     "settings.back": "Retour",
+    "settings.unlock": "PIN du formateur",
+    "settings.lock": "Verrouiller à nouveau",
+    "settings.locked": "Verrouillé : un formateur saisit le PIN ci-dessous.",
     "settings.waits": "Cela ne peut pas être modifié avant la fin de l'essai.",
     "settings.language": "Langue",
     "settings.language help": "Langue de tous les écrans.",
@@ -599,7 +643,7 @@ _TABLE: Mapping[str, str] = {
     "settings.muted.no": "Non",
     "settings.order": "Ordre des tâches",
     "settings.order help": "Si les tâches doivent être faites dans leur ordre. Les formateurs "
-    "modifient cela dans le fichier {file}.",
+    "modifient cela avec leur PIN, ou dans le fichier {file}.",
     "settings.order.fixed": "L'une après l'autre",
     "settings.order.any": "Libre",
     "settings.coarse": "Vitesse",
@@ -647,7 +691,7 @@ _TABLE: Mapping[str, str] = {
     "montrer.",
     "settings.tutorial": "Tutoriel",
     "settings.tutorial help": "Si la prise en main l'attend. Une étude peut fixer le sien. Les "
-    "formateurs modifient cela dans le fichier {file}.",
+    "formateurs modifient cela avec leur PIN, ou dans le fichier {file}.",
     "settings.tutorial.required": "Avant la prise en main",
     "settings.tutorial.optional": "Peut être passé",
     "settings.tutorial.skipped": "Aucun",
@@ -721,6 +765,8 @@ _TABLE: Mapping[str, str] = {
     "control.taken": "Maintenant aux commandes : {source}.",
     "control.held": "Aux commandes : {source}. Pour les reprendre, appuyez sur {menu} après "
     "{seconds:.0f} s sans action.",
+    "control.locked": "Aux commandes : {source}. Seul un formateur peut les passer : {menu}, "
+    "Réglages, PIN du formateur.",
     "control.holder": "Aux commandes : {source}",
     "control.nobody": "Aux commandes : personne",
     "source.gamepad": "manette",

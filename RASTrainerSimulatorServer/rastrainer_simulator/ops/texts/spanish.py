@@ -2,7 +2,8 @@
 
 Point: punto. Touch, as a noun: toque. Fiducial: fiducial. Landmark: referencia. Registration:
 registro. Target: objetivo. Trial: ensayo. Trial run: práctica libre. Trace: trazado. Stroke: trazo.
-Undo: deshacer. Abort: abandonar. Record: grabación, because a registro is a registration.
+Undo: deshacer. Abort: abandonar. Record: grabación, because a registro is a registration. Match:
+ajuste. Settings: configuración, because an ajuste is a match.
 """
 
 from __future__ import annotations
@@ -51,6 +52,11 @@ _ITEMS: Mapping[str, str] = {
     "ssq_burping": "Eructos",
     "ssq.low": "nada",
     "ssq.high": "mucho",
+    "feedback.skin": "La piel se había desplazado {shift:.1f} mm (RMS) y estaba hundida "
+    "{indentation:.1f} mm: el error verdadero en el objetivo fue de {tre:.2f} mm.",
+    "feedback.skin and error": "La piel se había desplazado {shift:.1f} mm (RMS) y estaba hundida "
+    "{indentation:.1f} mm: el error verdadero en el objetivo fue de {tre:.2f} mm; sin eso habría "
+    "sido de {without:.2f} mm.",
 }
 
 _FEEDBACK: Mapping[str, str] = {
@@ -182,8 +188,8 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "bloquearla.",
         "too far to lock": "La punta de la guía está a {distance:.0f} mm de la piel a lo largo de "
         "su eje: bloquéela a {limit:.0f} mm como máximo.",
-        "no self-alignment": "Con este ajuste, el robot no alinea la guía por sí mismo: llévela a "
-        "mano a la trayectoria.",
+        "no self-alignment": "Con esta configuración, el robot no alinea la guía por sí mismo: "
+        "llévela a mano a la trayectoria.",
         "line out of reach": "El robot no puede sostener la guía en esta trayectoria a una "
         "distancia de {stand_off:g} mm: elija otra distancia o muévala a mano.",
         "bone is cut": "La broca ha cortado hueso: el orificio se queda donde está. Siga "
@@ -272,7 +278,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "start.train": "Empezar a entrenar",
         "start.introduction": "Introducción",
         "start.controls": "Controles",
-        "start.settings": "Ajustes",
+        "start.settings": "Configuración",
         "start.quit": "Salir",
         "quit.title": "¿Salir de RASTrainer?",
         "quit.text": "El simulador termina para todos los que están conectados a él.",
@@ -326,7 +332,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "experiment.done": "hecho",
         "experiment.task help": "Empezar esta tarea.",
         "experiment.no trainee": "Introduzca primero su ID.",
-        "experiment.being set up": "El simulador está aplicando sus nuevos ajustes.",
+        "experiment.being set up": "El simulador está aplicando su nueva configuración.",
         "experiment.order": "Primero: {task}.",
         "experiment.trial run first": "Primero: {task}. Toque todos sus puntos, o practique hasta "
         "que se acabe su tiempo.",
@@ -400,6 +406,17 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "clicked-id.delete": "Borrar",
         "clicked-id.done": "Hecho",
         "character.back": "Atrás",
+        "pin.title": "PIN del instructor",
+        "pin.text": "Desbloquea la configuración, el orden de las tareas y el paso del control, "
+        "hasta que cambie el participante o empiece un ensayo.",
+        "pin.entered": "PIN",
+        "pin.too short": "Un PIN tiene de 6 a 12 cifras.",
+        "pin.delete": "Borrar",
+        "pin.unlock": "Desbloquear",
+        "pin.cancel": "Cancelar",
+        "pin.unlocked": "Desbloqueado hasta que cambie el participante o empiece un ensayo.",
+        "pin.wrong": "Este no es el PIN de este puesto.",
+        "pin.wait": "Hubo demasiados PIN erróneos: espere {seconds} s.",
         "keyboard.title": "Su ID",
         "keyboard.row": "Escribir",
         "keyboard.delete": "Borrar",
@@ -408,10 +425,13 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "trial.paused": "{trainee}, el ensayo está en pausa con {kept} puntos tocados. Su reloj "
         "está parado.",
         "trial.complete": "{trainee}, los {kept} puntos están tocados.",
+        "trial.paused trace": "{trainee}, el ensayo está en pausa con {traced} puntos trazados. Su "
+        "reloj está parado.",
+        "trial.complete trace": "{trainee}, {traced} puntos están trazados.",
         "trial.resume": "Reanudar",
         "trial.register": "Registrar",
         "trial.controls": "Controles",
-        "trial.settings": "Ajustes",
+        "trial.settings": "Configuración",
         "trial.finish": "Terminar la práctica libre",
         "trial.abort": "Abandonar la tarea",
         "abort.title": "¿Abandonar la tarea?",
@@ -430,6 +450,28 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "complete.register": "Registrar",
         "complete.undo": "Deshacer el último toque",
         "complete.abort": "Abandonar la tarea",
+        "match.title": "¿Aceptar este ajuste?",
+        "match.looking": "El trazado se está ajustando a la piel …",
+        "match.impossible": "El trazado no se puede ajustar: {reason}",
+        "match.residual and error": "El residuo es la distancia del trazado a la piel. El error es "
+        "la distancia del objetivo al lugar donde parece estar. Un residuo pequeño no significa un "
+        "error pequeño. Una vez aceptado, los puntos no se pueden cambiar.",
+        "match.residual": "Residuo",
+        "match.counts": "Puntos que cuentan",
+        "match.interval": "Intervalo del 95 % de ese error",
+        "match.interval value": "de {low:.2f} a {high:.2f} mm",
+        "match.slides": "El ajuste puede deslizarse: la cabeza puede estar desviada hasta "
+        "{slide:.1f} mm, por pequeño que sea el residuo. Trace lugares orientados de otro modo, "
+        "como nariz, cejas, sienes y mejillas.",
+        "match.several-minima": "El trazado se ajusta en varios lugares. Trace más de la cara.",
+        "match.not-converged": "El ajuste no se había estabilizado al detenerse. Trace más de la "
+        "cara.",
+        "match.few-inliers": "Muchos puntos no están en la piel. Mantenga la punta en la piel "
+        "mientras traza.",
+        "match.far-points": "Algunos puntos están lejos de la piel y no cuentan.",
+        "match.poor-fit": "El trazado no se ajusta a esta cabeza. ¿Se intercambiaron referencias?",
+        "match.accept": "Aceptar y registrar",
+        "match.draw": "Seguir trazando",
         "waiting.title": "Registrado",
         "waiting.slicer": "{trainee}, 3D Slicer está puntuando sus puntos.",
         "waiting.nobody": "{trainee}, sus puntos están guardados. 3D Slicer no está conectado; los "
@@ -576,8 +618,11 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "tutorial-done.again": "Repetir el tutorial",
         "tutorial-done.menu": "Menú del experimento",
         # Settings.
-        "settings.title": "Ajustes",
+        "settings.title": "Configuración",
         "settings.back": "Atrás",
+        "settings.unlock": "PIN del instructor",
+        "settings.lock": "Bloquear de nuevo",
+        "settings.locked": "Bloqueado: un instructor introduce abajo el PIN.",
         "settings.waits": "Esto no se puede cambiar hasta que termine el ensayo.",
         "settings.language": "Idioma",
         "settings.language help": "Idioma de todas las pantallas.",
@@ -593,7 +638,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "settings.muted.no": "No",
         "settings.order": "Orden de las tareas",
         "settings.order help": "Si las tareas deben hacerse en su orden. Los instructores lo "
-        "cambian en el archivo {file}.",
+        "cambian con su PIN o en el archivo {file}.",
         "settings.order.fixed": "Una tras otra",
         "settings.order.any": "Cualquiera",
         "settings.coarse": "Velocidad",
@@ -641,7 +686,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "ghost.none": "Sin fantasma: aún no hay ningún ensayo aceptable de esta tarea que mostrar.",
         "settings.tutorial": "Tutorial",
         "settings.tutorial help": "Si la práctica libre lo espera. Un estudio puede fijar el suyo. "
-        "Los instructores lo cambian en el archivo {file}.",
+        "Los instructores lo cambian con su PIN o en el archivo {file}.",
         "settings.tutorial.required": "Antes de la práctica libre",
         "settings.tutorial.optional": "Se puede saltar",
         "settings.tutorial.skipped": "Ninguno",
@@ -716,6 +761,8 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "control.taken": "Ahora controla: {source}.",
         "control.held": "Controla: {source}. Para tomar el control, pulse {menu} tras "
         "{seconds:.0f} s sin entradas.",
+        "control.locked": "Controla: {source}. Solo un instructor puede pasar el control: {menu}, "
+        "Configuración, PIN del instructor.",
         "control.holder": "Controla: {source}",
         "control.nobody": "Controla: nadie",
         "source.gamepad": "mando",
@@ -823,7 +870,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "warning.unmapped": "El mando {name} tiene una disposición desconocida: use otro o el "
         "teclado.",
         "warning.no SDL": "En este ordenador no se pueden leer mandos ({reason}): use el teclado.",
-        "warning.settings": "{reason} Se usan los ajustes predeterminados.",
+        "warning.settings": "{reason} Se usa la configuración predeterminada.",
         # What the window says itself, because the simulator cannot.
         "window.left stick": "Izquierda, derecha, adelante, atrás",
         "window.right stick": "Arriba, abajo, girar",
