@@ -124,12 +124,13 @@ def every_screen(presenter: FlowPresenter) -> dict[str, Screen]:
     for page in _pages(session):
         session.pages.show(page)
         screens[page.name] = flow.screen()
-    session.lock = InstructorLock(_SetPin())
+    lock, session.lock = session.lock, InstructorLock(_SetPin())
     session.pages.show(start.SettingsPage(session))
     screens["locked settings"] = flow.screen()
     screens["somebody else's PIN"] = without_secrets(screens["pin"])
     # A view that does not operate is sent nothing else.
     screens["pin"] = replace(screens["pin"], is_private=False)
+    session.lock = lock
     session.pages.show_start()
     return screens
 

@@ -29,7 +29,7 @@ export const BANNERS: Readonly<Record<Tone, string>> = {
 };
 
 const FAMILY = 'system-ui, "Segoe UI", Roboto, "Noto Sans", sans-serif';
-const LINE = 1.28;
+export const LINE = 1.28;
 
 export interface TextStyle {
   readonly size: number;
