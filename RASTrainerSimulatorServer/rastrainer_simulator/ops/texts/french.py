@@ -97,7 +97,7 @@ _FEEDBACK: Mapping[str, str] = {
     "feedback.bias to the neck": "vers le cou",
     "feedback.bias to the crown": "vers le sommet de la tête",
     "feedback.idle time": "L'outil est resté immobile {idle:.0f} s sur {time:.0f} s : cherchez le "
-    "point suivant pendant que vous êtes encore au précédent.",
+    "point suivant pendant que vous êtes encore à celui-ci.",
     "feedback.detours": "L'outil a parcouru {times:.1f} fois le chemin le plus court : passez "
     "autour de la tête plus près d'elle et d'un seul mouvement.",
     "feedback.repeated touch": "1 pointage a été refusé ou retiré : vérifiez le numéro du point "
@@ -556,8 +556,8 @@ _TABLE: Mapping[str, str] = {
     "procedure-errors.hit": "touché",
     "procedure-lines.title": "Vert : plan. Jaune : selon votre recalage. Bleu : posé.",
     "procedure-lines.back": "Retour",
-    "errors.title": "Votre erreur à chaque point, agrandie {longer:.0f} fois : vert jusqu'à "
-    "{good:.0f} mm, rouge à partir de {poor:.0f} mm",
+    "errors.title": "Vos erreurs, agrandies {longer:.0f} fois : vert jusqu'à {good:.0f} mm, rouge "
+    "dès {poor:.0f} mm",
     "errors.back": "Retour",
     "result.worst": "Montrer le pire pointage",
     "result.menu": "Menu de l'expérience",
@@ -595,7 +595,7 @@ _TABLE: Mapping[str, str] = {
     "vert sur la peau.",
     "tutorial.touch": "Enregistrez le pointage : {control}. Seuls comptent les pointages à moins "
     "de 10 mm du point.",
-    "tutorial.undo": "Tout le monde dérape un jour. Retirez le pointage : {control}.",
+    "tutorial.undo": "Tout le monde peut déraper. Retirez le pointage : {control}.",
     "tutorial.pause": "Ouvrez le menu : {control}. Pendant ce temps, tout attend ; puis reprenez.",
     "tutorial.guided": "Touchez maintenant {count} points, chacun aussi précisément que possible. "
     "Le premier est le point {point}.",
@@ -858,7 +858,7 @@ _TABLE: Mapping[str, str] = {
     "work.off the way": "{trainee}, vous vous écartez du chemin vers le point {point}.",
     "warning.shaft": "La tige touche la tête : relevez l'outil.",
     "warning.elsewhere": "La pointe est sur la peau, hors du point : relevez-la.",
-    "warning.pressing": "Vous appuyez de {depth:.1f} mm : relâchez.",
+    "warning.pressing": "Vous enfoncez la pointe de {depth:.1f} mm : relâchez.",
     "warning.reach": "Le bras ne va pas plus loin dans cette direction.",
     "warning.obstacle.links": "La tête gêne le bras : approchez par un autre côté.",
     "warning.obstacle.self": "Le bras se gêne lui-même : changez de direction.",

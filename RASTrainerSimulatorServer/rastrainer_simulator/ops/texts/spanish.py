@@ -199,8 +199,8 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         # Touches that do not count.
         "too far": "Demasiado lejos del punto {point}: un toque cuenta hasta {radius:g} mm.",
         "above the skin": "{height:.1f} mm por encima de la piel: baje la punta al punto {point}.",
-        "wrong point": "Punto equivocado: es el punto {label}, a {nearest:.1f} mm; le toca al "
-        "punto {point}.",
+        "wrong point": "Punto equivocado: es el punto {label}, a {nearest:.1f} mm; el siguiente es "
+        "el punto {point}.",
         # Commands in the wrong phase.
         "no trial": "No hay ningún ensayo en marcha: empiece uno con StartTask.",
         "another trial is open": "Ese ensayo ha terminado. El que está abierto ahora, {task} de "
@@ -219,7 +219,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "inserting now": "El instrumento está en la guía y el brazo está sujeto: Feed hasta su "
         "objetivo, después ReleaseInstrument.",
         "not all touched": "{kept} de {count} puntos están tocados: Register viene después del "
-        "último; le toca al punto {point}.",
+        "último; el siguiente es el punto {point}.",
         "nothing is traced": "En este ensayo no hay trazado: StartTask con el método surface o "
         "landmarks-surface empieza uno que lo tiene.",
         "landmarks first": "{kept} de {count} referencias están tocadas: Capture para el punto "
@@ -552,8 +552,8 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "procedure-errors.hit": "alcanzado",
         "procedure-lines.title": "Verde: plan. Amarillo: según su registro. Azul: colocado.",
         "procedure-lines.back": "Atrás",
-        "errors.title": "Su error en cada punto, {longer:.0f} veces más largo: verde hasta "
-        "{good:.0f} mm, rojo desde {poor:.0f} mm",
+        "errors.title": "Sus errores, {longer:.0f} veces más largos: verde hasta {good:.0f} mm, "
+        "rojo desde {poor:.0f} mm",
         "errors.back": "Atrás",
         "result.worst": "Mostrar el peor toque",
         "result.menu": "Menú del experimento",
@@ -854,7 +854,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "work.off the way": "{trainee}, se aparta del camino al punto {point}.",
         "warning.shaft": "El vástago toca la cabeza: levante la herramienta.",
         "warning.elsewhere": "La punta está en la piel, fuera del punto: levántela.",
-        "warning.pressing": "Presiona {depth:.1f} mm: afloje.",
+        "warning.pressing": "Hunde la punta {depth:.1f} mm: afloje.",
         "warning.reach": "El brazo no llega más lejos en esta dirección.",
         "warning.obstacle.links": "La cabeza estorba al brazo: acérquese por otro lado.",
         "warning.obstacle.self": "El brazo se estorba a sí mismo: cambie de dirección.",
