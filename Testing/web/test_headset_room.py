@@ -17,7 +17,8 @@ WITHOUT_ROOM = """() => {
   const { fillText } = CanvasRenderingContext2D.prototype;
   CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
     const right = x + this.measureText(text).width;
-    written.push({ text, canvas: this.canvas, left: x, right, y });
+    const size = parseFloat(/([\\d.]+)px/.exec(this.font)[1]);
+    written.push({ text, canvas: this.canvas, left: x, right, y, size });
     return fillText.call(this, text, x, y);
   };
   const { boards } = page.headset;
@@ -28,6 +29,7 @@ WITHOUT_ROOM = """() => {
   written.forEach((one, index) => {
     // Texts of its own that end so have a space before the dots.
     if (/[^ ]…$/.test(one.text)) found.push(`${one.text} is cut`);
+    if (one.size < 24) found.push(`${one.text} is too small to read`);
     const { width, height } = one.canvas;
     const isOff = one.left < 0 || one.right > width || one.y > height - 8;
     if (isOff) found.push(`${one.text} is off its board`);

@@ -55,7 +55,7 @@ class MatchPage(SessionPage):
         expected = self.say("result.mm", error=report.expected_mm)
         return (
             Fact(self.say("match.residual"), self.say("result.mm", error=report.residual_mm)),
-            Fact(self.say("match.counts"), f"{report.inlier_share:.0%}"),
+            Fact(self.say("match.counts"), f"{100.0 * report.inlier_share:.0f} %"),
             Fact(self.say("result.expected tre"), expected, tone),
             Fact(self.say("match.interval"), self.say("match.interval value", low=low, high=high)),
         )

@@ -389,7 +389,7 @@ _TABLE: Mapping[str, str] = {
     "experiment.procedure": "Après les pointages",
     "experiment.procedure help": "Ce qui suit le recalage : rien, ou une procédure, dans laquelle "
     "il sert à placer un instrument. La prise en main n'en a pas.",
-    "experiment.touches alone": "Rien : pointages seuls",
+    "experiment.touches alone": "Rien d'autre",
     "experiment.scenario": "Tête",
     "experiment.back": "Retour",
     "scenario.title": "Têtes",
@@ -669,14 +669,14 @@ _TABLE: Mapping[str, str] = {
     "settings.view help": "Si la vue se tourne d'elle-même vers chaque point suivant tant que les "
     "sticks sont relâchés. L'enregistrement le note. La commande de la meilleure vue agit "
     "toujours.",
-    "settings.view.practice": "Automatique, sauf dans les études",
+    "settings.view.practice": "Sauf dans les études",
     "settings.view.always": "Automatique",
     "settings.view.never": "Seulement sur demande",
-    "settings.guidance": "Guidage vers le point suivant",
+    "settings.guidance": "Guidage au point suivant",
     "settings.guidance help": "Des directions en mots, une flèche, ou ni l'un ni l'autre ; pour un "
     "tracé sur la peau, aussi ce qui est couvert et où continuer. Une étude peut fixer le sien. "
     "L'enregistrement le note.",
-    "settings.guidance.fading": "De moins en moins, de tâche en tâche",
+    "settings.guidance.fading": "De moins en moins",
     "settings.guidance.words": "Mots et flèche",
     "settings.guidance.arrow": "Flèche",
     "settings.guidance.none": "Aucun",

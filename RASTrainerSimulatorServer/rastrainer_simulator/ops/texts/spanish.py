@@ -386,7 +386,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "experiment.procedure": "Después de los toques",
         "experiment.procedure help": "Qué sigue al registro: nada, o un procedimiento en el que "
         "sirve para colocar un instrumento. La práctica libre no tiene ninguno.",
-        "experiment.touches alone": "Nada: solo toques",
+        "experiment.touches alone": "Nada más",
         "experiment.scenario": "Cabeza",
         "experiment.back": "Atrás",
         "scenario.title": "Cabezas",
@@ -665,7 +665,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "settings.view help": "Si la vista gira automáticamente hacia cada punto siguiente "
         "mientras los sticks están sueltos. Consta en la grabación. El control de la mejor vista "
         "funciona siempre.",
-        "settings.view.practice": "Automática, salvo en estudios",
+        "settings.view.practice": "Salvo en estudios",
         "settings.view.always": "Automática",
         "settings.view.never": "Solo a petición",
         "settings.guidance": "Guiado al punto siguiente",

@@ -41,7 +41,7 @@ export const PAGE: PageTexts = french({
   far: "Vue d’ensemble",
   beside: "Le long de la peau",
   across: "En travers de la trajectoire",
-  pairing: "Pour appairer une autre vue : code {code} à {address}",
+  pairing: "Autre vue : code {code} à {address}",
   picture: "Où se trouve chaque commande",
   "touch.touch": "Toucher",
   "touch.undo": "Retirer",

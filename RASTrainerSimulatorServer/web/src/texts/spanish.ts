@@ -40,7 +40,7 @@ export const PAGE: PageTexts = {
   far: "Vista general",
   beside: "A lo largo de la piel",
   across: "Transversal a la trayectoria",
-  pairing: "Para emparejar otra vista: código {code} en {address}",
+  pairing: "Otra vista: código {code} en {address}",
   picture: "Dónde está cada control",
   "touch.touch": "Tocar",
   "touch.undo": "Deshacer",
