@@ -1,5 +1,7 @@
 """A trial on shifted skin: its points are measured with the skin, and that survives everything."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,8 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import CommandName, Phase, check_arguments
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.net.views.news import TraceNews
+from rastrainer_simulator.net.views.presenter import TraceGuidance
 from rastrainer_simulator.record.aborted_archive import interrupted_attempt
 from rastrainer_simulator.record.trial_archive import archived_trial
 from rastrainer_simulator.replay.resimulation import replay
@@ -43,19 +47,24 @@ def measured(simulation, tips_mm):
     return truth.in_world(truth.skin.measured(in_head, mesh))
 
 
-def test_touches_and_trace_are_measured_with_the_skin_through_a_kill_and_a_replay(
+def test_what_is_measured_on_shifted_skin_is_not_shown_and_survives_a_kill_and_a_replay(
     simulation, tmp_path
 ):
     with Server(simulation, tmp_path) as server:
         start(server, skin=SKIN)
         stroke(server, 40)
         server.loop.stop()
-        before = server.training
+        latest = server.loop.latest
+        before = latest.training
     tips = [entry["positionMm"] for entry in read_journal(server.path).of_kind("trace")]
     places = measured(simulation, tips)
     assert np.linalg.norm(places[0] - tips[0]) > 0.5
     found = 1000.0 * np.array([point.position for point in before.trace.points])
     np.testing.assert_allclose(found, places, atol=1e-9)
+    shown = json.loads(TraceNews().news(latest, TraceGuidance(), 0.0))["points"]
+    pose = latest.head_to_world
+    in_head = (tips - 1000.0 * pose[:3, 3]) @ pose[:3, :3]
+    np.testing.assert_allclose(shown, in_head, atol=0.011)
     # The way of the tip is what is measured in millimeters from point to point.
     assert np.linalg.norm(np.diff(tips, axis=0), axis=1).min() >= 1.0 - 1e-9
 
