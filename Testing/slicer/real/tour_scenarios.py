@@ -27,6 +27,17 @@ def zip_file(tour: Tour) -> str:
     return told
 
 
+def compare_methods(tour: Tour) -> str:
+    """Have one simulated trial registered by every method."""
+    hands = tour.hands
+    hands.open("scenarioCollapsibleButton", "methodsGroupBox")
+    hands.find("methodTrialsSpinBox").value = 1
+    hands.click("compareMethodsButton")
+    table = hands.find("methodsTable")
+    hands.wait_until(lambda: table.rowCount == 6, "they are compared", SCENARIO_TIMEOUT_S)
+    return f"{table.item(0, 0).text()}: true TRE {table.item(0, 2).text()} mm"
+
+
 def preview_and_check(tour: Tour) -> str:
     """Look for the head of a volume, and have the choices checked before anything is made."""
     hands = tour.hands

@@ -41,6 +41,7 @@ STEPS: tuple[tuple[str, Callable[[Tour], str | None]], ...] = (
     ("Save and load the scene", tour_afterward.save_and_load_scene),
     ("Place the landmarks of a head", tour_landmarks.place),
     ("Save a scenario and add it", tour_scenarios.zip_file),
+    ("Compare the methods of registration", tour_scenarios.compare_methods),
     ("Preview and check a head", tour_scenarios.preview_and_check),
     ("Make a scenario from a volume", tour_scenarios.scenario_from_volume),
     ("Lead through a study", tour_end.study),

@@ -8,6 +8,7 @@ from typing import Any
 import slicer
 
 from rastrainer.panels.landmarks_panel import LandmarksPanel
+from rastrainer.panels.methods_panel import MethodsPanel
 from rastrainer.panels.new_scenario_panel import NewScenarioPanel
 from rastrainer.panels.next_step_panel import NextStepPanel
 from rastrainer.panels.plan_panel import PlanPanel
@@ -40,8 +41,8 @@ SECTIONS = (
     ScorePanel,
 )
 """In the order of the work."""
-NESTED = (LandmarksPanel,)
-"""Whose widgets are in the file of another section."""
+NESTED = (LandmarksPanel, MethodsPanel)
+"""Whose widgets are in the files of other sections."""
 PANELS = (
     NextStepPanel,
     *SECTIONS,

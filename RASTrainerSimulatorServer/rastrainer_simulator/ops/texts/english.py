@@ -340,7 +340,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "complete.abort": "Abort the task",
         "match.title": "Accept this match?",
         "match.looking": "The trace is being matched to the skin …",
-        "match.impossible": "The trace cannot be matched: {reason}",
+        "match.impossible": "The trace cannot be matched: {reason} Draw on, or undo strokes.",
         "match.residual and error": "The residual is how far the trace is off the skin. The error "
         "is how far the target is from where it seems to be. A small residual does not mean a "
         "small error. Once accepted, the points cannot be changed.",

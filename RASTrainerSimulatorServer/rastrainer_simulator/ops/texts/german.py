@@ -457,7 +457,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "complete.abort": "Aufgabe abbrechen",
         "match.title": "Diese Registrierung annehmen?",
         "match.looking": "Die Spur wird an die Haut angepasst …",
-        "match.impossible": "Die Spur lässt sich nicht anpassen: {reason}",
+        "match.impossible": "Die Spur lässt sich nicht anpassen: {reason} Zieh weiter, oder nimm "
+        "Striche zurück.",
         "match.residual and error": "Das Residuum sagt, wie weit die Spur von der Haut abweicht, "
         "der Fehler, wie weit das Ziel von dort liegt, wo es zu sein scheint. Ein kleines Residuum "
         "bedeutet keinen kleinen Fehler. Danach lassen sich die Punkte nicht mehr ändern.",

@@ -16,6 +16,7 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
+from rastrainer.slicer.logic.method_comparison_logic import MethodComparisonLogic
 from rastrainer.slicer.logic.plan_logic import PlanLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
@@ -95,6 +96,7 @@ class ModuleSession:
         procedure: that the trial continues with.
         traces: shows the trace of the trial on the head.
         landmarks: of a head, in the scene and in scenarios.
+        methodComparison: has trials simulated and registered by every method.
         procedurePlan: of a procedure, in the scene and in scenarios.
         cohort: trials of the published study, with which CTPS compares.
         studyPath: file of the present study.
@@ -177,6 +179,7 @@ class ModuleSession:
         self.procedure = ProcedureLogic(scene, self.link, cache.find, self.work, run)
         self.traces = TraceLogic(scene, self.link, self.work)
         self.landmarks = LandmarkLogic(scene, self.scenarioFiles)
+        self.methodComparison = MethodComparisonLogic(self.simulator)
         self.procedurePlan = ProcedurePlanLogic(scene, self.scenarioFiles)
         self.task = ""
         self.taskTitle = ""
