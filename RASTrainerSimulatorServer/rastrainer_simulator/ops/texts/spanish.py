@@ -451,7 +451,8 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "complete.abort": "Abandonar la tarea",
         "match.title": "¿Aceptar este ajuste?",
         "match.looking": "El trazado se está ajustando a la piel …",
-        "match.impossible": "El trazado no se puede ajustar: {reason}",
+        "match.impossible": "El trazado no se puede ajustar: {reason} Siga trazando, o deshaga "
+        "trazos.",
         "match.residual and error": "El residuo es la distancia del trazado a la piel. El error es "
         "la distancia del objetivo al lugar donde parece estar. Un residuo pequeño no significa un "
         "error pequeño. Una vez aceptado, los puntos no se pueden cambiar.",
