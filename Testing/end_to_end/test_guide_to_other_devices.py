@@ -1,0 +1,54 @@
+"""The adapter of the guide to other devices drives the arm as the guide says."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.igtl.client import Client
+from Testing.end_to_end.simulator_process import SimulatorProcess
+
+GUIDE = Path(__file__).parents[2] / "docs" / "how-to" / "drive-with-another-device.md"
+PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+HELLO = {"protocolVersion": 2, "client": "watcher", "linksHz": 0, "steady": True}
+LINES = 10
+
+
+def tip(message):
+    return np.array([row[3] for row in message.content.matrix[:3]])
+
+
+def wait_for_tip(client, condition):
+    """Return the first position of the tip (3,) float, World mm, that meets a condition."""
+    return tip(client.wait_for("ToolTipToWorld", lambda news: condition(tip(news)), timeout=60))
+
+
+def test_the_adapter_moves_the_arm_as_the_picture_shows_and_lets_it_stop(tmp_path):
+    (program,) = PROGRAM.findall(GUIDE.read_text(encoding="utf-8"))
+    assert "port=18944" in program
+    with (
+        SimulatorProcess(tmp_path / "records", "--no-views", "--no-gamepad") as simulator,
+        Client(port=simulator.port) as client,
+    ):
+        assert client.send_command("Hello", HELLO, timeout=60).ok
+        task = client.send_command("ListTasks", {}, timeout=60).data["tasks"][0]["name"]
+        start = {"task": task, "trainee": "T001", "seed": 1}
+        assert client.send_command("StartTask", start, timeout=60).ok
+        here = [sys.executable, "-c", program.replace("18944", str(simulator.port))]
+        first = wait_for_tip(client, lambda _tip: True)
+        lines = "0 0 0.5\n" * LINES + "touch\nfaster\n"
+        done = subprocess.run(here, input=lines, capture_output=True, text=True)
+        assert done.returncode == 0
+        up = wait_for_tip(client, lambda tip: tip[2] > first[2])
+        steps = [first, up]
+        while np.any(steps[-1] != steps[-2]):
+            steps.append(wait_for_tip(client, lambda _tip: True))
+        np.testing.assert_allclose(steps[-1][:2], first[:2], atol=0.5)
+        assert steps[-1][2] <= first[2] + LINES * 0.1 * 0.5 * 150.0
+    refused, unknown = done.stderr.splitlines()
+    assert refused.startswith("Capture: ")
+    assert unknown == "not understood: faster"
