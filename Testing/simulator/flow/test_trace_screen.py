@@ -166,7 +166,7 @@ def register_matched(trainee):
     facts = {fact.label: fact.value for fact in trainee.menu.facts}
     assert facts == {
         "Residual": "0.42 mm",
-        "Points that count": "97%",
+        "Points that count": "97 %",
         "Expected error at the target (TRE)": "0.31 mm",
         "95 % interval of that error": "0.05 to 1.20 mm",
     }

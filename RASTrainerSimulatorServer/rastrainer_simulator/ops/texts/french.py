@@ -455,8 +455,8 @@ _TABLE: Mapping[str, str] = {
     "complete.abort": "Abandonner la tâche",
     "match.title": "Accepter cet ajustement ?",
     "match.looking": "Le tracé est en cours d'ajustement à la peau …",
-    "match.impossible": "Le tracé ne peut pas être ajusté : {reason} Continuez à tracer, ou retirez "
-    "des traits.",
+    "match.impossible": "Le tracé ne peut pas être ajusté : {reason} Continuez à tracer, ou "
+    "retirez des traits.",
     "match.residual and error": "Le résidu est la distance du tracé à la peau. L'erreur est la "
     "distance de la cible à l'endroit où elle semble être. Un petit résidu ne signifie pas une "
     "petite erreur. Après cela, les points ne peuvent plus être modifiés.",
