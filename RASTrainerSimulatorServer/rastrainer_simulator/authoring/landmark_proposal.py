@@ -19,6 +19,7 @@ from rastrainer.head.face_removal import nose_tip
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
 from rastrainer.registration.fits import RIGID, fit
+from rastrainer.registration.surface_fit import rotations
 from rastrainer.scenario.landmark_checks import FACE_LANDMARKS, NOSE_TIP, spread_first
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Landmark
@@ -154,21 +155,11 @@ def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
         rows = np.hstack([np.cross(q - middle, normal), normal, along])
         off = np.einsum("ij,ij->i", normal, places[nearest[counts]] - q)
         step = np.linalg.lstsq(rows, off, rcond=1e-6)[0]
-        turned = _turn(step[:3])
+        turned = rotations(step[None, :3])[0]
         shift = middle + step[3:6] - turned @ middle
         pose = transforms.rigid(turned, shift) @ pose
         scales = np.clip(scales + step[6:], *SCALES)
     return pose @ np.diag([*scales, 1.0])
-
-
-def _turn(vector: np.ndarray) -> np.ndarray:
-    """Return the rotation (3, 3) by a vector, rad (Rodrigues)."""
-    angle = float(np.linalg.norm(vector))
-    if angle == 0.0:
-        return np.eye(3)
-    x, y, z = vector / angle
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
 
 
 def _is_skin(mesh: HeadMesh) -> np.ndarray:

@@ -99,7 +99,9 @@ class LandmarkLogic:
             InputError: there is one of that title already, or the landmarks cannot be used.
         """
         with self._written() as path:
-            return self._files.saveLandmarks(scenario.name, title, path, ownProgram, progress)
+            return self._files.saveWith(
+                "--landmarks", path, scenario.name, title, ownProgram, progress
+            )
 
     @contextmanager
     def _written(self) -> Iterator[Path]:

@@ -216,7 +216,9 @@ class ProcedurePlanLogic:
         """
         with tempfile.TemporaryDirectory() as temporary:
             path = self._write(Path(temporary), plan)
-            return self._files.saveProcedure(scenario.name, title, path, ownProgram, progress)
+            return self._files.saveWith(
+                "--procedure", path, scenario.name, title, ownProgram, progress
+            )
 
     def _write(self, folder: Path, plan: PlanDescription) -> Path:
         procedure, meshes = self.read(plan)

@@ -202,49 +202,31 @@ class ScenarioFiles:
         plan = planWords(None, node) if isLine else planWords(node, None)
         return self._copy(name, title, plan, ownProgram, progress)
 
-    def saveProcedure(
+    def saveWith(
         self,
+        option: str,
+        file: Path,
         name: str,
         title: str,
-        procedure: Path,
         ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> Scenario:
-        """Copy a scenario with a procedure, in the place of one of the same name.
+        """Copy a scenario with what a file holds, in the place of its own.
 
         Args:
+            option: "--procedure" for a file with one procedure and its meshes beside it, which
+                replaces one of the same name, or "--landmarks" for a markups file with landmarks
+                in the order of touching, which replaces all.
+            file: the file.
             name: of the scenario, which stays as it is.
             title: of the copy.
-            procedure: a file with one procedure, its meshes beside it.
             ownProgram: see the class.
             progress: see the class.
 
         Raises:
-            InputError: there is one of that title already, or the plan cannot be carried out.
+            InputError: there is one of that title already, or what the file holds cannot be used.
         """
-        return self._copy(name, title, ["--procedure", str(procedure)], ownProgram, progress)
-
-    def saveLandmarks(
-        self,
-        name: str,
-        title: str,
-        landmarks: Path,
-        ownProgram: str = "",
-        progress: Progress = lambda _step, _share: None,
-    ) -> Scenario:
-        """Copy a scenario with landmarks in the place of its own.
-
-        Args:
-            name: of the scenario, which stays as it is.
-            title: of the copy.
-            landmarks: a markups file, in the order of touching.
-            ownProgram: see the class.
-            progress: see the class.
-
-        Raises:
-            InputError: there is one of that title already, or the landmarks cannot be used.
-        """
-        return self._copy(name, title, ["--landmarks", str(landmarks)], ownProgram, progress)
+        return self._copy(name, title, [option, str(file)], ownProgram, progress)
 
     def _copy(
         self, name: str, title: str, plan: list[str], ownProgram: str, progress: Progress
