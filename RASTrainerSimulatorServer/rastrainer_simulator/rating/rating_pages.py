@@ -132,7 +132,7 @@ class RatedPage(RatingPage):
         work = self.desk.work
         marks = work.marks
         facts = tuple(
-            Fact(f"{form.title}: {self.say(f'rate.{domain.name}')}", str(marks[domain.name]))
+            Fact(self.say(f"rate.{domain.name}"), str(marks[domain.name]))
             for form in work.forms
             for domain in form.domains
             if domain.name in marks

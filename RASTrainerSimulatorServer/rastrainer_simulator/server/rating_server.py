@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+import json
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
@@ -13,6 +15,7 @@ from rastrainer.journal.replay_track import find_track
 from rastrainer.protocol import DEFAULT_HOST, TRIAL_RUN
 from rastrainer.study.database.study import Study
 from rastrainer.study.rating.rating_work import RatingWork
+from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.net.views.open_views import open_views
 from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import log_folder
@@ -22,6 +25,9 @@ from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.server.replay_server import preferred_language
 from rastrainer_simulator.server.server import stop_on_signals
+
+_OF_SETUP = ("scenario", "robot", "settings", "procedure", "method")
+"""What a journal's header tells of the set-up."""
 
 
 def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
@@ -48,22 +54,37 @@ def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
     return found
 
 
-def load_replay(records: Path, scenario: Path | None, trial_id: str) -> Playback:
-    """Return the playback of a trial; takes seconds.
+class ReplayLoader:
+    """Loads the replays of trials; those of one set-up share it, and views load its scene once."""
 
-    Raises:
-        InputError: it cannot be shown.
-    """
-    try:
-        track = find_track(records, trial_id)
-        setup = setup_of(track.header, scenario)
-        return Playback(RecordedTrial(track, setup), setup)
-    except InputError as error:
-        # Its own sentences may name the journal, and with it the trial.
-        raise InputError(
-            "This replay cannot be shown: its journal is damaged, or was recorded with another "
-            "scenario, whose folder is given with --scenario."
-        ) from error
+    def __init__(self, records: Path, scenario: Path | None) -> None:
+        """Load from a folder of journals; `scenario` is a folder, None the usual one."""
+        self._records = records
+        self._scenario = scenario
+        self._setups: dict[str, SimulationSetup] = {}
+
+    def load(self, trial_id: str) -> Playback:
+        """Return the playback of a trial; takes seconds. Never in two threads at once.
+
+        Raises:
+            InputError: it cannot be shown.
+        """
+        try:
+            track = find_track(self._records, trial_id)
+            setup = self._setup_of(track.header)
+            return Playback(RecordedTrial(track, setup), setup)
+        except InputError as error:
+            # Its own sentences may name the journal, and with it the trial.
+            raise InputError(
+                "This replay cannot be shown: its journal is damaged, or was recorded with another "
+                "scenario, whose folder is given with --scenario."
+            ) from error
+
+    def _setup_of(self, header: Mapping[str, Any]) -> SimulationSetup:
+        key = json.dumps([header.get(name) for name in _OF_SETUP], sort_keys=True)
+        if key not in self._setups:
+            self._setups[key] = setup_of(header, self._scenario)
+        return self._setups[key]
 
 
 def serve_rating(
@@ -79,10 +100,11 @@ def serve_rating(
     Raises:
         InputError: the first replay cannot be shown, or the port cannot be listened on.
     """
+    loader = ReplayLoader(records, scenario)
     with ThreadPoolExecutor(1, "replay") as worker:
 
-        def load(trial_id: str):
-            return worker.submit(load_replay, records, scenario, trial_id)
+        def load(trial_id: str) -> Future[Playback]:
+            return worker.submit(loader.load, trial_id)
 
         first = load(work.trial_id).result()
         asyncio.run(_serve(work, first, load, port, has_window, announce))
@@ -91,7 +113,7 @@ def serve_rating(
 async def _serve(
     work: RatingWork,
     first: Playback,
-    load: Callable,
+    load: Callable[[str], Future[Playback]],
     port: int | None,
     has_window: bool,
     announce: Callable[[str], None],

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from concurrent.futures import Future
 from dataclasses import replace
+from types import MappingProxyType
 
 from rastrainer.protocol import Phase
 from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.rating.forms import FORMS
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
     bindings,
@@ -32,6 +34,7 @@ from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.screen import Screen, without_secrets
 from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
+from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
 
@@ -132,7 +135,38 @@ def every_screen(presenter: FlowPresenter) -> dict[str, Screen]:
     screens["pin"] = replace(screens["pin"], is_private=False)
     session.lock = lock
     session.pages.show_start()
-    return screens
+    return screens | _screens_of_raters(session.texts, session.preferences.language)
+
+
+class _Rated:
+    """The work of a rater, as far as pages show it."""
+
+    place, trial_ids, forms, rated = 4, ("trial",) * 20, tuple(FORMS.values()), 5
+    marks = MappingProxyType({d.name: 4 for form in FORMS.values() for d in form.domains})
+
+
+class _Desk:
+    """A rater's desk, as far as pages show it."""
+
+    work = _Rated()
+
+    def __init__(self, texts):
+        self.texts = texts
+
+
+def _screens_of_raters(texts, language: str) -> dict[str, Screen]:
+    """Return the pages of the form with the longest words, of the marks, and while one waits."""
+    desk = _Desk(texts)
+    form = FORMS["osats"]
+    pages = (
+        DomainPage(desk, form, form.domains[-1]),
+        RatedPage(desk),
+        LoadingPage(desk, _Loading.trial),
+    )
+    return {
+        page.name: Screen(menu=replace(page.menu(), focus=page.first), language=language)
+        for page in pages
+    }
 
 
 def names_of_pages(base: type = SessionPage) -> set[str]:

@@ -24,7 +24,7 @@ from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.presenter import Feedback, Hello, Seat
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
-from rastrainer_simulator.server.rating_server import load_replay, trials_to_show
+from rastrainer_simulator.server.rating_server import ReplayLoader, trials_to_show
 from rastrainer_simulator.virtual.cohort import RECORDS
 from Testing.simulator.net.views.served import ViewClient
 
@@ -35,7 +35,7 @@ PRESSED, AT_REST = 1.0, (0.0,) * 17
 class Rater:
     """Somebody at the desk, with the replays of a study."""
 
-    def __init__(self, folder, study, rater="R1", forms=(GEARS, OSATS), language="en"):
+    def __init__(self, folder, study, loader, rater="R1", forms=(GEARS, OSATS), language="en"):
         self.records = folder / RECORDS
         store = RatingStore(study)
         trials = trials_to_show(study, self.records)
@@ -43,7 +43,8 @@ class Rater:
         self.work = RatingWork(store, rater, order, forms)
         self.store, self.messages, self.left = store, [], []
         self.loaded: list[str] = []
-        first = load_replay(self.records, None, self.work.trial_id)
+        self._loader = loader
+        first = loader.load(self.work.trial_id)
         self.desk = RatingPresenter(
             self.work, first, self._load, language, lambda: self.left.append(True)
         )
@@ -54,7 +55,7 @@ class Rater:
         self.loaded.append(trial_id)
         loading: Future = Future()
         try:
-            loading.set_result(load_replay(self.records, None, trial_id))
+            loading.set_result(self._loader.load(trial_id))
         except InputError as error:
             loading.set_exception(error)
         return loading
@@ -82,9 +83,22 @@ def study(copied):
         yield opened
 
 
+@pytest.fixture(scope="module")
+def setups():
+    """Return the set-ups that loaders have made: it takes a second each time."""
+    return {}
+
+
 @pytest.fixture
-def rater(copied, study):
-    return Rater(copied, study)
+def loader(copied, setups):
+    loader = ReplayLoader(copied / RECORDS, None)
+    loader._setups = setups
+    return loader
+
+
+@pytest.fixture
+def rater(copied, study, loader):
+    return Rater(copied, study, loader)
 
 
 def test_a_replay_is_watched_and_marked_by_keys_one_domain_after_the_other(rater):
@@ -165,6 +179,8 @@ def test_after_a_replay_comes_the_next_and_after_the_last_the_thanks(rater):
     first = rater.desk.shown.playback
     rate_all(rater)
     assert rater.desk.shown.playback is not first
+    # A view loads the scene of another set-up anew.
+    assert rater.desk.shown.setup is first.setup
     assert rater.loaded == list(rater.work.trial_ids[1:])
     assert rater.menu.title == "All 3 replays are rated"
     rater.click("previous")
@@ -178,21 +194,23 @@ def test_after_a_replay_comes_the_next_and_after_the_last_the_thanks(rater):
     assert len(rater.store.ratings()) == 5
 
 
-def test_work_that_was_left_begins_at_the_replay_and_domain_where_it_was(copied, study, rater):
+def test_work_that_was_left_begins_at_the_replay_and_domain_where_it_was(
+    copied, study, loader, rater
+):
     rate_all_but = [f"Digit{mark}" for mark in (1, 2, 3, 4, 5, 1, 2, 3)]
     rater.key("Escape", *rate_all_but)
     rater.click("next")
     rater.desk.advance(0.01)
     rater.key("Escape", "Digit5")
-    again = Rater(copied, study)
+    again = Rater(copied, study, loader)
     assert again.desk.screen.instruction.text == "Replay 2 of 3: watch it, then rate it"
     again.key("Escape")
     assert again.menu.title == "GEARS: Efficiency"
 
 
-def test_who_has_rated_all_is_told_so(copied, study, rater):
+def test_who_has_rated_all_is_told_so(copied, study, loader, rater):
     rate_all(rater)
-    assert Rater(copied, study).menu.title == "All 3 replays are rated"
+    assert Rater(copied, study, loader).menu.title == "All 3 replays are rated"
 
 
 def everything_told(rater):
@@ -208,8 +226,10 @@ def everything_told(rater):
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
-def test_nothing_tells_whose_trial_it_is_when_how_good_and_in_which_mode(copied, study, language):
-    rater = Rater(copied, study, language=language)
+def test_nothing_tells_whose_trial_it_is_when_how_good_and_in_which_mode(
+    copied, study, loader, language
+):
+    rater = Rater(copied, study, loader, language=language)
     rater.desk.advance(0.1)
     for code in ("ArrowUp", "KeyT", "ArrowRight", "KeyC", "Space"):
         rater.key(code)
