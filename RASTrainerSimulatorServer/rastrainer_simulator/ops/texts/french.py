@@ -857,7 +857,7 @@ _TABLE: Mapping[str, str] = {
     "work.on skin": "Sur la peau : appuyez sur {touch}.",
     "work.off the way": "{trainee}, vous vous écartez du chemin vers le point {point}.",
     "warning.shaft": "La tige touche la tête : relevez l'outil.",
-    "warning.elsewhere": "La pointe est sur la peau, hors du point : relevez-la.",
+    "warning.elsewhere": "La pointe touche la peau hors du point : relevez-la.",
     "warning.pressing": "Vous enfoncez la pointe de {depth:.1f} mm : relâchez.",
     "warning.reach": "Le bras ne va pas plus loin dans cette direction.",
     "warning.obstacle.links": "La tête gêne le bras : approchez par un autre côté.",

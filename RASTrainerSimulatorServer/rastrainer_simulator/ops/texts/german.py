@@ -860,7 +860,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "work.on skin": "Auf der Haut: Drücke {touch}.",
         "work.off the way": "{trainee}, du bist abseits des Weges zu Punkt {point}.",
         "warning.shaft": "Der Schaft berührt den Kopf: Hebe das Werkzeug an.",
-        "warning.elsewhere": "Die Spitze ist auf der Haut, aber nicht am Punkt: Hebe sie an.",
+        "warning.elsewhere": "Die Spitze berührt neben dem Punkt: Hebe sie an.",
         "warning.pressing": "Du drückst {depth:.1f} mm tief: Lass nach.",
         "warning.reach": "Weiter reicht der Arm in diese Richtung nicht.",
         "warning.obstacle.links": "Der Arm ist am Kopf: Komm von einer anderen Seite.",
