@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from typing import TypeVar
@@ -12,6 +13,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.control_name import IN_MENUS, OF_VIEW, STICKS, ControlName
 from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.presets import preset_name, presets_of
 from rastrainer_simulator.net.views.screen import Menu, MenuItem
 
 GROUPS = {
@@ -38,9 +40,10 @@ class BindingsPage(SessionPage):
     def menu(self) -> Menu:
         """Return the controls of the group with their inputs."""
         device = self.choice("device", self.say(f"device.{self._device.value}"))
+        preset = self.choice("preset", self.say(f"bindings.preset.{self._preset or 'own'}"))
         group = self.choice("group", self.say(f"bindings.group.{self._group}"))
         controls = tuple(self._control(control) for control in GROUPS[self._group])
-        items = (device, group, *controls, self.button("defaults"), self.button("back"))
+        items = (device, preset, group, *controls, self.button("defaults"), self.button("back"))
         return Menu(self.name, self.say("bindings.title"), items=items)
 
     def accept(self, item: str) -> None:
@@ -55,11 +58,24 @@ class BindingsPage(SessionPage):
             session.pages.open(ListenPage(session, self._device, ControlName(item)))
 
     def step(self, item: str, direction: int) -> None:
-        """Show another device or group."""
+        """Show another device or group, or take another preset for the device."""
         if item == "device":
             self._device = _stepped(tuple(InputDevice), self._device, direction)
+        elif item == "preset":
+            self._take_preset(direction)
         elif item == "group":
             self._group = _stepped(tuple(GROUPS), self._group, direction)
+
+    @property
+    def _preset(self) -> str | None:
+        return preset_name(self._device, self.session.bindings.table(self._device))
+
+    def _take_preset(self, direction: int) -> None:
+        presets = presets_of(self._device)
+        names = tuple(presets)
+        name = names[0] if self._preset is None else _stepped(names, self._preset, direction)
+        changed = {self._device.value: presets[name]}
+        self.session.rebind(dataclasses.replace(self.session.bindings, **changed))
 
     def _control(self, control: ControlName) -> MenuItem:
         inputs = self.session.operator.input_labels(self._device, control)

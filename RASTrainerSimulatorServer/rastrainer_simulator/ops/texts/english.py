@@ -583,6 +583,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         # Controls: what they do, and what they are called.
         "bindings.title": "Change the controls",
         "bindings.device": "Device",
+        "bindings.preset": "Layout",
+        "bindings.preset.two hands": "Two hands",
+        "bindings.preset.left-handed": "Left-handed",
+        "bindings.preset.right alone": "Right hand alone",
+        "bindings.preset.left alone": "Left hand alone",
+        "bindings.preset.own": "Your own",
         "bindings.group": "Controls for",
         "bindings.group.work": "Working",
         "bindings.group.movement": "Moving the tool",

@@ -705,6 +705,12 @@ _TABLE: Mapping[str, str] = {
     # Controls: what they do, and what they are called.
     "bindings.title": "Modifier les commandes",
     "bindings.device": "Appareil",
+    "bindings.preset": "Disposition",
+    "bindings.preset.two hands": "Deux mains",
+    "bindings.preset.left-handed": "Gaucher",
+    "bindings.preset.right alone": "Main droite seule",
+    "bindings.preset.left alone": "Main gauche seule",
+    "bindings.preset.own": "Personnelle",
     "bindings.group": "Commandes pour",
     "bindings.group.work": "Le travail",
     "bindings.group.movement": "Le mouvement de l'outil",

@@ -708,6 +708,12 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         # Controls: what they do, and what they are called.
         "bindings.title": "Steuerung ändern",
         "bindings.device": "Gerät",
+        "bindings.preset": "Belegung",
+        "bindings.preset.two hands": "Beide Hände",
+        "bindings.preset.left-handed": "Linkshändig",
+        "bindings.preset.right alone": "Nur rechte Hand",
+        "bindings.preset.left alone": "Nur linke Hand",
+        "bindings.preset.own": "Eigene",
         "bindings.group": "Steuerung für",
         "bindings.group.work": "Arbeiten",
         "bindings.group.movement": "Bewegen des Werkzeugs",

@@ -701,6 +701,12 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         # Controls: what they do, and what they are called.
         "bindings.title": "Cambiar los controles",
         "bindings.device": "Dispositivo",
+        "bindings.preset": "Distribución",
+        "bindings.preset.two hands": "Dos manos",
+        "bindings.preset.left-handed": "Zurdo",
+        "bindings.preset.right alone": "Solo mano derecha",
+        "bindings.preset.left alone": "Solo mano izquierda",
+        "bindings.preset.own": "Propia",
         "bindings.group": "Controles para",
         "bindings.group.work": "El trabajo",
         "bindings.group.movement": "Mover la herramienta",
