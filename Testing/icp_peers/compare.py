@@ -93,7 +93,7 @@ def compare(name: str, seeds: range) -> list[Comparison]:
         ours = float(np.sum(match.residuals_mm**2))
         for peer in PEERS:
             theirs = vtk_match(trace, skin, start) if peer == "vtk" else moved[peer][row] @ start
-            nearby = fit_to_surface(trace, skin, theirs[None], TOLERANCE_MM, trimmed=False)
+            nearby = fit_to_surface(trace, skin, theirs[None], TOLERANCE_MM, gate_mm=np.inf)
             cost = np.sum(skin.tree.nearest(transforms.apply(theirs, trace)).distances ** 2)
             found.append(
                 Comparison(

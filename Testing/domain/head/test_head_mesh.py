@@ -44,6 +44,9 @@ def test_normals_of_a_sphere_point_away_from_its_center():
     mesh = sphere_mesh()
     outward = mesh.vertices / np.linalg.norm(mesh.vertices, axis=1, keepdims=True)
     assert np.einsum("ij,ij->i", mesh.vertex_normals, outward).min() > 0.9995
+    centers = mesh.vertices[mesh.triangles].mean(axis=1)
+    outward = centers / np.linalg.norm(centers, axis=1)[:, None]
+    assert np.einsum("ij,ij->i", mesh.triangle_normals, outward).min() > 0.999
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,21 @@ def test_points_that_are_followed_have_the_nearest_points_of_a_new_search(head):
         points = points[kept]
 
 
+def test_copies_of_followed_points_have_the_nearest_points_of_a_new_search(head):
+    random = np.random.default_rng(3)
+    points = head.vertices[random.integers(0, len(head.vertices), 40)]
+    points = points + random.normal(0.0, 1.0, points.shape)
+    moves = random.normal(0.0, 0.4, (3, 40, 3))
+    slack = np.linalg.norm(moves, axis=2)
+    followed = FollowedPoints(head.tree, points, slack.max(axis=0))
+    followed.repeat(slack)
+    for share in (1.0, 0.3, 2.0):
+        places = (points + share * moves).reshape(-1, 3)
+        found, again = followed.move(places, slack.ravel()), head.tree.nearest(places)
+        assert np.allclose(found.distances, again.distances, atol=1e-12)
+        assert np.allclose(found.positions, again.positions, atol=1e-9)
+
+
 def test_one_triangle_and_triangles_without_area_have_nearest_points():
     corners = np.array([[[0.0, 0, 0], [2, 0, 0], [0, 2, 0]], [[5.0, 0, 0], [6, 0, 0], [7, 0, 0]]])
     one = TriangleTree(corners[:1]).nearest(np.array([[0.5, 0.5, 3.0], [-1.0, -1.0, 0.0]]))

@@ -20,10 +20,13 @@ class FollowedPoints:
     Args:
         tree: Of the surface.
         points: (n, 3) float, mm, where they are now.
-        slack_mm: By how much they are to move before the surface is searched again.
+        slack_mm: By how much they are to move before the surface is searched again, for all or
+            for each (n,).
     """
 
-    def __init__(self, tree: TriangleTree, points: np.ndarray, slack_mm: float) -> None:
+    def __init__(
+        self, tree: TriangleTree, points: np.ndarray, slack_mm: float | np.ndarray
+    ) -> None:
         count = len(points)
         self._tree = tree
         self._anchors = np.array(points, dtype=float)
@@ -31,7 +34,7 @@ class FollowedPoints:
         self._who = self._triangle = np.zeros(0, dtype=np.int64)
         self._sides = tree.sides.taken(self._triangle)
         self._starts = np.zeros(count, dtype=np.int64)
-        self._search(self._anchors, np.arange(count), np.full(count, slack_mm), None)
+        self._search(self._anchors, np.arange(count), np.full(count, slack_mm, dtype=float), None)
         self._found = self._nearest_of(self._anchors)
 
     @property
@@ -45,11 +48,29 @@ class FollowedPoints:
         number[rows] = np.arange(len(rows))
         self._anchors, self._slack = self._anchors[rows], self._slack[rows]
         (found, places) = self._found
-        found = NearestPoints(found.positions[rows], found.distances[rows], found.triangles[rows])
-        self._found = found, places[rows]
+        self._found = _rows_of(found, rows), places[rows]
         who = number[self._who]
         pairs = np.flatnonzero(who >= 0)
         self._set_pairs(who[pairs], self._triangle[pairs])
+
+    def repeat(self, slack_mm: np.ndarray) -> None:
+        """Follow copies of the points, one set after the other.
+
+        Args:
+            slack_mm: (k, n) float, by how much each copy of each point is to move from here, at
+                most what it was for the point itself.
+        """
+        copies, count = slack_mm.shape
+        squares, _, _ = self._sides.nearest(self._anchors[self._who])
+        least = np.minimum.reduceat(squares, self._starts)
+        near = squares <= _widened(least, slack_mm)[:, self._who]
+        copy, pair = np.nonzero(near)
+        self._anchors = np.tile(self._anchors, (copies, 1))
+        self._slack = slack_mm.ravel()
+        (found, places) = self._found
+        rows = np.tile(np.arange(count), copies)
+        self._found = _rows_of(found, rows), places[rows]
+        self._set_pairs(self._who[pair] + count * copy, self._triangle[pair])
 
     def move(self, points: np.ndarray, slack_mm: np.ndarray) -> NearestPoints:
         """Return the nearest points (n,) of where the points have moved.
@@ -100,6 +121,10 @@ class FollowedPoints:
         self._who, self._triangle = who, triangle
         self._sides = self._tree.sides.taken(triangle)
         self._starts = np.searchsorted(who, np.arange(len(self._anchors)))
+
+
+def _rows_of(found: NearestPoints, rows: np.ndarray) -> NearestPoints:
+    return NearestPoints(found.positions[rows], found.distances[rows], found.triangles[rows])
 
 
 def _widened(squares: np.ndarray, slack: np.ndarray) -> np.ndarray:

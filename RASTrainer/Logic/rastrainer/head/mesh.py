@@ -111,6 +111,14 @@ class HeadMesh:
         return normals / np.where(lengths > 0, lengths, 1.0)
 
     @cached_property
+    def triangle_normals(self) -> np.ndarray:
+        """(m, 3) float: outward unit normals; zero where a triangle has no area."""
+        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        normals = np.cross(b - a, c - a)
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        return np.asarray(normals / np.where(lengths > 0, lengths, 1.0))
+
+    @cached_property
     def triangle_spheres(self) -> tuple[np.ndarray, np.ndarray]:
         """Centers (m, 3) and radii (m,) of spheres that hold the triangles, mm."""
         corners = self.vertices[self.triangles]

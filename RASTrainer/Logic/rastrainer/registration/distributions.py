@@ -84,6 +84,18 @@ def widened_quantile(probability: float, weights: np.ndarray, dof: float, added:
         dof: Degrees of freedom of the χ² variable; infinite where the size is known.
         added: The known variance a coordinate, above 0 where the weights are not.
     """
+    probability_up_to = _widened_distribution(weights, dof, added)
+    return _quantile(probability_up_to, probability, float(np.sum(weights)) + 3.0 * added, 1e-7)
+
+
+def widened_probability(value: float, weights: np.ndarray, dof: float, added: float) -> float:
+    """Return the probability that the sum of `widened_quantile` is not above a value."""
+    return _widened_distribution(weights, dof, added)(value)
+
+
+def _widened_distribution(
+    weights: np.ndarray, dof: float, added: float
+) -> Callable[[float], float]:
     scales, shares = _inverse_chi_square(dof)
     squares, areas = _octant()
     # One row a direction, one column a size.
@@ -93,7 +105,7 @@ def widened_quantile(probability: float, weights: np.ndarray, dof: float, added:
     def probability_up_to(value: float) -> float:
         return float(np.sum(of_nodes * _chi_square_3(value / variances)))
 
-    return _quantile(probability_up_to, probability, float(np.sum(weights)) + 3.0 * added, 1e-7)
+    return probability_up_to
 
 
 def _quantile(

@@ -2,15 +2,16 @@
 
 The sum of the squared distances to the nearest points on the triangles is minimized by the method
 of Gauss and Newton. A distance grows along the line to its nearest point, so each step is that of
-point-to-plane ICP (Chen and Medioni 1992), with that line as the plane's normal. Where it leads
-up, since other triangles are nearest there, it is shortened to the minimum of the parabola through
-both costs and the slope. Points far outside of the spread of all are left out anew in each step
-(trimmed ICP, Chetverikov 2002).
+point-to-plane ICP (Chen and Medioni 1992), with that line as the plane's normal. Near the end, the
+curvature is exact: nearest points on edges and corners are told from those within a triangle. Where
+a step leads up, since other triangles are nearest there, it is shortened to the minimum of the
+parabola through both costs and the slope. Points far outside of the spread of all are left out, in the first steps
+anew each time (trimmed ICP, Chetverikov 2002).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -23,9 +24,17 @@ STEP_MM = 10.0
 """No step moves a point of the trace farther: the nearest points are others there."""
 FOLLOWED_MM = 1.0
 """After a step that moves no point farther, the triangles nearby are kept for the next ones."""
+BENT_MM = 0.5
+"""After a step that moves no point farther, edges and corners count as what they are: before, they
+would keep points from sliding past them, after, the steps would not end."""
+AROUND, AROUND_MM = 1.1, 0.05
+"""Of how far starts lie from their middle, and more: as far, the triangles about it are kept."""
 GATE = 3.5
 """A point counts up to this many standard deviations, estimated from the median distance."""
 LEAST_GATE_MM = 1.0
+GATE_STEPS = 10
+"""After so many steps, the gate only narrows: with a point at the gate, leaving it out and counting
+it again could go on forever."""
 _NORMAL_PER_MEDIAN = 1.4826
 _DAMPING = 1e-7
 """Of the curvature's trace: a direction that the points leave open is not followed far."""
@@ -57,27 +66,23 @@ class SurfaceFit:
 
     def taken(self, rows: np.ndarray) -> SurfaceFit:
         """Return the fit of some of the starts."""
-        return SurfaceFit(
-            self.matrices[rows],
-            self.distances_mm[rows],
-            self.nearest_mm[rows],
-            self.triangles[rows],
-            self.converged[rows],
-            self.iterations[rows],
-        )
+        return SurfaceFit(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+    def joined(self, other: SurfaceFit) -> SurfaceFit:
+        """Return these fits and others of the same points."""
+        pairs = ((getattr(one, field.name) for one in (self, other)) for field in fields(self))
+        return SurfaceFit(*(np.concatenate(list(pair)) for pair in pairs))
 
 
-def gates(distances: np.ndarray, trimmed: bool = True) -> np.ndarray:
+def gates(distances: np.ndarray) -> np.ndarray:
     """Return up to which distance points count, (s,) float, mm, for distances (s, n)."""
-    if not trimmed:
-        return np.full(len(distances), np.inf)
     spread = _NORMAL_PER_MEDIAN * np.median(distances, axis=1)
     return np.maximum(LEAST_GATE_MM, GATE * spread)
 
 
-def costs(distances: np.ndarray, gate: np.ndarray) -> np.ndarray:
-    """Return Σ min(d, gate)², (s,) float, mm², for distances (s, n) and gates (s,)."""
-    return np.sum(np.minimum(distances, gate[:, None]) ** 2, axis=1)
+def costs(distances: np.ndarray, gate: np.ndarray | float) -> np.ndarray:
+    """Return Σ min(d, gate)², (s,) float, mm², for distances (s, n) and gates (s,) or one."""
+    return np.asarray(np.sum(np.minimum(distances, np.reshape(gate, (-1, 1))) ** 2, axis=1))
 
 
 def fit_to_surface(
@@ -86,8 +91,9 @@ def fit_to_surface(
     starts: np.ndarray,
     tolerance_mm: float,
     *,
-    trimmed: bool = True,
+    gate_mm: float | None = None,
     max_iterations: int = MAX_ITERATIONS,
+    around: np.ndarray | None = None,
 ) -> SurfaceFit:
     """Fit points to a surface from each of several starts.
 
@@ -96,25 +102,32 @@ def fit_to_surface(
         mesh: The surface, RAS mm.
         starts: (s, 4, 4) float, rigid, World→RAS.
         tolerance_mm: A start has converged when its next whole step would move no point farther.
-        trimmed: Whether points far outside of the spread are left out.
+        gate_mm: Up to which distance points count; infinite, all count; None: by their spread.
         max_iterations: For each start.
+        around: (4, 4) float, a matrix near all starts; the surface is searched there once for all.
     """
     size, count = len(starts), len(points)
-    followed = FollowedPoints(mesh.tree, transforms_of(starts, points).reshape(-1, 3), 0.0)
+    followed = _followed(points, mesh, starts, around)
     now = _placed(starts, followed.nearest)
     converged, iterations = np.zeros(size, dtype=bool), np.zeros(size, dtype=int)
     share = np.ones(size)
+    limit = np.full(size, np.inf if gate_mm is None else gate_mm)
+    last = np.full(size, np.inf if around is None else 0.0)
     active = np.arange(size)
-    for _ in range(max_iterations):
+    for number in range(max_iterations):
         here = now.taken(active)
-        gate = gates(here.distances_mm, trimmed)
-        step = _step(points, mesh, here, gate)
+        if gate_mm is None:
+            widest = np.inf if number < GATE_STEPS else limit[active]
+            limit[active] = np.minimum(gates(here.distances_mm), widest)
+        gate = limit[active]
+        step = _step(points, mesh, here, gate, last[active] < BENT_MM)
         moved, places, longest = step.taken_by(share[active], here, points)
         # After a small step, all that follow are hardly longer together; after a long one, far more
         # triangles would have to be kept than are found anew.
         slack = np.where(longest < FOLLOWED_MM, longest, 0.0)
         next_ = _placed(moved, followed.move(places.reshape(-1, 3), np.repeat(slack, count)))
         iterations[active] += 1
+        last[active] = longest
         before, after = costs(here.distances_mm, gate), costs(next_.distances_mm, gate)
         better = after <= before
         # `longest` is that of a share of the whole step.
@@ -143,10 +156,7 @@ def plane_normals(mesh: HeadMesh, fit: SurfaceFit, points: np.ndarray) -> np.nda
     normals = offsets / np.where(distances > 0.0, distances, 1.0)
     close = np.nonzero(fit.distances_mm < 1e-6)
     if len(close[0]):
-        corners = mesh.vertices[mesh.triangles[fit.triangles[close]]]
-        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        lengths = np.linalg.norm(across, axis=1, keepdims=True)
-        normals[close] = across / np.where(lengths > 0.0, lengths, 1.0)
+        normals[close] = mesh.triangle_normals[fit.triangles[close]]
     return normals
 
 
@@ -165,6 +175,20 @@ def rotations(vectors: np.ndarray) -> np.ndarray:
     # np.cross(v, e) has the columns of [v]× as its rows.
     cross = np.swapaxes(cross, 1, 2)
     return np.eye(3) + first[:, None, None] * cross + second[:, None, None] * cross @ cross
+
+
+def _followed(
+    points: np.ndarray, mesh: HeadMesh, starts: np.ndarray, around: np.ndarray | None
+) -> FollowedPoints:
+    places = transforms_of(starts, points)
+    if around is None:
+        return FollowedPoints(mesh.tree, places.reshape(-1, 3), 0.0)
+    middle = transforms_of(around[None], points)[0]
+    slack = AROUND * np.linalg.norm(places - middle, axis=2) + AROUND_MM
+    followed = FollowedPoints(mesh.tree, middle, slack.max(axis=0))
+    followed.repeat(slack)
+    followed.move(places.reshape(-1, 3), slack.ravel())
+    return followed
 
 
 def _placed(matrices: np.ndarray, nearest: NearestPoints) -> SurfaceFit:
@@ -218,8 +242,10 @@ class _WholeStep:
         return moved, places, np.sqrt(np.einsum("sni,sni->sn", moves, moves).max(axis=1))
 
 
-def _step(points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray) -> _WholeStep:
-    """Return the steps of Gauss and Newton."""
+def _step(
+    points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray, is_near: np.ndarray
+) -> _WholeStep:
+    """Return the steps of Gauss and Newton; of starts (s,) bool near their ends, of Newton."""
     places = transforms_of(here.matrices, points)
     center = places.mean(axis=1)
     arms = places - center[:, None]
@@ -229,6 +255,9 @@ def _step(points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray
     rows = np.concatenate([normals, _cross(arms, normals) / extent[:, None, None]], axis=2)
     weighted = rows * (here.distances_mm <= gate[:, None])[..., None]
     hessian = np.swapaxes(weighted, 1, 2) @ rows
+    if is_near.any():
+        gate = np.where(is_near, gate, -1.0)
+        _add_bends(hessian, mesh, here, normals, arms, extent, gate)
     gradient = np.einsum("sni,sn->si", weighted, here.distances_mm)
     scale = np.trace(hessian, axis1=1, axis2=2) * _DAMPING + 1e-12
     step = -np.linalg.solve(hessian + scale[:, None, None] * np.eye(6), gradient[..., None])[..., 0]
@@ -236,6 +265,41 @@ def _step(points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray
     step *= np.minimum(1.0, STEP_MM / np.maximum(reach, 1e-12))[:, None]
     slope = 2.0 * np.einsum("si,si->s", gradient, step)
     return _WholeStep(step[:, :3], step[:, 3:] / extent[:, None], center, slope)
+
+
+def _add_bends(
+    hessian: np.ndarray,
+    mesh: HeadMesh,
+    here: SurfaceFit,
+    normals: np.ndarray,
+    arms: np.ndarray,
+    extent: np.ndarray,
+    gate: np.ndarray,
+) -> None:
+    """Add to the curvature (s, 6, 6) of points within gates (s,) what edges and corners add.
+
+    The squared distance to a plane bends along its normal alone, that to an edge also across the
+    edge, and that to a corner in all directions.
+    """
+    own = np.abs(np.einsum("sni,sni->sn", normals, mesh.triangle_normals[here.triangles]))
+    which, point = np.nonzero((own < 1.0 - 1e-7) & (here.distances_mm <= gate[:, None]))
+    if not len(which):
+        return
+    corners = mesh.vertices[mesh.triangles[here.triangles[which, point]]]
+    along = np.roll(corners, -1, axis=1) - corners
+    along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-12)
+    off = here.nearest_mm[which, point][:, None] - corners
+    is_on = np.linalg.norm(np.cross(off, along), axis=2) < 1e-6
+    normal = normals[which, point]
+    edge = along[np.arange(len(which)), is_on.argmax(axis=1)]
+    across = np.cross(edge, normal)
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    is_corner = is_on.sum(axis=1) > 1
+    third = np.cross(normal, across) * is_corner[:, None]
+    for direction in (across, third):
+        turning = _cross(arms[which, point], direction) / extent[which][:, None]
+        rows = np.concatenate([direction, turning], axis=1)
+        np.add.at(hessian, which, rows[:, :, None] * rows[:, None, :])
 
 
 def _next_share(

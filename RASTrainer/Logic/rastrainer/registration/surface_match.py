@@ -9,7 +9,7 @@ from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.registration.starts_aside import starts_aside
+from rastrainer.registration.nearby_minima import lowest_nearby
 from rastrainer.registration.surface_checks import (
     MatchMeasures,
     SurfaceSlide,
@@ -34,8 +34,8 @@ from rastrainer.registration.warnings import RegistrationWarning
 STARTS = 8
 START_SD_MM, START_SD_DEG = 5.0, 5.0
 """Of the starts about the given one, on each axis: what three landmarks leave open."""
-COARSE_POINTS, COARSE_ITERATIONS = 40, 20
-COARSE_TOLERANCE_MM = 0.05
+COARSE_POINTS, COARSE_ITERATIONS, MIDDLE_ITERATIONS = 40, 12, 30
+COARSE_TOLERANCE_MM = 0.2
 MIDDLE_TOLERANCE_MM, TOLERANCE_MM = 0.02, 1e-3
 HOPELESS = 4.0
 """A minimum whose coarse cost is this many times the best one's is followed no further."""
@@ -144,8 +144,8 @@ def match_surface(
     start = check_start(start, trace, skin)
     used = thinned(trace)
     placed = _starts_about(start, used, starts, seed)
-    fit, hopeless, ended = _fit(used, skin, placed, trimmed)
-    return _match(trace, skin, fit, hopeless, ended, trimmed)
+    fit, hopeless, ended, gate = _fit(used, skin, placed, trimmed, seed)
+    return _match(trace, skin, fit, hopeless, ended, gate)
 
 
 def difference_mm(one: np.ndarray, other: np.ndarray, mesh: HeadMesh, points: np.ndarray) -> float:
@@ -169,40 +169,57 @@ def _starts_about(start: np.ndarray, points: np.ndarray, count: int, seed: int) 
 
 
 def _fit(
-    points: np.ndarray, mesh: HeadMesh, starts: np.ndarray, trimmed: bool
-) -> tuple[SurfaceFit, np.ndarray, np.ndarray]:
+    points: np.ndarray, mesh: HeadMesh, starts: np.ndarray, trimmed: bool, seed: int
+) -> tuple[SurfaceFit, np.ndarray, np.ndarray, float]:
     """Return the fits, best first; the matrices of hopeless ones; how many starts ended in each.
 
-    All starts are first followed with some of the points; those that meet go on as one, and the
-    best of them also from both of its sides.
+    The last is up to which distance points count. All starts are first followed with some of the
+    points; those that meet go on as one, and the best of them also from many places next to it.
     """
     few = thinned(points, COARSE_POINTS)
+    every = None if trimmed else np.inf
     coarse = fit_to_surface(
-        few, mesh, starts, COARSE_TOLERANCE_MM, trimmed=trimmed, max_iterations=COARSE_ITERATIONS
+        few, mesh, starts, COARSE_TOLERANCE_MM, gate_mm=every, max_iterations=COARSE_ITERATIONS
     )
-    first, which = _minima(coarse, mesh, points, trimmed)
+    first, which = _minima(coarse, mesh, points, _common_gate(coarse, trimmed))
     score = costs(coarse.distances_mm, _common_gate(coarse, trimmed))[first]
     hopeful = first[score <= HOPELESS * score[0] + 1e-6]
-    begun = coarse.matrices[hopeful]
-    if len(starts) > 1:
-        begun = np.concatenate([begun, starts_aside(few, mesh, coarse, first[0])])
-    middle = fit_to_surface(points, mesh, begun, MIDDLE_TOLERANCE_MM, trimmed=trimmed)
-    lowest, again = _minima(middle, mesh, points, trimmed)
-    again = again[: len(hopeful)]
-    fine = fit_to_surface(points, mesh, middle.matrices[lowest], TOLERANCE_MM, trimmed=trimmed)
-    fine = replace(fine, iterations=middle.iterations[lowest] + fine.iterations)
-    kept, finally_ = _minima(fine, mesh, points, trimmed)
+    middle = fit_to_surface(
+        points,
+        mesh,
+        coarse.matrices[hopeful],
+        MIDDLE_TOLERANCE_MM,
+        gate_mm=every,
+        max_iterations=MIDDLE_ITERATIONS,
+    )
+    gate = _common_gate(middle, trimmed)
+    lowest, again = _minima(middle, mesh, points, gate)
+    fine = _refined(points, mesh, middle.taken(lowest), gate, seed if len(starts) > 1 else None)
+    kept, finally_ = _minima(fine, mesh, points, gate)
     # The hopeless ones keep their places after the others.
     number = np.concatenate([finally_[again], len(kept) + np.arange(len(first) - len(hopeful))])
     others = coarse.matrices[first[len(hopeful) :]]
-    return fine.taken(kept), others, np.bincount(number[which], minlength=len(kept))
+    return fine.taken(kept), others, np.bincount(number[which], minlength=len(kept)), gate
+
+
+def _refined(
+    points: np.ndarray, mesh: HeadMesh, fit: SurfaceFit, gate: float, seed: int | None
+) -> SurfaceFit:
+    """Return fits, best first, that one followed to its end; with a seed, to the lowest near."""
+    best = fit.taken(np.array([0]))
+    if seed is None:
+        fine = fit_to_surface(points, mesh, best.matrices, TOLERANCE_MM, gate_mm=gate)
+    else:
+        fine = lowest_nearby(points, mesh, best, TOLERANCE_MM, gate, seed)
+    fine = replace(fine, iterations=best.iterations + fine.iterations)
+    return fine.joined(fit.taken(np.arange(1, len(fit.matrices))))
 
 
 def _minima(
-    fit: SurfaceFit, mesh: HeadMesh, points: np.ndarray, trimmed: bool
+    fit: SurfaceFit, mesh: HeadMesh, points: np.ndarray, gate: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the best row of each minimum, and in which minimum each row is, (s,) int."""
-    order = costs(fit.distances_mm, _common_gate(fit, trimmed)).argsort(kind="stable")
+    order = costs(fit.distances_mm, gate).argsort(kind="stable")
     first: list[int] = []
     which = np.zeros(len(order), dtype=int)
     for row in order:
@@ -216,9 +233,9 @@ def _minima(
     return np.array(first), which
 
 
-def _common_gate(fit: SurfaceFit, trimmed: bool) -> np.ndarray:
-    """Return one gate for all fits, (s,) float, so that their costs can be compared."""
-    return np.full(len(fit.matrices), gates(fit.distances_mm, trimmed).min())
+def _common_gate(fit: SurfaceFit, trimmed: bool) -> float:
+    """Return one gate for all fits, so that their costs can be compared."""
+    return float(gates(fit.distances_mm).min()) if trimmed else np.inf
 
 
 def _match(
@@ -227,10 +244,9 @@ def _match(
     fit: SurfaceFit,
     hopeless: np.ndarray,
     ended: np.ndarray,
-    trimmed: bool,
+    gate: float,
 ) -> SurfaceMatch:
     matrix = fit.matrices[0]
-    gate = gates(fit.distances_mm[:1], trimmed)[0]
     places = transforms.apply(matrix, trace)
     nearest = mesh.tree.nearest(places)
     of_all = SurfaceFit(
@@ -251,7 +267,7 @@ def _match(
         starts=int(ended.sum()),
         best_starts=int(ended[0]),
         spread_mm=float(_apart(matrix, np.vstack([fit.matrices, hopeless]), mesh).max()),
-        rivals=_rivals(fit, mesh, trimmed),
+        rivals=_rivals(fit, mesh, gate),
         slide=slide_of(places[is_inlier], normals[is_inlier], rms, mesh),
     )
     for values in (matrix, nearest.positions, nearest.distances, normals, is_inlier):
@@ -276,9 +292,9 @@ def _apart(matrix: np.ndarray, others: np.ndarray, mesh: HeadMesh) -> np.ndarray
     return np.linalg.norm(transforms_of(others, center[None])[:, 0] - mesh.middle, axis=1)
 
 
-def _rivals(fit: SurfaceFit, mesh: HeadMesh, trimmed: bool) -> int:
+def _rivals(fit: SurfaceFit, mesh: HeadMesh, gate: float) -> int:
     """Return how many minima lie elsewhere and fit hardly worse than the best one."""
-    score = costs(fit.distances_mm, _common_gate(fit, trimmed))
+    score = costs(fit.distances_mm, gate)
     is_near = score <= RIVAL_COST * score[0] + 1e-9
     elsewhere = _apart(fit.matrices[0], fit.matrices, mesh) > OTHER_MINIMUM_MM
     return int(np.count_nonzero(is_near & elsewhere))

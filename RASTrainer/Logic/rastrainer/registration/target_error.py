@@ -18,7 +18,11 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.registration.distributions import ratio_quantile, widened_quantile
+from rastrainer.registration.distributions import (
+    ratio_quantile,
+    widened_probability,
+    widened_quantile,
+)
 from rastrainer.registration.localization_error import (
     LocalizationError,
     fit_of_errors,
@@ -102,10 +106,11 @@ def target_error(
     """Return the error to expect at a target, with an interval for it.
 
     The interval accounts for the direction dependence of the error and for the uncertainty of the
-    estimated FLE; it is wide for few points. TRE grows with the common offset, so its lower end is
-    that of the distribution without an offset, and its upper end that with the assumed one: at most
-    half of what the confidence leaves lies beyond each of them for every offset in between. An
-    FRE of zero leaves the common offset alone.
+    estimated FLE; it is wide for few points. TRE grows with the common offset, so the lower end is
+    that of the distribution without an offset. The upper end is where, with the assumed offset, the
+    error lies between both with the given confidence. With a smaller one it does so more often: the
+    probability between two ends has a single maximum over the size of the error. An FRE of zero
+    leaves the common offset alone.
 
     Args:
         registration: The registration.
@@ -153,7 +158,7 @@ def error_of_covariance(
     variances = np.linalg.eigvalsh(covariance).clip(min=0.0)
     independent = float(variances.sum())
     added, dof = common_bias_sd_mm**2, degrees_of_freedom
-    tail = (1 - confidence) / 2
+    lowest = _quantile((1 - confidence) / 2, variances, dof, 0.0)
     x, y, z = (float(value) for value in target)
     return TargetError(
         target_mm=(x, y, z),
@@ -161,8 +166,8 @@ def error_of_covariance(
         expected_mm=math.sqrt(independent + 3.0 * added),
         independent_mm=math.sqrt(independent),
         interval_mm=(
-            math.sqrt(_quantile(tail, variances, dof, 0.0)),
-            math.sqrt(_quantile(1 - tail, variances, dof, added)),
+            math.sqrt(lowest),
+            math.sqrt(_highest(lowest, confidence, variances, dof, added)),
         ),
         confidence=confidence,
         common_bias_sd_mm=common_bias_sd_mm,
@@ -189,6 +194,16 @@ def _quantile(probability: float, variances: np.ndarray, dof: float, added: floa
     if added == 0.0 and math.isfinite(dof):
         return ratio_quantile(probability, variances, dof)
     return widened_quantile(probability, variances, dof, added)
+
+
+def _highest(
+    lowest: float, confidence: float, variances: np.ndarray, dof: float, added: float
+) -> float:
+    """Return up to which TRE², mm², from the lowest one, there is so much confidence."""
+    if added == 0.0:
+        return _quantile((1 + confidence) / 2, variances, dof, 0.0)
+    below = widened_probability(lowest, variances, dof, added)
+    return _quantile(below + confidence, variances, dof, added)
 
 
 def _propagated(
