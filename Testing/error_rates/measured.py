@@ -33,17 +33,21 @@ class Measured:
 
     def holds(self, standard_errors: float = 0.0) -> bool:
         """Return whether the share is within the limit, with a tolerance in standard errors."""
-        limit = self.at_most if self.at_most is not None else self.at_least
-        if limit is None:
-            return True
-        slack = standard_errors * np.sqrt(limit * (1 - limit) / self.sets)
-        over = self.at_most is None or self.share <= self.at_most + slack
-        return over and (self.at_least is None or self.share >= self.at_least - slack)
+
+        def slack(limit: float) -> float:
+            return standard_errors * float(np.sqrt(limit * (1 - limit) / self.sets))
+
+        over = self.at_most is None or self.share <= self.at_most + slack(self.at_most)
+        if self.at_least is None:
+            return over
+        return over and self.share >= self.at_least - slack(self.at_least)
 
     def cells(self) -> list[str]:
         """Return the row of a table."""
         asked = "–"
-        if self.at_most is not None:
+        if self.at_most is not None and self.at_least is not None:
+            asked = f"{share_text(self.at_least, 0)} to {share_text(self.at_most, 0)}"
+        elif self.at_most is not None:
             asked = f"≤ {share_text(self.at_most, 0)}"
         elif self.at_least is not None:
             asked = f"≥ {share_text(self.at_least, 0)}"

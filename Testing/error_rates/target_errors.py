@@ -16,7 +16,7 @@ from Testing.error_rates.measured import Measured, share_of, share_text
 HEADER = (
     "errors of the touches",
     "interval contains the true TRE",
-    "without the common offset (previous method)",
+    "without the common offset",
     "true TRE, RMS, mm",
     "expected TRE, RMS, mm",
 )

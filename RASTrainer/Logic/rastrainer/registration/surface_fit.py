@@ -5,8 +5,8 @@ of Gauss and Newton. A distance grows along the line to its nearest point, so ea
 point-to-plane ICP (Chen and Medioni 1992), with that line as the plane's normal. Near the end, the
 curvature is exact: nearest points on edges and corners are told from those within a triangle. Where
 a step leads up, since other triangles are nearest there, it is shortened to the minimum of the
-parabola through both costs and the slope. Points far outside of the spread of all are left out, in the first steps
-anew each time (trimmed ICP, Chetverikov 2002).
+parabola through both costs and the slope. Points far outside of the spread of all are left out
+(trimmed ICP, Chetverikov 2002).
 """
 
 from __future__ import annotations
