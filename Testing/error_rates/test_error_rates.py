@@ -21,6 +21,7 @@ FEW = {
     "agreement": 40,
     "biased aim": 5,
     "methods": 2,
+    "match warnings": 1,
     "equal hands": 25,
     "slow hands": 10,
     "several groups": 10,

@@ -86,8 +86,8 @@ def match_text(match: SurfaceMatch, error: TargetError) -> str:
         f"{match.inlier_share:.0%})",
         f"TRE       {error.expected_mm:.3f} mm expected at ({x:.1f}, {y:.1f}, {z:.1f}), "
         f"{error.confidence:.0%} interval from {low:.3f} to {high:.3f} mm",
-        f"Slide     {slide.distance_mm:.1f} mm at most at the {slide.place} of the head, "
-        f"{slide.way}",
+        f"Slide     {slide.distance_mm:.1f} mm at most in the brain, {slide.way}; largest at the "
+        f"{slide.place} of the head",
         f"Starts    {match.best_starts} of {match.starts} ended here; "
         f"spread {match.spread_mm:.1f} mm",
         RESIDUAL_NOTE,

@@ -99,6 +99,27 @@ def test_a_trace_on_the_crown_alone_slides_however_small_its_residual(head, face
     assert "slides" not in codes(match_surface(trace, head, start))
 
 
+@pytest.mark.parametrize("count", [30, 500])
+def test_a_trace_slides_or_not_however_many_points_it_has(head, count):
+    random = np.random.default_rng(count)
+    pose = head_pose(random)
+    for where, slides in (("crown", True), ("face", False)):
+        trace = traced(head, places(head, where), random, pose, 0.5, count)
+        match = match_surface(trace, head, coarse_start(random, pose), starts=1)
+        assert ("slides" in codes(match)) == slides
+
+
+def test_a_few_points_far_from_a_dense_trace_do_not_hide_that_it_slides(head):
+    random = np.random.default_rng(16)
+    pose, crown = head_pose(random), places(head, "crown")
+    dense = traced(head, crown, random, pose, 0.5, 300)
+    away = np.linalg.norm(head.vertices - head.vertices[crown].mean(axis=0), axis=1)
+    aside = np.flatnonzero((away > 60.0) & (away < 80.0))
+    far = traced(head, aside, random, pose, 0.5, 3)
+    match = match_surface(np.vstack([dense, far]), head, coarse_start(random, pose), starts=1)
+    assert "slides" in codes(match)
+
+
 def test_another_head_is_named(head, face):
     trace, start, _ = face(9)
     shape = (head.vertices - head.middle) * [0.85, 1.12, 0.95] + head.middle

@@ -20,10 +20,12 @@ FAR_OFF_MM = 50.0
 HEAD_EXTENT_MM = (80.0, 500.0)
 """Of the longest side of the box around a head."""
 
-LEAST_NOISE_MM = 1.0
-"""Of a traced point, standard deviation; as skin is pressed and drawn along.
-Errors of neighboring points are alike, which residuals do not show."""
-SLIDE_LIMIT_MM = 3.0
+LEAST_NOISE_MM, ALIKE_MM = 1.0, 20.0
+"""Standard deviation of what all points within a cube of so many mm are off alike, as skin is
+pressed and drawn along. Residuals do not show it, and more points in one place do not reduce it."""
+TARGETS_ASIDE_MM = 30.0
+"""Of the places in the brain where a slide is told, from the head's middle along each axis."""
+SLIDE_LIMIT_MM = 3.5
 NORMAL_95 = 1.96
 LEAST_INLIER_SHARE = 0.8
 POOR_RMS_MM = 2.5
@@ -38,9 +40,10 @@ class SurfaceSlide:
     """How far a match may slide along the skin.
 
     Attributes:
-        distance_mm: With 95 % probability, the head is off by no more in this direction.
+        distance_mm: With 95 % probability, no target in the brain is off by more in this
+            direction.
         place: Where on the head it is largest: `front`, `back`, `left`, `right` or `top`.
-        direction: Unit vector, RAS.
+        direction: Unit vector, RAS, at the targets.
     """
 
     distance_mm: float
@@ -160,9 +163,10 @@ def slide_of(
 ) -> SurfaceSlide:
     """Return how far a head may slide under points that its surface fits.
 
-    The curvature of the cost is H = Σ JᵢᵀJᵢ with J = (n, (p − c) × n); σ²H⁻¹ is the covariance of
-    the pose and is propagated to five places of the head. The largest eigenvalue among them, as a
-    95 % limit, is the answer; it ends at 100 mm.
+    The curvature of the cost is H = Σ wᵢ JᵢᵀJᵢ with J = (n, (p − c) × n); σ²H⁻¹ is the covariance
+    of the pose. All points within a cube of 20 mm count as one, w = 1/their number, as their errors
+    are alike. The covariance is propagated to the middle of the head and six places around it. The
+    largest eigenvalue among them, as a 95 % limit, is the answer; it ends at 100 mm.
 
     Args:
         places: (n, 3) float, RAS mm, the points where the match puts them.
@@ -175,16 +179,35 @@ def slide_of(
     rows = np.concatenate([normals, np.cross(places - center, normals)], axis=1)
     half = mesh.size / 2.0
     prior = (noise / _LOOSEST_MM) ** 2 * np.diag([1.0] * 3 + [float(half.max()) ** 2] * 3)
-    covariance = noise**2 * np.linalg.inv(rows.T @ rows + prior)
-    found = []
-    for place, side in _SIDES.items():
-        arm = mesh.middle + half * side - center
-        moves = np.concatenate([np.eye(3), -_cross(arm)], axis=1)
-        values, vectors = np.linalg.eigh(moves @ covariance @ moves.T)
-        found.append((float(values[-1]), place, vectors[:, -1]))
-    variance, place, direction = max(found, key=lambda one: one[0])
+    weighted = rows * _shares_of_cubes(places)[:, None]
+    covariance = noise**2 * np.linalg.inv(weighted.T @ rows + prior)
+    steps = TARGETS_ASIDE_MM * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+    variance, direction = max(
+        (_largest_move(covariance, mesh.middle + step - center) for step in steps),
+        key=lambda one: one[0],
+    )
+    sides = {
+        place: _largest_move(covariance, mesh.middle + half * side - center)[0]
+        for place, side in _SIDES.items()
+    }
     x, y, z = (float(value) for value in direction)
-    return SurfaceSlide(NORMAL_95 * float(np.sqrt(variance)), place, (x, y, z))
+    return SurfaceSlide(
+        NORMAL_95 * float(np.sqrt(variance)), max(sides, key=lambda place: sides[place]), (x, y, z)
+    )
+
+
+def _shares_of_cubes(places: np.ndarray) -> np.ndarray:
+    """Return 1/number of the points (n, 3) in the same cube as each, (n,) float."""
+    cubes = np.floor(places / ALIKE_MM).astype(int)
+    _, which, counts = np.unique(cubes, axis=0, return_inverse=True, return_counts=True)
+    return np.asarray(1.0 / counts[which.reshape(-1)])
+
+
+def _largest_move(covariance: np.ndarray, arm: np.ndarray) -> tuple[float, np.ndarray]:
+    """Return the largest variance, mm², and its direction, at an arm (3,) from the center."""
+    moves = np.concatenate([np.eye(3), -_cross(arm)], axis=1)
+    values, vectors = np.linalg.eigh(moves @ covariance @ moves.T)
+    return float(values[-1]), vectors[:, -1]
 
 
 _SIDES = {
@@ -215,9 +238,10 @@ def find_match_warnings(
         found.append(
             _warning(
                 "slides",
-                f"The match may slide: the {slide.place} of the head may be off by up to "
-                f"{slide.distance_mm:.1f} mm {slide.way}, however small the residual is; trace "
-                "places that face other ways, such as nose, brows, temples and cheeks.",
+                f"The match may slide: targets in the brain may be off by up to "
+                f"{slide.distance_mm:.1f} mm {slide.way}, and the {slide.place} of the head most, "
+                "however small the residual is; trace places that face other ways, such as nose, "
+                "brows, temples and cheeks.",
             )
         )
     if measures.rivals or measures.best_starts < LEAST_BEST_SHARE * measures.starts:

@@ -348,7 +348,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "match.counts": "Points that count",
         "match.interval": "95 % interval of that error",
         "match.interval value": "{low:.2f} to {high:.2f} mm",
-        "match.slides": "The match may slide: the head may be off by up to {slide:.1f} mm, however "
+        "match.slides": "The match may slide: a target may be off by up to {slide:.1f} mm, however "
         "small the residual is. Trace places that face other ways, such as nose, brows, temples "
         "and cheeks.",
         "match.several-minima": "The trace fits in several places. Trace more of the face.",

@@ -466,7 +466,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "match.counts": "Punkte, die zählen",
         "match.interval": "95-%-Intervall dieses Fehlers",
         "match.interval value": "{low:.2f} bis {high:.2f} mm",
-        "match.slides": "Die Lage kann verrutschen: Der Kopf kann um bis zu {slide:.1f} mm falsch "
+        "match.slides": "Die Lage kann verrutschen: Ein Ziel kann um bis zu {slide:.1f} mm falsch "
         "liegen, wie klein das Residuum auch ist. Zieh über Stellen, die anders gerichtet sind, "
         "etwa Nase, Brauen, Schläfen und Wangen.",
         "match.several-minima": "Die Spur passt an mehreren Stellen. Zieh über mehr vom Gesicht.",
