@@ -20,7 +20,7 @@ _SENTENCES = {LOWEST: "low", (LOWEST + HIGHEST) // 2: "middle", HIGHEST: "high"}
 """Marks that a sentence describes."""
 
 
-class RatingDesk(Protocol):
+class RatingActions(Protocol):
     """What the pages need of the program."""
 
     work: RatingWork
@@ -41,16 +41,16 @@ class RatingDesk(Protocol):
 
 
 class RatingPage(Page):
-    """A page of the desk."""
+    """A page that a rater reads."""
 
-    def __init__(self, desk: RatingDesk) -> None:
-        self.desk = desk
+    def __init__(self, actions: RatingActions) -> None:
+        self.actions = actions
 
     def say(self, key: str, **values: object) -> str:
         """Return a sentence in the chosen language, with the replay's place among all."""
-        work = self.desk.work
+        work = self.actions.work
         place = {"number": work.place + 1, "count": len(work.trial_ids)}
-        return self.desk.texts.say(key, **place, **values)
+        return self.actions.texts.say(key, **place, **values)
 
     def button(self, name: str, **others: Any) -> MenuItem:
         """Return a button; its label is that of its name on all pages."""
@@ -58,39 +58,39 @@ class RatingPage(Page):
 
     def back(self) -> None:
         """Watch the replay again."""
-        self.desk.watch()
+        self.actions.watch()
 
     def accept(self, item: str) -> None:
         """Do what every page offers."""
-        desk = self.desk
+        actions = self.actions
         if item == "undo":
-            desk.work.undo()
-            desk.rate()
+            actions.work.undo()
+            actions.rate()
         elif item == "watch":
-            desk.watch()
+            actions.watch()
         elif item == "previous":
-            desk.work.go_back()
-            desk.load()
+            actions.work.go_back()
+            actions.load()
         elif item == "leave":
-            desk.leave()
+            actions.leave()
 
 
 class DomainPage(RatingPage):
-    """Takes one mark, and goes on to the next domain."""
+    """Takes one mark, and leads to the next domain."""
 
     name = "rating"
     # Not on a mark, which would be given more often than others.
     first = "watch"
 
-    def __init__(self, desk: RatingDesk, form: RatingForm, domain: RatingDomain) -> None:
-        super().__init__(desk)
+    def __init__(self, actions: RatingActions, form: RatingForm, domain: RatingDomain) -> None:
+        super().__init__(actions)
         self._form, self._domain = form, domain
 
     def menu(self) -> Menu:
         """Return the marks, three of them with what they mean."""
         domain = self._domain.name
         marks = (MenuItem(f"{_MARK}{mark}", self._label(mark)) for mark in MARKS)
-        others = ["undo"] if self.desk.work.marks else []
+        others = ["undo"] if self.actions.work.marks else []
         buttons = (self.button(name) for name in (*others, "watch", "leave"))
         title = self.say("rating.title", form=self._form.title, domain=self.say(f"rate.{domain}"))
         text = self.say("rating.text")
@@ -111,8 +111,8 @@ class DomainPage(RatingPage):
         return True
 
     def _give(self, mark: int) -> None:
-        self.desk.work.give(mark)
-        self.desk.rate()
+        self.actions.work.give(mark)
+        self.actions.rate()
 
     def _label(self, mark: int) -> str:
         if mark not in _SENTENCES:
@@ -129,7 +129,7 @@ class RatedPage(RatingPage):
 
     def menu(self) -> Menu:
         """Return the marks, and where one can go."""
-        work = self.desk.work
+        work = self.actions.work
         marks = work.marks
         facts = tuple(
             Fact(self.say(f"rate.{domain.name}"), str(marks[domain.name]))
@@ -150,10 +150,10 @@ class RatedPage(RatingPage):
         return Menu(self.name, title, (text,), facts, tuple(map(self.button, names)))
 
     def accept(self, item: str) -> None:
-        """Go on, or do what every page offers."""
+        """Go to the next replay, or do what every page offers."""
         if item == "next":
-            self.desk.work.go_on()
-            self.desk.load()
+            self.actions.work.go_to_next()
+            self.actions.load()
         else:
             super().accept(item)
 
@@ -163,8 +163,8 @@ class LoadingPage(RatingPage):
 
     name = "rating-loading"
 
-    def __init__(self, desk: RatingDesk, loading: Future[Playback]) -> None:
-        super().__init__(desk)
+    def __init__(self, actions: RatingActions, loading: Future[Playback]) -> None:
+        super().__init__(actions)
         self._loading = loading
 
     def menu(self) -> Menu:
@@ -174,7 +174,7 @@ class LoadingPage(RatingPage):
             error = self._loading.exception()
             problem = str(error) if isinstance(error, InputError) else ""
         text = problem or self.say("rating-loading.text")
-        names = ["previous"] if self.desk.work.place else []
+        names = ["previous"] if self.actions.work.place else []
         buttons = tuple(map(self.button, (*names, "leave")))
         return Menu(self.name, self.say("rating-loading.title"), (text,), items=buttons)
 

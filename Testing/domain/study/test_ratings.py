@@ -130,7 +130,7 @@ def test_when_all_is_rated_there_is_nothing_to_go_on_with(store):
     trial_ids = store.assign("R1", TRIALS, 3, random.Random(1))
     work = RatingWork(store, "R1", trial_ids, (GEARS,))
     places = []
-    while work.go_on():
+    while work.go_to_next():
         places.append(work.place)
         for mark in (3, 3, 3, 4):
             work.give(mark)
@@ -150,7 +150,7 @@ def test_only_whole_forms_are_ratings(store):
 def test_ratings_go_with_their_trainee(study, store):
     trial_ids = store.assign("R1", TRIALS, 8, random.Random(1))
     work = RatingWork(store, "R1", trial_ids, (GEARS,))
-    while work.go_on():
+    while work.go_to_next():
         for _ in GEARS.domains:
             work.give(2)
     study.delete_trainee("T0")

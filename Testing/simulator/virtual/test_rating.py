@@ -33,7 +33,7 @@ PRESSED, AT_REST = 1.0, (0.0,) * 17
 
 
 class Rater:
-    """Somebody at the desk, with the replays of a study."""
+    """Somebody at the presenter, with the replays of a study."""
 
     def __init__(self, folder, study, loader, rater="R1", forms=(GEARS, OSATS), language="en"):
         self.records = folder / RECORDS
@@ -45,11 +45,11 @@ class Rater:
         self.loaded: list[str] = []
         self._loader = loader
         first = loader.load(self.work.trial_id)
-        self.desk = RatingPresenter(
+        self.presenter = RatingPresenter(
             self.work, first, self._load, language, lambda: self.left.append(True)
         )
-        self.desk.subscribe(self.messages.append)
-        self.desk.view_joined(VIEW, Hello("page"))
+        self.presenter.subscribe(self.messages.append)
+        self.presenter.view_joined(VIEW, Hello("page"))
 
     def _load(self, trial_id):
         self.loaded.append(trial_id)
@@ -63,18 +63,18 @@ class Rater:
     def key(self, *codes):
         for code in codes:
             for is_down in (True, False):
-                self.desk.on_key(VIEW, code, is_down, "")
+                self.presenter.on_key(VIEW, code, is_down, "")
 
     def click(self, *items):
         for item in items:
-            menu = self.desk.screen.menu
-            hints = [hint.item for hint in self.desk.screen.hints]
+            menu = self.presenter.screen.menu
+            hints = [hint.item for hint in self.presenter.screen.hints]
             assert item in [*hints, *([] if menu is None else [each.name for each in menu.items])]
-            self.desk.on_item(VIEW, item)
+            self.presenter.on_item(VIEW, item)
 
     @property
     def menu(self):
-        return self.desk.screen.menu
+        return self.presenter.screen.menu
 
 
 @pytest.fixture
@@ -103,9 +103,9 @@ def rater(copied, study, loader):
 
 def test_a_replay_is_watched_and_marked_by_keys_one_domain_after_the_other(rater):
     assert rater.menu is None
-    assert rater.desk.screen.instruction.text == "Replay 1 of 3: watch it, then rate it"
+    assert rater.presenter.screen.instruction.text == "Replay 1 of 3: watch it, then rate it"
     rater.key("Escape")
-    assert not rater.desk.shown.playback.is_playing
+    assert not rater.presenter.shown.playback.is_playing
     titles = []
     for mark in (1, 2, 3, 4, 5, 4, 3, 2):
         titles.append(rater.menu.title)
@@ -127,14 +127,14 @@ def test_marks_are_given_by_clicks_and_the_three_sentences_are_there(rater):
     assert rater.work.marks == {"gears_depth": 4, "gears_efficiency": 5}
     rater.click("watch")
     assert rater.menu is None
-    assert rater.desk.shown.playback.is_playing
+    assert rater.presenter.shown.playback.is_playing
 
 
 def test_marks_are_given_by_a_gamepad_and_by_controllers(rater):
     def press(button):
         held = tuple(PRESSED if number == button else 0.0 for number in range(17))
-        rater.desk.on_pad(VIEW, (0.0,) * 4, held)
-        rater.desk.on_pad(VIEW, (0.0,) * 4, AT_REST)
+        rater.presenter.on_pad(VIEW, (0.0,) * 4, held)
+        rater.presenter.on_pad(VIEW, (0.0,) * 4, AT_REST)
 
     press(9)
     assert rater.menu.name == "rating"
@@ -144,7 +144,7 @@ def test_marks_are_given_by_a_gamepad_and_by_controllers(rater):
     press(0)
     assert rater.work.marks == {"gears_depth": 2}
     for control in ("down", "down", "touch"):
-        rater.desk.on_press(VIEW, control)
+        rater.presenter.on_press(VIEW, control)
     assert rater.work.marks == {"gears_depth": 2, "gears_efficiency": 1}
     press(1)
     assert rater.menu is None
@@ -152,17 +152,17 @@ def test_marks_are_given_by_a_gamepad_and_by_controllers(rater):
 
 def test_a_key_or_button_that_is_held_is_taken_once(rater):
     for _ in range(3):
-        rater.desk.on_key(VIEW, "Escape", True, "")
+        rater.presenter.on_key(VIEW, "Escape", True, "")
     assert rater.menu.name == "rating"
     for _ in range(5):
-        rater.desk.on_key(VIEW, "Digit4", True, "")
+        rater.presenter.on_key(VIEW, "Digit4", True, "")
     assert rater.work.marks == {"gears_depth": 4}
-    rater.desk.on_key(VIEW, "Digit4", False, "")
+    rater.presenter.on_key(VIEW, "Digit4", False, "")
     back = tuple(PRESSED if number == 1 else 0.0 for number in range(17))
     for _ in range(5):
-        rater.desk.on_pad(VIEW, (0.0,) * 4, back)
+        rater.presenter.on_pad(VIEW, (0.0,) * 4, back)
     assert rater.menu is None
-    assert rater.desk.shown.playback.is_playing
+    assert rater.presenter.shown.playback.is_playing
 
 
 def rate_all(rater, mark=3):
@@ -172,20 +172,20 @@ def rate_all(rater, mark=3):
             rater.key(f"Digit{mark}")
         if "next" in {item.name for item in rater.menu.items}:
             rater.click("next")
-            rater.desk.advance(0.01)
+            rater.presenter.advance(0.01)
 
 
 def test_after_a_replay_comes_the_next_and_after_the_last_the_thanks(rater):
-    first = rater.desk.shown.playback
+    first = rater.presenter.shown.playback
     rate_all(rater)
-    assert rater.desk.shown.playback is not first
+    assert rater.presenter.shown.playback is not first
     # A view loads the scene of another set-up anew.
-    assert rater.desk.shown.setup is first.setup
+    assert rater.presenter.shown.setup is first.setup
     assert rater.loaded == list(rater.work.trial_ids[1:])
     assert rater.menu.title == "All 3 replays are rated"
     rater.click("previous")
-    rater.desk.advance(0.01)
-    assert rater.desk.screen.instruction.text.startswith("Replay 2 of 3")
+    rater.presenter.advance(0.01)
+    assert rater.presenter.screen.instruction.text.startswith("Replay 2 of 3")
     rater.key("Escape")
     rater.click("undo")
     assert rater.work.rated == 2
@@ -200,10 +200,10 @@ def test_work_that_was_left_begins_at_the_replay_and_domain_where_it_was(
     rate_all_but = [f"Digit{mark}" for mark in (1, 2, 3, 4, 5, 1, 2, 3)]
     rater.key("Escape", *rate_all_but)
     rater.click("next")
-    rater.desk.advance(0.01)
+    rater.presenter.advance(0.01)
     rater.key("Escape", "Digit5")
     again = Rater(copied, study, loader)
-    assert again.desk.screen.instruction.text == "Replay 2 of 3: watch it, then rate it"
+    assert again.presenter.screen.instruction.text == "Replay 2 of 3: watch it, then rate it"
     again.key("Escape")
     assert again.menu.title == "GEARS: Efficiency"
 
@@ -215,12 +215,12 @@ def test_who_has_rated_all_is_told_so(copied, study, loader, rater):
 
 def everything_told(rater):
     """Return all that a view could have been sent."""
-    desk = rater.desk
+    presenter = rater.presenter
     told = [outgoing.screen(m) for m in rater.messages if isinstance(m, Screen)]
     told += [outgoing.event(m) for m in rater.messages if isinstance(m, Feedback)]
-    state = desk.shown.latest
-    told.append(outgoing.state(state, 0, desk.pictures(state), None))
-    setup = desk.shown.setup
+    state = presenter.shown.latest
+    told.append(outgoing.state(state, 0, presenter.pictures(state), None))
+    setup = presenter.shown.setup
     told.append(outgoing.scene("0" * 64, setup.scenario, state.training.task, setup.settings.axes))
     return "\n".join(told)
 
@@ -230,13 +230,13 @@ def test_nothing_tells_whose_trial_it_is_when_how_good_and_in_which_mode(
     copied, study, loader, language
 ):
     rater = Rater(copied, study, loader, language=language)
-    rater.desk.advance(0.1)
+    rater.presenter.advance(0.1)
     for code in ("ArrowUp", "KeyT", "ArrowRight", "KeyC", "Space"):
         rater.key(code)
-        rater.desk.shown.playback.advance(1.0)
-    assert rater.desk.shown.playback.speed == 1.0
-    rater.desk.shown.playback.play_from(1e6)
-    rater.desk.shown.playback.advance(1.0)
+        rater.presenter.shown.playback.advance(1.0)
+    assert rater.presenter.shown.playback.speed == 1.0
+    rater.presenter.shown.playback.play_from(1e6)
+    rater.presenter.shown.playback.advance(1.0)
     rate_all(rater)
     told = everything_told(rater)
     for trial_id in rater.work.trial_ids:
@@ -246,7 +246,7 @@ def test_nothing_tells_whose_trial_it_is_when_how_good_and_in_which_mode(
     for name in ("trainee", "score", "mode", "startedUtc", "trialId", "trueTreMm"):
         assert f'"{name}"' not in told, name
     assert not re.search(r"\b(hmd|headset|Worst touch|schlechteste Berührung)\b", told)
-    assert rater.desk.seat() == Seat()
+    assert rater.presenter.seat() == Seat()
 
 
 def test_a_replay_whose_journal_is_damaged_says_so_without_naming_it(rater):
@@ -255,7 +255,7 @@ def test_a_replay_whose_journal_is_damaged_says_so_without_naming_it(rater):
     (path,) = rater.records.glob(f"*{following}*")
     path.write_bytes(b"nothing")
     rater.click("next")
-    rater.desk.advance(0.01)
+    rater.presenter.advance(0.01)
     (text,) = rater.menu.paragraphs
     assert text.startswith("This replay cannot be shown: its journal is damaged")
     assert following not in text
@@ -269,14 +269,14 @@ def test_a_mark_that_cannot_be_stored_is_told_and_given_again(rater, study):
     other.execute("BEGIN IMMEDIATE")
     study.database._lock_wait._most_s = 0.0
     rater.key("Digit4")
-    (warning,) = rater.desk.screen.warnings
+    (warning,) = rater.presenter.screen.warnings
     assert rater.work.marks == {}
     assert warning.text
     other.execute("ROLLBACK")
     other.close()
     rater.key("Digit4")
     assert rater.work.marks == {"gears_depth": 4}
-    assert rater.desk.screen.warnings == ()
+    assert rater.presenter.screen.warnings == ()
 
 
 def test_only_trials_with_consent_and_a_journal_are_rated(copied, study):

@@ -23,14 +23,14 @@ class RatingWork:
     def __init__(
         self, store: RatingStore, rater: str, trial_ids: Sequence[str], forms: Sequence[RatingForm]
     ) -> None:
-        """Go on at the first replay that is not rated."""
+        """Resume at the first replay that is not rated."""
         self.trial_ids = tuple(trial_ids)
         self.forms = tuple(forms)
         self.place = 0
         self._store = store
         self._rater = rater
         self._marks = {trial_id: store.marks(rater, trial_id) for trial_id in self.trial_ids}
-        self.go_on()
+        self.go_to_next()
 
     @property
     def trial_id(self) -> str:
@@ -74,7 +74,7 @@ class RatingWork:
             self._tell(names[given[-1]], given[-1], None)
         return bool(given)
 
-    def go_on(self) -> bool:
+    def go_to_next(self) -> bool:
         """Go to the next replay that is not rated, around the end; return whether there is one."""
         count = len(self.trial_ids)
         for step in range(count):
