@@ -990,7 +990,7 @@ _TABLE: Mapping[str, str] = {
     "rate.osats_handling.middle": "Mené sûrement, mais sans aisance",
     "rate.osats_handling.high": "Mené avec fluidité et précision",
     "rate.osats_flow": "Déroulement et anticipation",
-    "rate.osats_flow.low": "S'interrompt comme si l'étape suivante était inconnue",
+    "rate.osats_flow.low": "S'arrête, comme sans savoir quoi faire ensuite",
     "rate.osats_flow.middle": "Avance régulièrement, en anticipant un peu",
     "rate.osats_flow.high": "Chaque geste prépare le suivant",
     "hint.checkpoint": "Toucher le point de contrôle",
