@@ -40,6 +40,7 @@ def screen_from_json(value: Json) -> Screen:
             for hint in value["hints"]
         ),
         language=str(value["language"]),
+        is_spoken=bool(value["is_spoken"]),
         has_sticks=bool(value["has_sticks"]),
         has_arrow=bool(value["has_arrow"]),
         errors=tuple(_error(arrow) for arrow in value["errors"]),

@@ -16,6 +16,7 @@ import { pair } from "./pairing";
 import { PoseStream } from "./pose_stream";
 import { loadScene, type SceneModel } from "./scene_model";
 import { Sounds } from "./sounds";
+import { Speech } from "./speech";
 import { isPairedAgain, onlyRead, showWatching, SPECTATOR } from "./spectator";
 import { Stage } from "./stage";
 import { TargetArrow } from "./target_arrow";
@@ -38,6 +39,7 @@ export class Page {
   private readonly stage = Stage.on(byId("picture") as HTMLCanvasElement);
   private readonly flat = this.stage && new FlatView(this.stage, byId("inset"));
   private readonly overlay = new Overlay(this.connection);
+  private readonly speech = new Speech();
   private readonly keyboard = new Keyboard(this.connection);
   private readonly mouse = new ViewMouse(byId("picture"), this.connection);
   private readonly pads = new Gamepads(this.connection);
@@ -140,6 +142,7 @@ export class Page {
     useLanguage(screen.language);
     this.label();
     this.overlay.show(screen);
+    this.speech.show(screen);
     this.touch.show(screen);
     this.headset?.showScreen(screen);
   }

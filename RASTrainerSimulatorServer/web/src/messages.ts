@@ -73,6 +73,8 @@ export interface Screen {
   readonly status: readonly string[];
   readonly hints: readonly Hint[];
   readonly language: string;
+  /** Whether it is read aloud. */
+  readonly is_spoken: boolean;
   /** Whether two sticks are drawn for a mouse, in the view that has control. */
   readonly has_sticks: boolean;
   readonly is_stepped: boolean;

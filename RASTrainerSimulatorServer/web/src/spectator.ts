@@ -16,6 +16,7 @@ export function onlyRead(screen: Screen): Screen {
     ...screen,
     menu: menu && { ...menu, items: menu.items.map((item) => ({ ...item, is_enabled: false })) },
     hints: screen.hints.map((hint) => ({ ...hint, item: "" })),
+    is_spoken: false,
     has_sticks: false,
   };
 }

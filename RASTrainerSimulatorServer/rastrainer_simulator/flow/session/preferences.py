@@ -33,6 +33,7 @@ class Preferences:
         language: of everything the trainee reads.
         volume: of the sounds, percent.
         muted: whether there are none.
+        speech: whether page and headset read instructions, warnings and pages aloud.
         order: "fixed" where a task waits for the one before it, "any" by the instructor's leave.
         coarse: fastest travel of the tip, mm/s.
         fine: the same while the trigger for fine speed is held, mm/s.
@@ -50,6 +51,7 @@ class Preferences:
     language: str = "en"
     volume: int = 70
     muted: bool = False
+    speech: bool = False
     order: str = "fixed"
     coarse: int = 150
     fine: int = 20
@@ -92,6 +94,7 @@ OPTIONS: Mapping[str, tuple[Any, ...]] = {
     "language": tuple(LANGUAGES),
     "volume": tuple(range(0, 101, 10)),
     "muted": (False, True),
+    "speech": (False, True),
     "order": ("fixed", "any"),
     "coarse": (50, 100, 150, 200, 300),
     "fine": (5, 10, 20, 40),
@@ -112,7 +115,7 @@ OF_INSTRUCTORS = ("order", "tutorial")
 
 Who trains does not decide what they may leave out.
 """
-OF_TRAINEES = ("language", "volume", "muted")
+OF_TRAINEES = ("language", "volume", "muted", "speech")
 """Preferences that no PIN locks: who trains has to understand and hear."""
 OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance", "ghost")
 """Preferences that a running trial must not change: they are in its record."""

@@ -172,6 +172,7 @@ class Screen:
         status: short facts for the edge of the picture, such as "Task 2", "7 of 15", "03:21".
         hints: the controls that matter just now, for the lower edge.
         language: BCP 47 tag of all texts.
+        is_spoken: whether a view that can speak reads the screen aloud.
         has_sticks: whether the view that has control draws two sticks, to be dragged by a mouse.
         is_stepped: whether a headset's sticks step as in a menu, though none is open: while a trial
             is shown again.
@@ -189,6 +190,7 @@ class Screen:
     status: tuple[str, ...] = ()
     hints: tuple[Hint, ...] = ()
     language: str = "en"
+    is_spoken: bool = False
     has_sticks: bool = False
     is_stepped: bool = False
     has_arrow: bool = False

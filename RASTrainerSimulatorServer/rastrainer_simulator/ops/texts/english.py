@@ -522,6 +522,11 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.muted help": "Turn all sounds off.",
         "settings.muted.yes": "Yes",
         "settings.muted.no": "No",
+        "settings.speech": "Read aloud",
+        "settings.speech help": "Page and headset read instructions, warnings and menus "
+        "aloud, with the browser's voice.",
+        "settings.speech.yes": "Yes",
+        "settings.speech.no": "No",
         "settings.order": "Order of the tasks",
         "settings.order help": "Whether tasks must be done in their order. Instructors change "
         "this with their PIN, or in the file {file}.",

@@ -641,6 +641,11 @@ _TABLE: Mapping[str, str] = {
     "settings.muted help": "Couper tous les sons.",
     "settings.muted.yes": "Oui",
     "settings.muted.no": "Non",
+    "settings.speech": "Lecture à voix haute",
+    "settings.speech help": "La page et le casque lisent les consignes, avertissements et "
+    "menus avec la voix du navigateur.",
+    "settings.speech.yes": "Oui",
+    "settings.speech.no": "Non",
     "settings.order": "Ordre des tâches",
     "settings.order help": "Si les tâches doivent être faites dans leur ordre. Les formateurs "
     "modifient cela avec leur PIN, ou dans le fichier {file}.",

@@ -643,6 +643,11 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.muted help": "Alle Töne ausschalten.",
         "settings.muted.yes": "Ja",
         "settings.muted.no": "Nein",
+        "settings.speech": "Vorlesen",
+        "settings.speech help": "Seite und Headset lesen Anweisungen, Warnungen und Menüs "
+        "vor, mit der Stimme des Browsers.",
+        "settings.speech.yes": "Ja",
+        "settings.speech.no": "Nein",
         "settings.order": "Reihenfolge der Aufgaben",
         "settings.order help": "Ob die Aufgaben der Reihe nach kommen. Ausbildende ändern es "
         "mit ihrer PIN oder in der Datei {file}.",

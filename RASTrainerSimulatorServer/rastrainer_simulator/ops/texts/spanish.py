@@ -636,6 +636,11 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "settings.muted help": "Apagar todos los sonidos.",
         "settings.muted.yes": "Sí",
         "settings.muted.no": "No",
+        "settings.speech": "Lectura en voz alta",
+        "settings.speech help": "La página y el visor leen instrucciones, avisos y menús "
+        "con la voz del navegador.",
+        "settings.speech.yes": "Sí",
+        "settings.speech.no": "No",
         "settings.order": "Orden de las tareas",
         "settings.order help": "Si las tareas deben hacerse en su orden. Los instructores lo "
         "cambian con su PIN o en el archivo {file}.",

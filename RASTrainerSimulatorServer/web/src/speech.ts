@@ -1,0 +1,46 @@
+/** Screens read aloud by the browser's own voices, one sentence after the other. */
+
+import type { Screen } from "./messages";
+
+export class Speech {
+  /** What the screen says now, the most urgent first. */
+  private shown: readonly string[] = [];
+  /** What of that has been read. */
+  private said = new Set<string>();
+  private language = "";
+  private isReading = false;
+
+  /** Read what is new on a screen; what has gone before its turn is not read. */
+  show(screen: Screen): void {
+    this.shown = screen.is_spoken ? sentences(screen) : [];
+    this.said = new Set(this.shown.filter((text) => this.said.has(text)));
+    this.language = screen.language;
+    if (this.isReading && this.shown.length === 0) speechSynthesis.cancel();
+    this.readNext();
+  }
+
+  private readNext(): void {
+    const text = this.shown.find((each) => !this.said.has(each));
+    if (this.isReading || text === undefined || !("speechSynthesis" in window)) return;
+    this.said.add(text);
+    this.isReading = true;
+    const utterance = new SpeechSynthesisUtterance(text);
+    utterance.lang = this.language;
+    utterance.onend = utterance.onerror = () => {
+      this.isReading = false;
+      this.readNext();
+    };
+    speechSynthesis.speak(utterance);
+  }
+}
+
+function sentences({ menu, instruction, warnings }: Screen): string[] {
+  const texts = [...warnings.map((each) => each.text), instruction.text];
+  if (menu !== null) {
+    const focused = menu.items.find((item) => item.name === menu.focus);
+    texts.push(menu.title, ...menu.paragraphs);
+    texts.push(...menu.facts.map((fact) => `${fact.label}: ${fact.value}`));
+    texts.push(focused === undefined ? "" : `${focused.label} ${focused.value}`.trim());
+  }
+  return [...new Set(texts.filter((text) => text !== ""))];
+}
