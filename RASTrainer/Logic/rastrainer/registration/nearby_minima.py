@@ -12,10 +12,9 @@ import numpy as np
 from numpy.random import default_rng
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.registration.surface_fit import (
+from rastrainer.registration.surface_fit import costs, fit_to_surface
+from rastrainer.registration.surface_placement import (
     SurfaceFit,
-    costs,
-    fit_to_surface,
     plane_normals,
     rotations,
     transforms_of,

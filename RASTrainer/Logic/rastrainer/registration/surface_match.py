@@ -12,23 +12,20 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.registration.nearby_minima import lowest_nearby
 from rastrainer.registration.surface_checks import (
     MatchMeasures,
-    SurfaceSlide,
     check_start,
     check_surface,
     check_trace,
     find_match_warnings,
-    slide_of,
     thinned,
 )
-from rastrainer.registration.surface_fit import (
+from rastrainer.registration.surface_fit import costs, fit_to_surface, gates
+from rastrainer.registration.surface_placement import (
     SurfaceFit,
-    costs,
-    fit_to_surface,
-    gates,
     plane_normals,
     rotations,
     transforms_of,
 )
+from rastrainer.registration.surface_slide import SurfaceSlide, slide_of
 from rastrainer.registration.warnings import RegistrationWarning
 
 STARTS = 8
