@@ -44,7 +44,7 @@ HEADS: dict[str, Callable[[], HeadMesh]] = {
 }
 NOISE_MM, DAB_MM = 0.5, 22.0
 CHUNK, CHUNKS, FIRST_SEED = 5, 20, 1000
-MOST_FALSE = 0.05
+MOST_FALSE, LEAST_GOOD = 0.05, 100
 GOOD, NARROW = ("whole face", "drawn at random"), ("one side", "crown", "one place")
 FEW_FAR = "one place, and 1 in 20 points anywhere"
 CASES = (
@@ -171,7 +171,7 @@ def measured(traces: int) -> list[Measured]:
             for of in ("traces", "refused", "off", "off_named", "near_slides")
         )
         near = count - refused - off
-        is_good = where == GOOD[0] and not shift
+        is_good = where == GOOD[0] and points >= LEAST_GOOD and not shift
         rows.append(
             Measured(
                 f"{where}, {points}{f', {shift:g} mm' if shift else ''}",

@@ -128,9 +128,14 @@ class TriangleTree:
 
 def _is_within(boxes: np.ndarray, points: np.ndarray, squares: np.ndarray) -> np.ndarray:
     """Return which boxes (…, 6) of lowest and highest corner are within √squares (…) of points."""
-    outside = np.maximum(boxes[..., :3] - points, points - boxes[..., 3:])
-    np.maximum(outside, 0.0, out=outside)
-    return np.asarray(np.einsum("...i,...i->...", outside, outside) <= squares)
+    # Axis by axis, which takes a third of the time of rows of three.
+    away: np.ndarray | float = 0.0
+    for axis in range(3):
+        place = points[..., axis]
+        outside = np.maximum(boxes[..., axis] - place, place - boxes[..., 3 + axis])
+        np.maximum(outside, 0.0, out=outside)
+        away = away + outside * outside
+    return np.asarray(away <= squares)
 
 
 def _halved(centers: np.ndarray, levels: int) -> np.ndarray:
