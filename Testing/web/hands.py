@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import suppress
 
 from playwright.sync_api import Error, Page
@@ -25,7 +26,7 @@ STEPS = {"up": (0, -1), "down": (0, 1), "left": (-1, 0), "right": (1, 0)}
 _POINT = """async (name) => {
   const { boards, placement } = page.headset;
   const has = (board) => board.regions.some((region) => region.name === name);
-  const board = [boards.menu, boards.actions].find(has);
+  const board = [boards.menu, boards.actions, boards.work].find(has);
   const { x, y, width, height } = board.regions.find((region) => region.name === name);
   const size = board.mesh.geometry.parameters;
   const target = board.mesh.position.clone().set(
@@ -38,14 +39,17 @@ _POINT = """async (name) => {
   const aim = new placement.rig.constructor();
   aim.position.copy(target);
   aim.lookAt(hand);
-  const right = device.controllers.right;
+  const isHand = device.primaryInputMode === "hand";
+  const right = (isHand ? device.hands : device.controllers).right;
+  const pull = (value) =>
+    isHand ? right.updatePinchValue(value) : right.updateButtonValue("trigger", value);
   right.position.set(hand.x, hand.y, hand.z);
   right.quaternion.set(...aim.quaternion.toArray());
-  await frames_(2);
-  right.updateButtonValue("trigger", 1);
-  await frames_(2);
-  right.updateButtonValue("trigger", 0);
-  await frames_(2);
+  await frames_(3);
+  pull(1);
+  await frames_(3);
+  pull(0);
+  await frames_(3);
 }"""
 _MOVE = """async (by) => {
   const right = device.controllers.right;
@@ -280,3 +284,53 @@ class Controllers:
     def move(self, right: float, up: float, back: float) -> list[float]:
         """Move the right hand by so much, m, in the headset's space; return it in World."""
         return self._page.evaluate(_MOVE, [right, up, back])
+
+
+_CARRY = """async ([x, y, z]) => {
+  const { rig } = page.headset.placement;
+  const { right } = device.hands;
+  const by = rig.position.clone().set(x, z, -y);
+  by.applyQuaternion(rig.getWorldQuaternion(rig.quaternion.clone()).invert());
+  const { x: a, y: b, z: c } = right.position;
+  right.position.set(a + by.x, b + by.y, c + by.z);
+  await frames_(2);
+}"""
+_PINCH = """async (value) => {
+  const { right } = device.hands;
+  if (value > 0) {
+    const { x, y, z } = device.position;
+    right.position.set(x + 0.2, y - 0.4, z - 0.2);
+    right.quaternion.set(-0.7071, 0, 0, 0.7071);
+    await frames_(2);
+  }
+  right.updatePinchValue(value);
+  await frames_(3);
+}"""
+
+
+class TrackedHands:
+    """The emulated headset's tracked right hand, which only points, pinches and moves."""
+
+    def __init__(self, page: Page):
+        self._page = page
+        page.evaluate("device.primaryInputMode = 'hand'; frames_(3)")
+
+    def choose(self, name: str) -> None:
+        """Point at a part of a board, and pinch."""
+        self._page.evaluate(_POINT, name)
+
+    def tap(self, control: str) -> None:
+        """Pinch at the hint of a control."""
+        self.choose(f"press {control}")
+
+    def pinch(self, is_held: bool) -> None:
+        """Pinch in the air, pointing at the floor, or let go."""
+        self._page.evaluate(_PINCH, 1 if is_held else 0)
+
+    def carry(self, by: Sequence[float]) -> None:
+        """Move the hand by so much, (3,) World, m."""
+        self._page.evaluate(_CARRY, list(map(float, by)))
+
+    def push(self, *_sticks: float) -> None:
+        """Let go: hands have no sticks."""
+        self.pinch(False)

@@ -34,7 +34,7 @@ export class EnterButton {
   }
 
   private async enter(): Promise<void> {
-    const options = { requiredFeatures: ["local-floor"], optionalFeatures: ["bounded-floor"] };
+    const options = { requiredFeatures: ["local-floor"], optionalFeatures: ["bounded-floor", "hand-tracking"] };
     const session = await navigator.xr?.requestSession("immersive-vr", options);
     if (session !== undefined) this.entered(session);
   }

@@ -1,6 +1,7 @@
 /** Paint what is read while the arm is driven: the instruction, short facts and the controls. */
 
 import type { Screen } from "../messages";
+import type { Region } from "./board";
 import { BANNERS, COLORS, type Pen } from "./pen";
 
 const PAD = 40;
@@ -12,8 +13,15 @@ const CAP = { size: 32, color: COLORS.text, isBold: true };
 const SAMPLE = "#57b5e8";
 const NOTICE = { size: 32, color: COLORS.text };
 
-/** Paint from the top on; the board is as high as what is on it. */
-export function paintWork(pen: Pen, screen: Screen, holder: string, width: number, height: number): void {
+/** Paint from the top on; the board is as high as what is on it. Return the hints that can be chosen. */
+export function paintWork(
+  pen: Pen,
+  screen: Screen,
+  holder: string,
+  width: number,
+  height: number,
+  hovered: string,
+): readonly Region[] {
   const room = width - 2 * PAD;
   let y = paintBanner(pen, screen, width);
   for (const notice of screen.warnings.slice(0, 2)) {
@@ -40,9 +48,11 @@ export function paintWork(pen: Pen, screen: Screen, holder: string, width: numbe
     pen.line(screen.coverage, PAD + 52, y + 10, FACT, room - 52);
     y += 52;
   }
-  y = paintHints(pen, screen, y, width);
+  const painted = paintHints(pen, screen, y, width, hovered);
+  y = painted.bottom;
   pen.line(holder, PAD, y + 28, HINT, room);
   pen.behind(width, Math.min(height, y + 76), COLORS.night);
+  return painted.hints;
 }
 
 function paintBanner(pen: Pen, screen: Screen, width: number): number {
@@ -55,8 +65,15 @@ function paintBanner(pen: Pen, screen: Screen, width: number): number {
   return PAD + height + 24;
 }
 
-/** Return where they end. */
-function paintHints(pen: Pen, screen: Screen, top: number, width: number): number {
+/** Return those that can be chosen, and where all of them end. */
+function paintHints(
+  pen: Pen,
+  screen: Screen,
+  top: number,
+  width: number,
+  hovered: string,
+): { hints: readonly Region[]; bottom: number } {
+  const hints: Region[] = [];
   let x = PAD;
   let y = top;
   for (const hint of screen.hints) {
@@ -66,11 +83,13 @@ function paintHints(pen: Pen, screen: Screen, top: number, width: number): numbe
       x = PAD;
       y += 66;
     }
-    pen.box(x, y, cap, 52, COLORS.row, 12);
+    const isHovered = hint.item !== "" && hint.item === hovered;
+    pen.box(x, y, cap, 52, isHovered ? COLORS.accent : COLORS.row, 12);
     pen.frame(x, y, cap, 52, COLORS.edge, 12);
     pen.line(hint.control, x + 16, y + 28, CAP);
     pen.line(hint.action, x + cap + 14, y + 28, HINT);
+    if (hint.item !== "") hints.push({ name: hint.item, x, y, width: total - 20, height: 52 });
     x += total;
   }
-  return screen.hints.length > 0 ? y + 66 : y;
+  return { hints, bottom: screen.hints.length > 0 ? y + 66 : y };
 }

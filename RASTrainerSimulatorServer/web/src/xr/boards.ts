@@ -92,6 +92,11 @@ export class Boards {
     return [this.menu, this.actions];
   }
 
+  /** Those that tracked hands, which have no buttons, can point at. */
+  get touchable(): readonly Board[] {
+    return [...this.pointable, this.work];
+  }
+
   /** Whether sticks step: through a menu, or through a trial that is shown again. */
   get isStepped(): boolean {
     return this.screen !== null && (this.screen.menu !== null || this.screen.is_stepped);
@@ -192,8 +197,8 @@ export class Boards {
     } else {
       const plain = screen.warnings.filter((warning) => !isUrgent(warning));
       const read = { ...screen, warnings: plain };
-      this.work.show(JSON.stringify([read, holder]), (pen) =>
-        paintWork(pen, read, holder, this.work.width, this.work.height),
+      this.work.show(JSON.stringify([read, holder, this.hovered]), (pen) =>
+        paintWork(pen, read, holder, this.work.width, this.work.height, this.hovered),
       );
     }
     this.paintWarning(screen);

@@ -1,4 +1,4 @@
-/** The headset's controllers: what they send, where they point, and how they pulse. */
+/** The headset's controllers or tracked hands: what they send, where they point, how they pulse. */
 
 import {
   BufferGeometry,
@@ -15,6 +15,7 @@ import {
 import type { Connection } from "../connection";
 import type { EventNews } from "../messages";
 import type { Board } from "../panels/board";
+import type { Boards } from "./boards";
 import { controllerBody } from "./controller_body";
 import type { Grab } from "./grab";
 
@@ -43,6 +44,9 @@ interface Hand {
   source: XRInputSource | null;
   readonly down: boolean[];
   pointed: string;
+  /** Whether thumb and finger of a tracked hand are together, and whether they have just met. */
+  isPinched: boolean;
+  hasMet: boolean;
 }
 
 /** What the hands do to the page itself. */
@@ -79,7 +83,7 @@ export class Hands {
   constructor(
     xr: WebXRManager,
     parent: Object3D,
-    private readonly boards: readonly Board[],
+    private readonly boards: Boards,
     private readonly connection: Connection,
     private readonly grab: Grab,
     private readonly listener: HandsListener,
@@ -97,6 +101,12 @@ export class Hands {
     for (const hand of this.hands) {
       hand.pointed = this.point(hand);
       if (hand.pointed !== "") hovered = hand.pointed;
+      // What is not seen any more, or is put away, holds nothing.
+      if (hand.source === null || !hand.ray.visible) this.grab.end(hand.ray);
+      if (hand.source?.hand) {
+        this.takePinch(hand);
+        continue;
+      }
       const pad = hand.source?.gamepad;
       if (!pad) continue;
       this.takeSticks(hand, pad);
@@ -135,9 +145,12 @@ export class Hands {
   private point(hand: Hand): string {
     hand.line.visible = false;
     if (hand.source === null || hand.source.targetRayMode !== "tracked-pointer") return "";
+    // As it is now, not as it was drawn last.
+    hand.ray.updateWorldMatrix(true, false);
     this.raycaster.setFromXRController(hand.ray);
     this.hits.length = 0;
-    for (const board of this.boards) {
+    const boards = hand.source.hand ? this.boards.touchable : this.boards.pointable;
+    for (const board of boards) {
       if (board.mesh.visible) this.raycaster.intersectObject(board.mesh, false, this.hits);
     }
     const hit = this.hits[0];
@@ -145,6 +158,14 @@ export class Hands {
     hand.line.visible = true;
     hand.line.scale.z = hit.distance;
     return (hit.object.userData.board as Board).at(hit.uv);
+  }
+
+  /** Choose what a tracked hand points at, or have the tip follow the hand while it pinches. */
+  private takePinch(hand: Hand): void {
+    if (hand.hasMet && hand.pointed !== "") this.listener.onChosen(hand.pointed);
+    else if (hand.hasMet) this.grab.begin(hand.ray);
+    hand.hasMet = false;
+    if (!hand.isPinched) this.grab.end(hand.ray);
   }
 
   private takeSticks(hand: Hand, pad: Gamepad): void {
@@ -230,9 +251,15 @@ function makeHand(ray: XRTargetRaySpace, parent: Object3D): Hand {
   line.renderOrder = AFTER_BOARDS;
   ray.add(line, controllerBody());
   parent.add(ray);
-  const hand: Hand = { ray, line, source: null, down: new Array<boolean>(8).fill(false), pointed: "" };
+  const down = new Array<boolean>(8).fill(false);
+  const hand: Hand = { ray, line, source: null, down, pointed: "", isPinched: false, hasMet: false };
   ray.addEventListener("connected", (event) => (hand.source = event.data));
-  ray.addEventListener("disconnected", () => (hand.source = null));
+  ray.addEventListener("disconnected", () => {
+    hand.source = null;
+    hand.isPinched = false;
+  });
+  ray.addEventListener("selectstart", () => (hand.isPinched = hand.hasMet = true));
+  ray.addEventListener("selectend", () => (hand.isPinched = false));
   return hand;
 }
 

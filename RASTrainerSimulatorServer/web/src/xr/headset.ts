@@ -52,7 +52,7 @@ export class Headset {
     this.placement.rig.add(this.camera);
     scene.add(this.placement.rig, this.boards.room);
     this.boards.room.add(this.arrow.group);
-    this.hands = new Hands(renderer.xr, this.placement.rig, this.boards.pointable, connection, this.grab, {
+    this.hands = new Hands(renderer.xr, this.placement.rig, this.boards, connection, this.grab, {
       onChosen: (name) => this.choose(name),
       onHovered: (name) => this.boards.hover(name),
     });
