@@ -27,6 +27,7 @@ _POINT = """async (name) => {
   const { boards, placement } = page.headset;
   const has = (board) => board.regions.some((region) => region.name === name);
   const board = [boards.menu, boards.actions, boards.work].find(has);
+  if (!board) return;
   const { x, y, width, height } = board.regions.find((region) => region.name === name);
   const size = board.mesh.geometry.parameters;
   const target = board.mesh.position.clone().set(
