@@ -31,6 +31,8 @@ from rastrainer.registration.warnings import RegistrationWarning
 STARTS = 8
 START_SD_MM, START_SD_DEG = 5.0, 5.0
 """Of the starts about the given one, on each axis: what three landmarks leave open."""
+WIDER_STARTS, WIDER, NEAR_SKIN_MM = 16, 3.0, 1.0
+"""So many more, so many times as far off, where none brings half of the points so near the skin."""
 COARSE_POINTS, COARSE_ITERATIONS, MIDDLE_ITERATIONS = 40, 12, 30
 COARSE_TOLERANCE_MM = 0.2
 MIDDLE_TOLERANCE_MM, TOLERANCE_MM = 0.02, 1e-3
@@ -140,8 +142,7 @@ def match_surface(
     skin = mesh.skin
     start = check_start(start, trace, skin)
     used = thinned(trace)
-    placed = _starts_about(start, used, starts, seed)
-    fit, hopeless, ended, gate = _fit(used, skin, placed, trimmed, seed)
+    fit, hopeless, ended, gate = _fit(used, skin, start, starts, trimmed, seed)
     return _match(trace, skin, fit, hopeless, ended, gate)
 
 
@@ -152,11 +153,13 @@ def difference_mm(one: np.ndarray, other: np.ndarray, mesh: HeadMesh, points: np
     return float(np.linalg.norm(apart, axis=1).max())
 
 
-def _starts_about(start: np.ndarray, points: np.ndarray, count: int, seed: int) -> np.ndarray:
+def _starts_about(
+    start: np.ndarray, points: np.ndarray, count: int, seed: int, wider: float = 1.0
+) -> np.ndarray:
     """Return the start and others about it, (count, 4, 4), turned about the trace's centroid."""
     random = default_rng(seed)
-    shifts = random.normal(0.0, START_SD_MM, (count, 3))
-    turns = np.radians(random.normal(0.0, START_SD_DEG, (count, 3)))
+    shifts = random.normal(0.0, wider * START_SD_MM, (count, 3))
+    turns = np.radians(random.normal(0.0, wider * START_SD_DEG, (count, 3)))
     shifts[0], turns[0] = 0.0, 0.0
     center = transforms.apply(start, points.mean(axis=0))
     turned = np.tile(np.eye(4), (count, 1, 1))
@@ -165,19 +168,33 @@ def _starts_about(start: np.ndarray, points: np.ndarray, count: int, seed: int) 
     return turned @ start
 
 
+def _coarse(
+    points: np.ndarray, mesh: HeadMesh, start: np.ndarray, count: int, gate: float | None, seed: int
+) -> SurfaceFit:
+    """Return fits of some of the points from all starts, and from wider ones where none fits."""
+    few = thinned(points, COARSE_POINTS)
+
+    def fitted(starts: np.ndarray) -> SurfaceFit:
+        return fit_to_surface(
+            few, mesh, starts, COARSE_TOLERANCE_MM, gate_mm=gate, max_iterations=COARSE_ITERATIONS
+        )
+
+    fit = fitted(_starts_about(start, points, count, seed))
+    if count == 1 or np.median(fit.distances_mm, axis=1).min() < NEAR_SKIN_MM:
+        return fit
+    return fit.joined(fitted(_starts_about(start, points, WIDER_STARTS, seed, WIDER)))
+
+
 def _fit(
-    points: np.ndarray, mesh: HeadMesh, starts: np.ndarray, trimmed: bool, seed: int
+    points: np.ndarray, mesh: HeadMesh, start: np.ndarray, starts: int, trimmed: bool, seed: int
 ) -> tuple[SurfaceFit, np.ndarray, np.ndarray, float]:
     """Return the fits, best first; the matrices of hopeless ones; how many starts ended in each.
 
     The last is up to which distance points count. All starts are first followed with some of the
     points; those that meet go on as one, and the best of them also from many places next to it.
     """
-    few = thinned(points, COARSE_POINTS)
     every = None if trimmed else np.inf
-    coarse = fit_to_surface(
-        few, mesh, starts, COARSE_TOLERANCE_MM, gate_mm=every, max_iterations=COARSE_ITERATIONS
-    )
+    coarse = _coarse(points, mesh, start, starts, every, seed)
     first, which = _minima(coarse, mesh, points, _common_gate(coarse, trimmed))
     score = costs(coarse.distances_mm, _common_gate(coarse, trimmed))[first]
     hopeful = first[score <= HOPELESS * score[0] + 1e-6]
@@ -191,7 +208,7 @@ def _fit(
     )
     gate = _common_gate(middle, trimmed)
     lowest, again = _minima(middle, mesh, points, gate)
-    fine = _refined(points, mesh, middle.taken(lowest), gate, seed if len(starts) > 1 else None)
+    fine = _refined(points, mesh, middle.taken(lowest), gate, seed if starts > 1 else None)
     kept, finally_ = _minima(fine, mesh, points, gate)
     # The hopeless ones keep their places after the others.
     number = np.concatenate([finally_[again], len(kept) + np.arange(len(first) - len(hopeful))])
