@@ -12,19 +12,15 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.replay_track import find_track
-from rastrainer.protocol import DEFAULT_HOST, TRIAL_RUN
+from rastrainer.protocol import TRIAL_RUN
 from rastrainer.study.database.study import Study
 from rastrainer.study.rating.rating_work import RatingWork
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.net.views.open_views import open_views
-from rastrainer_simulator.ops.desktop_process import DesktopProcess
-from rastrainer_simulator.ops.folders import log_folder
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
-from rastrainer_simulator.server.replay_server import preferred_language
-from rastrainer_simulator.server.server import stop_on_signals
+from rastrainer_simulator.server.replay_server import preferred_language, show_until
 
 _OF_SETUP = ("scenario", "robot", "settings", "procedure", "method")
 """What a journal's header tells of the set-up."""
@@ -120,21 +116,9 @@ async def _serve(
 ) -> None:
     stop = asyncio.Event()
     presenter = RatingPresenter(work, first, load, preferred_language(), stop.set)
-    window: DesktopProcess | None = None
-    tasks: list[asyncio.Task[None]] = []
-    with stop_on_signals(asyncio.get_running_loop(), stop):
-        views = await open_views(presenter.shown, presenter, announce, port, None)
-        try:
-            tasks.append(asyncio.create_task(presenter.shown.run(presenter.advance)))
-            if has_window:
-                window = DesktopProcess(
-                    f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open(), log_folder()
-                )
-                tasks.append(asyncio.create_task(window.run(stop.set, announce)))
-            await stop.wait()
-        finally:
-            for task in tasks:
-                task.cancel()
-            if window is not None:
-                await window.close()
-            await views.close()
+    shown = presenter.shown
+
+    async def run() -> None:
+        await shown.run(presenter.advance)
+
+    await show_until(stop, shown, presenter, run, port, has_window, announce)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from pathlib import Path
+from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.replay_track import read_track
@@ -15,7 +16,9 @@ from rastrainer_simulator.flow.session.preferences import (
     Preferences,
     read_preferences,
 )
+from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views.open_views import open_views
+from rastrainer_simulator.net.views.presenter import Presenter
 from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.record.recorded_setup import setup_of
@@ -44,12 +47,38 @@ async def _serve(
 ) -> None:
     stop = asyncio.Event()
     presenter = ReplayPresenter(playback, preferred_language(), stop.set)
+    await show_until(stop, playback, presenter, playback.run, port, has_window, announce)
+
+
+async def show_until(
+    stop: asyncio.Event,
+    source: StateSource,
+    presenter: Presenter,
+    run: Callable[[], Coroutine[Any, Any, None]],
+    port: int | None,
+    has_window: bool,
+    announce: Callable,
+) -> None:
+    """Show what is played to views, and to a window of its own if wanted, until it shall stop.
+
+    Args:
+        stop: is set by whoever ends it: the presenter, the closed window, or a signal.
+        source: the states that are shown.
+        presenter: what is read beside them.
+        run: plays them until it is canceled.
+        port: where views are served; None for the usual one.
+        has_window: whether a window is opened.
+        announce: says where views are served.
+
+    Raises:
+        InputError: the port cannot be listened on.
+    """
     window: DesktopProcess | None = None
     tasks: list[asyncio.Task[None]] = []
     with stop_on_signals(asyncio.get_running_loop(), stop):
-        views = await open_views(playback, presenter, announce, port, None)
+        views = await open_views(source, presenter, announce, port, None)
         try:
-            tasks.append(asyncio.create_task(playback.run()))
+            tasks.append(asyncio.create_task(run()))
             if has_window:
                 window = DesktopProcess(
                     f"http://{DEFAULT_HOST}:{views.port}", views.sessions.open(), log_folder()

@@ -200,12 +200,8 @@ def begin_tutorial(trainee):
     trainee.step(2)
 
 
-def test_it_is_locked_again_when_a_trial_begins_and_stays_so_in_its_menu(trainee):
-    trainee.presenter._session.trainee = "P07"
-    trainee.step(2)
-    unlock(trainee)
-    begin_trial(trainee)
-    assert trainee.presenter._session.lock.is_locked
+def unlock_in_the_trials_menu(trainee):
+    """Open the menu of the trial, and enter the PIN in its settings."""
     trainee.tap("menu")
     trainee.until_menu("trial")
     trainee.choose("settings")
@@ -215,6 +211,15 @@ def test_it_is_locked_again_when_a_trial_begins_and_stays_so_in_its_menu(trainee
     trainee.hands.type(PIN)
     trainee.tap("accept")
     until_unlocked(trainee)
+
+
+def test_it_is_locked_again_when_a_trial_begins_and_stays_so_in_its_menu(trainee):
+    trainee.presenter._session.trainee = "P07"
+    trainee.step(2)
+    unlock(trainee)
+    begin_trial(trainee)
+    assert trainee.presenter._session.lock.is_locked
+    unlock_in_the_trials_menu(trainee)
     assert "order" in enabled(trainee)
     assert trainee.item("coarse").help == "This cannot be changed until the trial has ended."
     assert trainee.submit("Abort").ok
@@ -250,15 +255,7 @@ def test_another_view_takes_the_control_of_who_rests_only_after_the_pin(trainee,
     trainee.step(2)
     assert presenter.control.view == 1
     until_said(trainee, "Only an instructor can pass it on: Menu, Settings, Instructor's PIN.")
-    trainee.tap("menu")
-    trainee.until_menu("trial")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
-    trainee.choose("unlock")
-    trainee.until_menu("pin")
-    trainee.hands.type(PIN)
-    trainee.tap("accept")
-    until_unlocked(trainee)
+    unlock_in_the_trials_menu(trainee)
     trainee.step(rest)
     press_menu(presenter)
     trainee.step(2)
