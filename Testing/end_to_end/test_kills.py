@@ -20,6 +20,7 @@ from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_tr
 from Testing.end_to_end.process_nursery import SIMULATOR, SLICER_SIDE, Nursery
 from Testing.end_to_end.simulator_process import READY
 from Testing.end_to_end.surviving_player import UNTOLD, Killing, SurvivingPlayer
+from Testing.free_port import free_port
 
 TIMEOUT_S = 60.0
 
@@ -46,7 +47,7 @@ class Lab:
         self._config = str(folder / "config")
         self._nursery, self._slicer_nursery = nursery, slicer_nursery
         self._speed = str(speed)
-        self.port = 0
+        self.port = free_port()
 
     def start_simulator(self):
         """Return a function that ends it by a signal."""

@@ -3,7 +3,8 @@
 import pytest
 
 from rastrainer.slicer.program.child_process import ChildProcess
-from Testing.end_to_end.module.story import Story, free_port
+from Testing.end_to_end.module.story import Story
+from Testing.free_port import free_port
 from Testing.slicer.host.host import Host
 from Testing.slicer.simulator_double import wait_until
 

@@ -18,6 +18,7 @@ from rastrainer.export.xapi import statements
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
 from rastrainer_simulator.net.record_store import RecordStore, StoreAwayError
+from Testing.free_port import free_port
 
 # Ralph has an environment of its own, which `make soak` makes.
 pytestmark = pytest.mark.soak
@@ -42,8 +43,7 @@ class Ralph:
 
     def __init__(self, folder: Path):
         self._folder = folder
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            self._port = free.getsockname()[1]
+        self._port = free_port()
         self.url = f"http://127.0.0.1:{self._port}/xAPI"
         agent = {"mbox": "mailto:lab@example.org"}
         scopes = ["statements/write", "statements/read"]

@@ -18,6 +18,7 @@ from rastrainer_simulator.assets import asset_path
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.study_side import RECORDS, STUDY, StudySide
 from Testing.end_to_end.surviving_player import Killing, SurvivingPlayer
+from Testing.free_port import free_port
 from Testing.simulator.net.views.served import ViewClient
 
 COLIN = asset_path("scenarios", "colin27")
@@ -41,7 +42,7 @@ class Lab:
     """The folder of a study, and the simulator and Slicer's side that come and go there."""
 
     def __init__(self, folder, thread):
-        self.folder, self.port = folder, 0
+        self.folder, self.port = folder, free_port()
         self._thread, self._key = thread, secrets.token_hex(32)
         with Study.open(folder / STUDY) as study:
             study.create_trainee(TRAINEE, True)

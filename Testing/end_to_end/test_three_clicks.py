@@ -6,7 +6,8 @@ import slicer
 from rastrainer.slicer.settings import PORT, PROGRAM
 from Testing.end_to_end.module.installed_simulator import brought_along, write_program
 from Testing.end_to_end.module.player import Player
-from Testing.end_to_end.module.story import FAST, free_port
+from Testing.end_to_end.module.story import FAST
+from Testing.free_port import free_port
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
 SCREEN_HEIGHT = 730

@@ -8,7 +8,8 @@ import slicer
 
 from rastrainer.slicer.settings import PORT, PROGRAM
 from Testing.end_to_end.module.installed_simulator import write_program
-from Testing.end_to_end.module.story import FAST, free_port
+from Testing.end_to_end.module.story import FAST
+from Testing.free_port import free_port
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 from Testing.slicer.test_module_widget import NOT_IN_THE_TOUR
 

@@ -25,6 +25,7 @@ from rastrainer.igtl.stream import MessageReader
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
+from Testing.free_port import free_port
 
 HEARTBEAT_PERIOD_S = 1.0
 Refusal = str
@@ -49,7 +50,7 @@ class SimulatorDouble:
         self.beats = True
         self.heartbeat = Message(DeviceName.SIM_SERVER, Status(Status.OK, subcode=version))
         self.responder = responder or (lambda _name, _arguments: {})
-        self._listener = socket.create_server(("127.0.0.1", port))
+        self._listener = socket.create_server(("127.0.0.1", port or free_port()))
         self.port = self._listener.getsockname()[1]
         self._peers: list[socket.socket] = []
         self._greeted: list[socket.socket] = []

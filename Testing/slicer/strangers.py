@@ -9,6 +9,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 
+from Testing.free_port import free_port
+
 Behavior = Callable[[socket.socket], None]
 
 SLOW_S = 30.0
@@ -29,7 +31,7 @@ def stranger(behavior: Behavior, port: int = 0) -> Iterator[int]:
             peers.append(peer)
             threading.Thread(target=_behave, args=(behavior, peer), daemon=True).start()
 
-    with socket.create_server(("127.0.0.1", port)) as listener:
+    with socket.create_server(("127.0.0.1", port or free_port())) as listener:
         thread = threading.Thread(target=serve, daemon=True)
         thread.start()
         try:
@@ -51,7 +53,7 @@ def web_server(port: int = 0) -> Iterator[int]:
         def log_message(self, *_arguments: object) -> None:
             """Stay quiet."""
 
-    with http.server.ThreadingHTTPServer(("127.0.0.1", port), Quiet) as server:
+    with http.server.ThreadingHTTPServer(("127.0.0.1", port or free_port()), Quiet) as server:
         thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
         thread.start()
         try:

@@ -11,6 +11,7 @@ from rastrainer.igtl.message import Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.slicer.link.peer import Peer, ProbeResult
 from rastrainer.slicer.link.probe import ANSWER_S, LOOKUP_S, Probe
+from Testing.free_port import free_port
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until
 from Testing.slicer.strangers import (
     floods,
@@ -100,9 +101,7 @@ def test_a_silent_network_is_not_waited_for_without_end(behavior, peer):
 
 
 def test_an_unused_port_is_reported():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        port = listener.getsockname()[1]
-    assert ask("127.0.0.1", port) == ProbeResult(Peer.NOBODY, "127.0.0.1")
+    assert ask("127.0.0.1", free_port()) == ProbeResult(Peer.NOBODY, "127.0.0.1")
 
 
 def test_a_name_is_looked_up_beside_the_main_thread_and_once_at_a_time(monkeypatch):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.slicer.link.connection import CONNECTOR_NAME
 from Testing.end_to_end.module.installed_simulator import brought_along, write_program
 from Testing.end_to_end.module.player import Player
+from Testing.free_port import free_port
 from Testing.running_process import runs
 from Testing.slicer.host.host import Host
 
@@ -256,9 +256,3 @@ def unfold(host: Host, name: str) -> None:
     """Unfold a section."""
     host.find(name).collapsed = False
     host.process_events()
-
-
-def free_port() -> int:
-    """Return a port on which nobody listens."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]

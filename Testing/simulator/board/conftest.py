@@ -11,6 +11,7 @@ from rastrainer_simulator.board.board_server import SUBPROTOCOL, BoardServer
 from rastrainer_simulator.board.seat_client import SeatClient
 from rastrainer_simulator.net.views.certificate import fingerprint, tls_context
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
+from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST
 from Testing.simulator.net.views.conftest import control_loop, own_cache, serve  # noqa: F401
 from Testing.simulator.net.views.served import ServedViews, answered
@@ -32,7 +33,7 @@ class WatchedSimulator:
     def __init__(self, served: ServedViews, config, certificates, port: int = 0):
         self.served = served
         self.config = config
-        listening = served.server.listen_in_network(port, tls_context(certificates))
+        listening = served.server.listen_in_network(port or free_port(), tls_context(certificates))
         self.port = served.thread.run(listening)
         self.fingerprint = fingerprint(certificates)
         self.address = f"https://{HOST}:{self.port}"

@@ -25,6 +25,7 @@ from rastrainer_simulator.cli.doctor.system import (
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.end_to_end.virtual_display import VirtualDisplay
+from Testing.free_port import free_port
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 
 NOW = datetime(2026, 3, 1, tzinfo=timezone.utc)
@@ -35,20 +36,15 @@ def verdicts(findings):
 
 
 @pytest.fixture
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
-
-
-@pytest.fixture
 def held():
     """Return a port that a program holds."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         yield listener.getsockname()[1]
 
 
-def test_a_free_port_is_ok_and_a_held_one_names_the_program_that_holds_it(free_port, held):
-    assert verdicts(check_ports(free_port, free_port)) == [CheckStatus.OK, CheckStatus.OK]
+def test_a_free_port_is_ok_and_a_held_one_names_the_program_that_holds_it(held):
+    port = free_port()
+    assert verdicts(check_ports(port, port)) == [CheckStatus.OK, CheckStatus.OK]
     link, views = check_ports(held, held)
     assert (link.verdict, views.verdict) == (CheckStatus.PROBLEM, CheckStatus.WARNING)
     for finding in (link, views):
@@ -252,9 +248,9 @@ def words(folder: Path, port: int):
 
 
 def test_the_doctor_reports_a_line_a_check_and_ends_with_1_where_there_is_a_problem(
-    tmp_path, free_port, held, capsys
+    tmp_path, held, capsys
 ):
-    assert main(words(tmp_path, free_port)) == 0
+    assert main(words(tmp_path, free_port())) == 0
     lines = capsys.readouterr().out.splitlines()
     checks = {line[9:19].strip() for line in lines if line[:8].strip()}
     assert checks == {

@@ -7,7 +7,6 @@ the metadata and the checksum.
 import asyncio
 import json
 import signal
-import socket
 import struct
 import time
 
@@ -21,6 +20,7 @@ from rastrainer.igtl.content import Command, Point, Points, Status, String, Tran
 from rastrainer.igtl.message import Message
 from rastrainer_simulator.registration_state import TouchState
 from rastrainer_simulator.state import TrainingState
+from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import PlainServer, at_rest
 
 MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])
@@ -86,10 +86,8 @@ def connected():
 
 @pytest.fixture
 def pyigtl_server():
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port = probe.getsockname()[1]
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    server = pyigtl.OpenIGTLinkServer(port)
+    server = pyigtl.OpenIGTLinkServer(free_port())
     yield server
     server.communication_thread_stop_requested = True
     server.stop()

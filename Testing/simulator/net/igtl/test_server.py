@@ -14,6 +14,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import MAX_BODY_BYTES, Message, pack
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
+from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST, LinkServer, LoopThread, PlainServer
 
 PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)), timestamp=1)
@@ -255,8 +256,7 @@ def test_server_connects_to_a_listening_slicer_and_comes_back(start, loop_thread
 
 def test_slicer_that_does_not_listen_is_reported_once(start, loop_thread: LoopThread, caplog):
     server = start(LinkServer, reconnect_s=0.01)
-    with socket.create_server((HOST, 0)) as probe:
-        port = probe.getsockname()[1]
+    port = free_port()
     attempts = server.server.keep_connected_to(HOST, port)
     with caplog.at_level(logging.WARNING, "rastrainer.igtl"):
         task = asyncio.run_coroutine_threadsafe(attempts, loop_thread.loop)

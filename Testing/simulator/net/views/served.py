@@ -18,6 +18,7 @@ from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.viewpoint.orbit import CameraPose
 from rastrainer_simulator.viewpoint.view_control import Pictures
+from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST, PATIENCE_S, LoopThread
 
 SUBPROTOCOL = "rastrainer.views.1"
@@ -103,7 +104,7 @@ class ServedViews:
             config=config,
             pin=None if config is None else PinGuesses(InstructorPin(config)),
         )
-        self.port = thread.run(self.server.listen(HOST, port))
+        self.port = thread.run(self.server.listen(HOST, port or free_port()))
         self.url = f"http://{HOST}:{self.port}"
 
     @property
