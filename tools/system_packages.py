@@ -22,6 +22,10 @@ OPEN_QT = """
 from PySide6.QtWidgets import QApplication
 QApplication([])
 """
+FIND_CHINESE_FONT = """
+from rastrainer_simulator.ops.chinese_font import chinese_font
+raise SystemExit(chinese_font() is None)
+"""
 OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")
 FONTS = Path("/usr/share/fonts/truetype")
 REAL_HEADS = {
@@ -67,6 +71,8 @@ def _for_tests() -> list[str]:
         wanted += ["chromium"]
     if not FONTS.is_dir():
         wanted += ["fonts-dejavu-core"]
+    if not _runs(FIND_CHINESE_FONT):
+        wanted += ["fontconfig", "fonts-wqy-microhei"]
     if not _runs(OPEN_QT, QT_QPA_PLATFORM="offscreen"):
         wanted += ["libegl1", "libgl1", "libfontconfig1", "libxkbcommon0", "libdbus-1-3"]
     return wanted

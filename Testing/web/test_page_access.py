@@ -207,12 +207,14 @@ NAMES_OF_PICTURE = {
     "de": "Roboter, Kopf und Operationssaal",
     "fr": "Robot, tête et salle d’opération",
     "es": "Robot, cabeza y quirófano",
+    "zh-Hans": "机器人、头部和手术室",
 }
 NOBODY_DRIVES = {
     "en": "Nobody drives the robot yet",
     "de": "Noch steuert niemand den Roboter",
     "fr": "Personne ne pilote encore le robot",
     "es": "Nadie maneja aún el robot",
+    "zh-Hans": "尚无人操纵机器人",
 }
 
 

@@ -35,6 +35,7 @@ def test_without_javascript_the_page_says_so_in_every_language(place, browser):
     assert "RASTrainer braucht JavaScript" in page.inner_text("[lang=de]")
     assert "RASTrainer a besoin de JavaScript" in page.inner_text("[lang=fr]")
     assert "RASTrainer necesita JavaScript" in page.inner_text("[lang=es]")
+    assert "RASTrainer 需要 JavaScript" in page.inner_text("[lang=zh-Hans]")
     page.context.close()
 
 

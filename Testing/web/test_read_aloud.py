@@ -48,11 +48,12 @@ def test_what_is_new_is_read_in_its_language_one_sentence_after_the_other(browse
     assert page.evaluate("window.heard.map(([language]) => language)") == ["de", "de"]
     items = (MenuItem("next", "Next task"), MenuItem("again", "Again"))
     menu = Menu("result", "Result", ("Well done.",), (Fact("Score", "81"),), items, focus="again")
-    served.tell(spoken(menu=menu))
+    served.tell(spoken(menu=menu, language="zh-Hans"))
     for count in range(3, 7):
         heard(page, count)
         page.evaluate("ended()")
     assert heard(page, 6)[2:] == ["Result", "Well done.", "Score: 81", "Again"]
+    assert page.evaluate("window.heard[5][0]") == "zh-CN", "voices are named by region"
     assert page.problems == []
 
 

@@ -10,7 +10,13 @@ import pytest
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
 
 TEXTS = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web" / "src" / "texts"
-FILES = {"en": "english.ts", "de": "german.ts", "fr": "french.ts", "es": "spanish.ts"}
+FILES = {
+    "en": "english.ts",
+    "de": "german.ts",
+    "fr": "french.ts",
+    "es": "spanish.ts",
+    "zh-Hans": "chinese.ts",
+}
 ENTRY = re.compile(r'^  "?([^"\n]+?)"?:\s+"((?:[^"\\\n]|\\.)*)",$', re.MULTILINE)
 DRAWN = {
     "part.leftStick": "gamepad.leftstick",

@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _findings(arguments: argparse.Namespace) -> list[CheckResult]:
-    from rastrainer_simulator.cli.doctor.graphics import check_gamepad, check_graphics
+    from rastrainer_simulator.cli.doctor.graphics import check_font, check_gamepad, check_graphics
     from rastrainer_simulator.cli.doctor.software import check_page, check_python, check_slicer
     from rastrainer_simulator.cli.doctor.system import (
         check_clock,
@@ -64,6 +64,7 @@ def _findings(arguments: argparse.Namespace) -> list[CheckResult]:
     }
     findings = list(check_python())
     findings += check_graphics()
+    findings += check_font()
     findings += check_gamepad()
     findings += check_ports(arguments.port, arguments.view_port)
     findings += check_page()

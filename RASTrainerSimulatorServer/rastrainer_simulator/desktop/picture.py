@@ -31,6 +31,7 @@ from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.desktop.viewports import Viewports
 from rastrainer_simulator.net.views.screen import Menu, Screen, focused_picture
+from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 
@@ -254,6 +255,8 @@ class Picture:
         screen = self._inbox.screen or Screen()
         if self._inbox.problem:
             return Content(notice(self._inbox.problem, screen.language))
+        if not has_letters(screen.language):
+            return Content(notice("window.no font", "en"))
         state = self._inbox.state or {}
         is_free = screen.menu is None
         pairing = None if is_free else self._inbox.pairing

@@ -19,6 +19,7 @@ from rastrainer_simulator.flow.session.preferences import (
 from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views.open_views import open_views
 from rastrainer_simulator.net.views.presenter import Presenter
+from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.record.recorded_setup import setup_of
@@ -94,7 +95,9 @@ async def show_until(
 
 
 def preferred_language() -> str:
-    """Return the language of the user's settings, a BCP 47 tag."""
+    """Return the language of the user's settings, a BCP 47 tag, if a window can show it here."""
     with contextlib.suppress(InputError):
-        return read_preferences(config_folder() / PREFERENCES_FILE).language
+        language = read_preferences(config_folder() / PREFERENCES_FILE).language
+        if has_letters(language):
+            return language
     return Preferences().language

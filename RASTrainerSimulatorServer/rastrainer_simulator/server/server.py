@@ -35,9 +35,11 @@ from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.loopback import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, TrialLog
+from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
+from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from rastrainer_simulator.record.recorded_setup import setup_of, versions
 from rastrainer_simulator.record.records_folder import RecordsFolder
 from rastrainer_simulator.robot.kinematics import kinematics_name
@@ -254,6 +256,9 @@ class SimulatorServer:
             study=self._study,
             scores_alone=self._options.scores_alone,
             pin=self._pin,
+            languages=tuple(filter(has_letters, LANGUAGES))
+            if self._options.has_desktop
+            else tuple(LANGUAGES),
         )
         running = RunningPresenter(self._control_loop, services, self._options.has_gamepad)
         link.publisher.is_guided = lambda: running.presenter.is_tracing_guided

@@ -25,7 +25,8 @@ export class Speech {
     this.said.add(text);
     this.isReading = true;
     const utterance = new SpeechSynthesisUtterance(text);
-    utterance.lang = this.language;
+    // Voices are named by region.
+    utterance.lang = this.language === "zh-Hans" ? "zh-CN" : this.language;
     utterance.onend = utterance.onerror = () => {
       this.isReading = false;
       this.readNext();

@@ -1,9 +1,11 @@
 /** What the page says itself, because the simulator cannot or does not know. */
 
+import * as chinese from "./texts/chinese";
 import * as english from "./texts/english";
 import * as french from "./texts/french";
 import * as german from "./texts/german";
 import * as spanish from "./texts/spanish";
+import { writtenLanguage } from "./texts/typesetting";
 
 export type TextName = keyof english.PageTexts;
 
@@ -12,6 +14,7 @@ const TABLES: Readonly<Record<string, english.PageTexts>> = {
   de: german.PAGE,
   fr: french.PAGE,
   es: spanish.PAGE,
+  zh: chinese.PAGE,
 };
 let table = english.PAGE;
 useLanguage(navigator.language);
@@ -20,7 +23,7 @@ useLanguage(navigator.language);
 export function useLanguage(tag: string): void {
   const language = tag.slice(0, 2);
   table = TABLES[language] ?? english.PAGE;
-  document.documentElement.lang = language in TABLES ? tag : "en";
+  document.documentElement.lang = language in TABLES ? writtenLanguage(tag) : "en";
 }
 
 export function say(name: TextName, values: Readonly<Record<string, string>> = {}): string {

@@ -12,7 +12,7 @@ import pytest
 
 from rastrainer_simulator.cli.doctor import software, system
 from rastrainer_simulator.cli.doctor.check_result import CheckStatus
-from rastrainer_simulator.cli.doctor.graphics import check_gamepad, check_graphics
+from rastrainer_simulator.cli.doctor.graphics import check_font, check_gamepad, check_graphics
 from rastrainer_simulator.cli.doctor.software import check_python, check_slicer
 from rastrainer_simulator.cli.doctor.system import (
     check_clock,
@@ -23,6 +23,7 @@ from rastrainer_simulator.cli.doctor.system import (
     check_settings,
 )
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.ops.chinese_font import chinese_font
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.end_to_end.virtual_display import VirtualDisplay
 from Testing.free_port import free_port
@@ -114,6 +115,29 @@ def test_an_opengl_that_takes_its_process_down_is_reported(monkeypatch, script, 
     assert finding.verdict is CheckStatus.WARNING
     assert words in finding.sentence
     assert finding.remedy
+
+
+def test_a_font_for_chinese_is_named_and_none_is_a_warning_with_a_remedy(monkeypatch, tmp_path):
+    try:
+        (finding,) = check_font()
+        assert (finding.verdict, finding.remedy) == (CheckStatus.OK, "")
+        for path in (Path(os.devnull).parent, without_chinese(tmp_path)):
+            monkeypatch.setenv("PATH", str(path))
+            chinese_font.cache_clear()
+            (finding,) = check_font()
+            assert finding.verdict is CheckStatus.WARNING
+            assert "the window cannot show Chinese" in finding.sentence
+            assert "fonts-wqy-microhei" in finding.remedy
+    finally:
+        chinese_font.cache_clear()
+
+
+def without_chinese(folder):
+    """Return a folder with fontconfig on a computer that has fonts for other languages alone."""
+    program = folder / "fc-match"
+    program.write_text(f"#!/bin/sh\necho '{__file__}'\necho 'de|en|th'\n")
+    program.chmod(0o755)
+    return folder
 
 
 def test_a_gamepad_is_named_and_none_is_a_warning(tmp_path):
@@ -254,7 +278,7 @@ def test_the_doctor_reports_a_line_a_check_and_ends_with_1_where_there_is_a_prob
     lines = capsys.readouterr().out.splitlines()
     checks = {line[9:19].strip() for line in lines if line[:8].strip()}
     assert checks == {
-        *("python", "packages", "kinematics", "graphics", "gamepad", "ports"),
+        *("python", "packages", "kinematics", "graphics", "font", "gamepad", "ports"),
         *("page", "slicer", "real time", "folders", "journals", "clock"),
     }
     assert main([*words(tmp_path, held), "--json"]) == 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from unicodedata import east_asian_width
 
 import pytest
 
@@ -32,11 +33,13 @@ def screens_in(presenter: FlowPresenter, language: str) -> dict[str, Screen]:
 
 
 def letters(screen: Screen) -> int:
-    """Return how many letters are on a screen."""
+    """Return how many letters are on a screen; a Chinese character is as wide as two."""
     said = [*screen.status, *(hint.control + hint.action for hint in screen.hints)]
     said += [message.text for message in (screen.instruction, *screen.warnings) if message]
     if menu := screen.menu:
         said += [menu.title, *menu.paragraphs]
         said += [fact.label + fact.value for fact in menu.facts]
         said += [item.label + item.value + item.help for item in menu.items]
-    return sum(map(len, said))
+    return sum(
+        len(text) + sum(east_asian_width(letter) in "FW" for letter in text) for text in said
+    )

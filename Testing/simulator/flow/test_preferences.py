@@ -61,7 +61,7 @@ def test_every_way_to_steer_the_tool_can_be_chosen():
         ('{"volume": 55}', "volume must be one of 0, 10, "),
         ('{"volume": true}', "volume must be one of 0, 10, "),
         ('{"muted": 1}', "muted must be one of false, true"),
-        ('{"language": ["de"]}', 'language must be one of "en", "de", "fr", "es"'),
+        ('{"language": ["de"]}', 'language must be one of "en", "de", "fr", "es", "zh-Hans"'),
         ("{", "is not JSON"),
         ('{"expert": 7}', "expert must be printable text of 0 to 64 characters"),
     ],

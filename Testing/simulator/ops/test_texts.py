@@ -44,6 +44,14 @@ def test_a_question_and_an_exclamation_are_opened_in_spanish():
         assert (text.count("?"), text.count("!")) == (text.count("¿"), text.count("¡"))
 
 
+def test_chinese_has_full_width_signs_and_a_space_beside_numbers_and_latin_letters():
+    wide = "[\u4e00-\u9fff]"
+    for text in LANGUAGES["zh-Hans"].values():
+        said = re.sub(r"{\w+:[^}]*}", "0", text)
+        assert re.findall(rf"{wide}[0-9A-Za-z,;:?!()]|[0-9A-Za-z,;:?!()]{wide}", said) == [], text
+        assert re.findall(r"\s[。，、；：？！）]|[。，、；：？！（]\s", said) == [], text
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_two_ways_of_a_stick_or_of_arrow_keys_share_the_name_of_the_stick(language):
     texts = Texts(LANGUAGES[language])

@@ -11,6 +11,7 @@ from pathlib import Path
 from rastrainer.errors import RASTrainerError
 from rastrainer.python_environment import python_words
 from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
+from rastrainer_simulator.ops.chinese_font import chinese_font
 
 KEYBOARD = "The keyboard does everything a gamepad does."
 
@@ -129,6 +130,21 @@ def check_graphics(probe: Sequence[str] = ()) -> Iterator[CheckResult]:
         )
     else:
         yield CheckResult("graphics", CheckStatus.OK, f"OpenGL works: {renderer}.")
+
+
+def check_font() -> Iterator[CheckResult]:
+    """Check that the window can show Chinese."""
+    font = chinese_font()
+    if font is not None:
+        yield CheckResult("font", CheckStatus.OK, f"Chinese characters are drawn with {font}.")
+        return
+    remedy = "If you need Chinese, install one, such as Debian's fonts-wqy-microhei"
+    yield CheckResult(
+        "font",
+        CheckStatus.WARNING,
+        "No font with Chinese characters was found: the window cannot show Chinese.",
+        f"{remedy}, and fontconfig." if sys.platform.startswith("linux") else f"{remedy}.",
+    )
 
 
 def _failure(sentence: str) -> CheckResult:

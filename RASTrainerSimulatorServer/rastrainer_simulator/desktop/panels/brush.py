@@ -1,24 +1,15 @@
-"""Set text with VTK's own FreeType and fonts: the same letters on every system."""
+"""Set text in lines: how wide it is, where it breaks, and where it stands."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
-
-import numpy as np
-import vtkmodules.vtkRenderingFreeType  # noqa: F401  (registers the text renderer)
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from rastrainer_simulator.desktop.panels.canvas import Canvas, Letters
+from rastrainer_simulator.desktop.panels.letters import set_line
+from rastrainer_simulator.desktop.panels.line_breaks import pieces
 from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
 
-_DPI = 72
-_MEASURE_HEIGHT = "x"
 _BASELINE_SHARE = 0.70
-_IN_THE_FONT = str.maketrans({"\u202f": "\u00a0"})
-"""What stands for what the font lacks: for the narrow no-break space, the wide one."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +35,7 @@ class Brush:
 
     def line(self, text: str, style: TextStyle) -> Letters:
         """Return one line; what the font lacks stays empty."""
-        return _set(text, self._pixels(style), style.is_bold)
+        return set_line(text, self._pixels(style), style.is_bold)
 
     def width(self, text: str, style: TextStyle) -> int:
         """Return the width of a line in pixels."""
@@ -55,19 +46,18 @@ class Brush:
         return round(style.line * self.scale)
 
     def wrap(self, text: str, style: TextStyle, width: float) -> list[str]:
-        """Break a text between words into lines of at most `width` pixels, a longer word within."""
+        """Break a text into lines of at most `width` pixels, also within a piece that is longer."""
         lines: list[str] = []
         for paragraph in text.split("\n"):
             line = ""
-            # Not at the spaces of French, which do not break.
-            for word in filter(None, paragraph.split(" ")):
-                longer = f"{line} {word}".strip()
+            for between, piece in pieces(paragraph):
+                longer = f"{line}{between}{piece}".strip(" ")
                 if self.width(longer, style) <= width:
                     line = longer
                     continue
                 if line:
                     lines.append(line)
-                *full, line = self._break_word(word, style, width)
+                *full, line = self._broken(piece, style, width)
                 lines.extend(full)
             lines.append(line)
         return lines
@@ -80,48 +70,13 @@ class Brush:
             text = text[:-1]
         return f"{text}…"
 
-    def _break_word(self, word: str, style: TextStyle, width: float) -> list[str]:
-        pieces = [""]
-        for letter in word:
-            if pieces[-1] and self.width(pieces[-1] + letter, style) > width:
-                pieces.append("")
-            pieces[-1] += letter
-        return pieces
+    def _broken(self, piece: str, style: TextStyle, width: float) -> list[str]:
+        parts = [""]
+        for letter in piece:
+            if parts[-1] and self.width(parts[-1] + letter, style) > width:
+                parts.append("")
+            parts[-1] += letter
+        return parts
 
     def _pixels(self, style: TextStyle) -> int:
         return max(1, round(style.size * self.scale))
-
-
-@lru_cache(maxsize=2000)
-def _set(text: str, pixels: int, is_bold: bool) -> Letters:
-    coverage = _coverage(text.translate(_IN_THE_FONT), pixels, is_bold)
-    return Letters(coverage, _descent(pixels, is_bold))
-
-
-@lru_cache(maxsize=100)
-def _descent(pixels: int, is_bold: bool) -> int:
-    """Return how far a line's picture reaches below the baseline, in pixels."""
-    coverage = _coverage(_MEASURE_HEIGHT, pixels, is_bold)
-    return coverage.shape[0] - 1 - int(np.flatnonzero((coverage > 127).any(axis=1))[-1])
-
-
-def _coverage(text: str, pixels: int, is_bold: bool) -> np.ndarray:
-    style = vtkTextProperty()
-    style.SetFontFamilyToArial()
-    style.SetFontSize(pixels)
-    style.SetBold(is_bold)
-    style.SetColor(1.0, 1.0, 1.0)
-    # Not the tight box: all lines of a size then reach equally far below their baseline.
-    style.SetUseTightBoundingBox(False)
-    renderer = vtkTextRenderer.GetInstance()
-    renderer.SetScaleToPowerOfTwo(False)
-    # A dollar sign would begin a formula.
-    backend = vtkTextRenderer.FreeType
-    image = vtkImageData()
-    if not renderer.RenderString(style, text, image, [0, 0], _DPI, backend):
-        return np.zeros((pixels, 0), np.uint8)
-    width, height, _ = image.GetDimensions()
-    scalars = image.GetPointData().GetScalars()
-    if scalars is None or width * height == 0:
-        return np.zeros((pixels, 0), np.uint8)
-    return vtk_to_numpy(scalars).reshape(height, width, -1)[::-1, :, 3].copy()

@@ -14,6 +14,7 @@ from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
 )
 from rastrainer_simulator.net.views.screen import Menu, MenuItem
+from rastrainer_simulator.ops.texts.texts import LANGUAGES
 
 
 class StartPage(SessionPage):
@@ -91,7 +92,10 @@ class SettingsPage(SessionPage):
 
     def step(self, item: str, direction: int) -> None:
         """Choose another option, which counts at once."""
-        self.session.prefer(self.session.preferences.stepped(item, direction))
+        wanted = self.session.preferences.stepped(item, direction)
+        while wanted.language not in self.session.languages:
+            wanted = wanted.stepped("language", direction)
+        self.session.prefer(wanted)
 
     def _item(self, name: str) -> MenuItem:
         lock = self.session.lock
@@ -104,6 +108,8 @@ class SettingsPage(SessionPage):
     def _help(self, name: str) -> str:
         if self.session.lock.is_locked and name not in OF_TRAINEES:
             return self.say("settings.locked")
+        if name == "language" and set(self.session.languages) != set(LANGUAGES):
+            return self.say("window.no font")
         return self.say(f"settings.{name} help", file=PREFERENCES_FILE)
 
     def _value(self, name: str) -> str:

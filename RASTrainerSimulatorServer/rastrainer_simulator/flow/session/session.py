@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -93,6 +93,7 @@ class FlowServices:
         scores_alone: whether a trial outside of a study is scored here where no Slicer is
             connected.
         pin: the instructor's; None where there is never one.
+        languages: tags of those that can be chosen: the window may lack the letters of others.
     """
 
     config: Path
@@ -105,6 +106,7 @@ class FlowServices:
     study: StudySteps = field(default_factory=StudySteps)
     scores_alone: bool = False
     pin: PinGuesses | None = None
+    languages: Sequence[str] = tuple(LANGUAGES)
 
 
 class TrainingSession:
@@ -133,6 +135,7 @@ class TrainingSession:
         tutorials: who has finished one, and with which device.
         screen_sticks: those that views draw for a mouse.
         lock: what needs the instructor's PIN.
+        languages: those that can be chosen.
     """
 
     def __init__(
@@ -171,6 +174,7 @@ class TrainingSession:
         self.tutorials = FinishedTutorials(services.records)
         self.screen_sticks = ScreenSticks()
         self.lock = InstructorLock(services.pin)
+        self.languages = services.languages
         self.list_scenarios = services.list_scenarios
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit

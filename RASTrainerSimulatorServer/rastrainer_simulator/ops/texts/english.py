@@ -516,6 +516,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.language.de": "Deutsch",
         "settings.language.fr": "Français",
         "settings.language.es": "Español",
+        "settings.language.zh-Hans": "简体中文",
         "settings.volume": "Volume",
         "settings.volume help": "Volume of all sounds.",
         "settings.muted": "Mute",
@@ -772,6 +773,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "window.unknown": "The simulator does not know this window: close it and open one with the "
         "pairing code that the simulator shows now.",
         "window.refused": "The maximum number of views is open: close one.",
+        "window.no font": "This computer has no font with Chinese characters, so its window "
+        "cannot show Chinese: install one, such as WenQuanYi Micro Hei, and start again.",
         "window.pairing": "To pair a browser or a headset: code {code} at {addresses}",
         "status.points": "{kept} of {count} points",
         "status.traced": "{traced} of {least}–{most} points traced",

@@ -635,6 +635,7 @@ _TABLE: Mapping[str, str] = {
     "settings.language.de": "Deutsch",
     "settings.language.fr": "Français",
     "settings.language.es": "Español",
+    "settings.language.zh-Hans": "简体中文",
     "settings.volume": "Volume",
     "settings.volume help": "Volume de tous les sons.",
     "settings.muted": "Muet",
@@ -897,6 +898,9 @@ _TABLE: Mapping[str, str] = {
     "window.unknown": "Le simulateur ne connaît pas cette fenêtre : fermez-la et ouvrez-en une "
     "avec le code d'appairage que le simulateur affiche maintenant.",
     "window.refused": "Le nombre maximal de vues est ouvert : fermez-en une.",
+    "window.no font": "Cet ordinateur n'a pas de police de caractères chinois, donc sa fenêtre "
+    "ne peut pas afficher le chinois : installez-en une, comme WenQuanYi Micro Hei, et "
+    "redémarrez.",
     "window.pairing": "Pour appairer un navigateur ou un casque : code {code} à {addresses}",
     "status.points": "{kept} points sur {count}",
     "status.traced": "{traced} points tracés sur {least}–{most}",

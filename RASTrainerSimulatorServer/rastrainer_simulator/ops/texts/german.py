@@ -637,6 +637,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "settings.language.de": "Deutsch",
         "settings.language.fr": "Français",
         "settings.language.es": "Español",
+        "settings.language.zh-Hans": "简体中文",
         "settings.volume": "Lautstärke",
         "settings.volume help": "Lautstärke aller Töne.",
         "settings.muted": "Stumm",
@@ -899,6 +900,9 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "window.unknown": "Der Simulator kennt dieses Fenster nicht: Schließ es und öffne eines "
         "mit dem Kopplungscode, den der Simulator jetzt zeigt.",
         "window.refused": "Es sind so viele Ansichten offen wie möglich: Schließ eine.",
+        "window.no font": "Dieser Rechner hat keine Schrift mit chinesischen Zeichen, deshalb "
+        "kann sein Fenster kein Chinesisch zeigen: Installiere eine, etwa WenQuanYi Micro Hei, "
+        "und starte neu.",
         "window.pairing": "Browser oder Headset koppeln: Code {code} auf {addresses}",
         "status.points": "{kept} von {count} Punkten",
         "status.traced": "{traced} von {least}–{most} Punkten gezogen",

@@ -630,6 +630,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "settings.language.de": "Deutsch",
         "settings.language.fr": "Français",
         "settings.language.es": "Español",
+        "settings.language.zh-Hans": "简体中文",
         "settings.volume": "Volumen",
         "settings.volume help": "Volumen de todos los sonidos.",
         "settings.muted": "Silencio",
@@ -892,6 +893,9 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "window.unknown": "El simulador no conoce esta ventana: ciérrela y abra una con el código "
         "de emparejamiento que el simulador muestra ahora.",
         "window.refused": "Está abierto el número máximo de vistas: cierre una.",
+        "window.no font": "Este ordenador no tiene ninguna fuente con caracteres chinos, así que "
+        "su ventana no puede mostrar el chino: instale una, como WenQuanYi Micro Hei, y vuelva a "
+        "iniciar.",
         "window.pairing": "Para emparejar un navegador o un visor: código {code} en {addresses}",
         "status.points": "{kept} de {count} puntos",
         "status.traced": "{traced} de {least}–{most} puntos trazados",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from string import Formatter
 
+from rastrainer_simulator.ops.texts.chinese import CHINESE
 from rastrainer_simulator.ops.texts.english import ENGLISH
 from rastrainer_simulator.ops.texts.french import FRENCH
 from rastrainer_simulator.ops.texts.german import GERMAN
@@ -15,6 +16,7 @@ LANGUAGES: Mapping[str, Mapping[str, str]] = {
     "de": GERMAN,
     "fr": FRENCH,
     "es": SPANISH,
+    "zh-Hans": CHINESE,
 }
 """BCP 47 tag → table. What a table lacks is said in English."""
 

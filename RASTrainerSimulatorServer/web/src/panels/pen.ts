@@ -1,6 +1,7 @@
 /** Text and boxes on a canvas, in its pixels, with the colors of the flat page. */
 
 import type { Tone } from "../messages";
+import { pieces } from "./line_breaks";
 
 export const COLORS = {
   night: "#0e1726",
@@ -28,7 +29,7 @@ export const BANNERS: Readonly<Record<Tone, string>> = {
   error: "#700d18",
 };
 
-const FAMILY = 'system-ui, "Segoe UI", Roboto, "Noto Sans", sans-serif';
+const FAMILY = 'system-ui, "Segoe UI", Roboto, "Noto Sans", "PingFang SC", "Microsoft YaHei", "Noto Sans CJK SC", sans-serif';
 export const LINE = 1.28;
 
 export interface TextStyle {
@@ -112,11 +113,11 @@ export class Pen {
     this.use(style);
     const lines: string[] = [];
     let line = "";
-    for (const word of text.split(" ")) {
-      const longer = line === "" ? word : `${line} ${word}`;
+    for (const piece of pieces(text)) {
+      const longer = line === "" ? piece.text : line + piece.between + piece.text;
       if (line !== "" && this.context.measureText(longer).width > room) {
         lines.push(line);
-        line = word;
+        line = piece.text;
       } else {
         line = longer;
       }

@@ -1,12 +1,25 @@
 /** Set texts as a language's typography asks, so that their tables are written with plain keys. */
 
 const NARROW_SPACE = "\u202f";
+const NO_BREAK_SPACE = "\u00a0";
+
+type Texts = Readonly<Record<string, string>>;
 
 /** Return French texts with narrow no-break spaces beside signs of two parts. */
-export function french<Texts extends Readonly<Record<string, string>>>(texts: Texts): Texts {
-  const set = Object.entries(texts).map(([name, text]) => [
-    name,
-    text.replace(/ ([:;!?%»])/g, `${NARROW_SPACE}$1`).replace(/« /g, `«${NARROW_SPACE}`),
-  ]);
-  return Object.fromEntries(set);
+export function french<Table extends Texts>(texts: Table): Table {
+  return eachSet(texts, (text) => text.replace(/ ([:;!?%»])/g, `${NARROW_SPACE}$1`).replace(/« /g, `«${NARROW_SPACE}`));
+}
+
+/** Return Chinese texts with no-break spaces beside numbers and what is filled in. */
+export function chinese<Table extends Texts>(texts: Table): Table {
+  return eachSet(texts, (text) => text.replace(/ (?=[\d{/])|(?<=[\d}/]) /g, NO_BREAK_SPACE));
+}
+
+/** Return the tag of what is written: Chinese of every region in simplified characters. */
+export function writtenLanguage(tag: string): string {
+  return /^zh\b/.test(tag) ? "zh-Hans" : tag;
+}
+
+function eachSet<Table extends Texts>(texts: Table, set: (text: string) => string): Table {
+  return Object.fromEntries(Object.entries(texts).map(([name, text]) => [name, set(text)])) as Table;
 }
