@@ -81,5 +81,5 @@ def test_every_method_is_compared_on_the_chosen_head_by_the_simulators_program(h
     assert names[:2] == ["Bone screws", "Fiducials"]
     true = [float(table.item(row, 2).text()) for row in range(6)]
     assert min(true) > 0.0
-    assert "do not tell which is better" in host.text("methodsText")
+    assert "do not show which is better" in host.text("methodsText")
     assert host.messages == []

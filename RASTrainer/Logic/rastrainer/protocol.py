@@ -374,7 +374,7 @@ def decode_json_object(body: str) -> dict[str, Any]:
 
 
 def decode_told_object(body: str) -> dict[str, Any]:
-    """Return the JSON object in what the simulator tells, such as a trial's record.
+    """Return the JSON object in an answer of the simulator, such as a trial's record.
 
     Raises:
         InputError: as `decode_json_object`; it may hold more values.

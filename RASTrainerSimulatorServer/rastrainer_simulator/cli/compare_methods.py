@@ -39,7 +39,7 @@ HEADER = (
 )
 NOTE = (
     "Residuals and errors are root mean squares over trials and targets, ends of intervals medians."
-    " Residuals of different methods are of different points: they do not tell which is better."
+    " Residuals of different methods are of different points: they do not show which is better."
 )
 COLORS = {"expected TRE": "#0b6fa4", "true TRE": "#d1661b"}
 MOST_TRIALS = 10_000

@@ -25,7 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "Shows the replays of trials in the window and to every view, under shuffled numbers, "
             "without trainee, date, score or mode, and takes a rater's marks, which are kept in "
             "the study. All raters get the same trials, each in another order. Work can be left "
-            "at any time; the same command takes it up. The study's report tells how far raters "
+            "at any time; the same command takes it up. The study's report shows how far raters "
             "agree."
         ),
     )

@@ -1,4 +1,4 @@
-"""What was traced over the skin as the simulator tells it, and how it is painted on the skin."""
+"""What was traced over the skin as the simulator sends it, and how it is painted on the skin."""
 
 from __future__ import annotations
 

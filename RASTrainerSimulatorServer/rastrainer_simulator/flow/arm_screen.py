@@ -70,7 +70,7 @@ class ArmScreen:
         return False
 
     def errors(self) -> tuple[ErrorArrow, ...]:
-        """Return the errors of touches that may be seen: a trial's are told with its score."""
+        """Return the errors of touches that may be seen: a trial's are shown with its score."""
         return ()
 
     def coverage(self) -> str:

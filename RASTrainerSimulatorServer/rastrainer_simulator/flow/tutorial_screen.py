@@ -56,7 +56,7 @@ _AMOUNTS: Mapping[TutorialStep, str] = {
     TutorialStep.LOOK_AROUND: _DEG,
     TutorialStep.GUIDED: "tutorial.done points",
 }
-"""Key of what tells how much of a step is done."""
+"""Key of the text that says how much of a step is done."""
 _HEARD_ANYWAY = (TutorialStep.TOUCH, TutorialStep.UNDO, TutorialStep.GUIDED)
 
 

@@ -233,7 +233,7 @@ class RatingPresenter:
         self._refresh()
 
     def _pass_on(self, update: ViewUpdate) -> None:
-        """Pass on what the replay tells, while it is watched."""
+        """Pass on the replay's feedback, while it is watched."""
         if self.pages.top is not None:
             return
         if isinstance(update, Screen):
@@ -286,8 +286,8 @@ class RatingPresenter:
         effect = FEEDBACK_EFFECTS[what]
         self._count += 1
         data = {"rumbleMs": round(1000.0 * effect.seconds)}
-        told = Feedback(self._count, what.value, effect.sound, 1.0, effect.rumble, data)
-        self._subscribers.publish(told)
+        feedback = Feedback(self._count, what.value, effect.sound, 1.0, effect.rumble, data)
+        self._subscribers.publish(feedback)
 
 
 def _pressed(values: Sequence[float]) -> frozenset[int]:

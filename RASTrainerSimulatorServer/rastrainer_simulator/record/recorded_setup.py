@@ -66,7 +66,7 @@ def setup_of(
         has_same_landmarks = setup.has_landmarks_of(header)
     except (KeyError, TypeError, AttributeError):
         raise InputError(
-            "The journal's header does not tell its procedure or method as it should."
+            "The journal's header does not name its procedure or method as it should."
         ) from None
     if not has_same_landmarks:
         raise InputError(

@@ -187,7 +187,7 @@ class ReplayPresenter:
             language: BCP 47 tag.
             end: called when the user has seen enough.
             blinded: what a rater reads in place of task and trainee, who also is not led to the
-                worst touch, which only the truth tells; "" for everybody else.
+                worst touch, which only the truth reveals; "" for everybody else.
         """
         self._playback = playback
         self._language = language

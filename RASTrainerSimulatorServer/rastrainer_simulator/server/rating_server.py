@@ -23,7 +23,7 @@ from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.server.replay_server import preferred_language, show_until
 
 _OF_SETUP = ("scenario", "robot", "settings", "procedure", "method")
-"""What a journal's header tells of the set-up."""
+"""What a journal's header says about the set-up."""
 
 
 def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:

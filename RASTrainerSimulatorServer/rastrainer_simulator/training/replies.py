@@ -1,4 +1,4 @@
-"""Replies to the commands of a trial, and what they and events tell of it, in mm."""
+"""Replies to the commands of a trial, and what they and events say about it, in mm."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class TrainingReply:
 
 def summary(state: TrainingState) -> dict[str, Any]:
     """Return where a trial stands."""
-    told: dict[str, Any] = {
+    data: dict[str, Any] = {
         "trialId": state.trial_id,
         "phase": state.phase.value,
         "trainee": state.trainee,
@@ -39,13 +39,13 @@ def summary(state: TrainingState) -> dict[str, Any]:
     }
     if state.procedure is not None:
         at = {"name": state.procedure.name, "stage": state.procedure.stage.value}
-        told["procedure"] = {**at, "trajectory": state.procedure.trajectory}
+        data["procedure"] = {**at, "trajectory": state.procedure.trajectory}
     if state.method is not RegistrationMethod.FIDUCIALS:
         # As in journals older than methods.
-        told["method"] = state.method.value
+        data["method"] = state.method.value
     if state.trace is not None:
-        told["traced"] = len(state.trace.points)
-    return told
+        data["traced"] = len(state.trace.points)
+    return data
 
 
 def given(state: TrainingState) -> dict[str, Any]:

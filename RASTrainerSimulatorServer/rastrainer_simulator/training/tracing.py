@@ -62,7 +62,7 @@ def tip_data(now: TouchMoment, measured: Vector) -> dict[str, Any]:
 
 
 def stroke_data(trace: TraceState) -> dict[str, Any]:
-    """Return what is told of a trace where a stroke begins, ends or is undone."""
+    """Return the data of a trace where a stroke begins, ends or is undone."""
     return {"on": trace.is_on, "kept": len(trace.points), "strokes": len(trace.strokes)}
 
 
@@ -94,7 +94,7 @@ def _with_rest(state: TrainingState, trace: TraceState) -> TrainingState:
 
 
 def instruction(state: TrainingState) -> str:
-    """Return the key of what a trainee is told who traces, or may; values as of `told`."""
+    """Return the key of the instruction to a trainee who traces, or may; `counts` fills it in."""
     trace = state.trace
     assert trace is not None
     if trace.is_on:
@@ -106,6 +106,6 @@ def instruction(state: TrainingState) -> str:
     return "traced" if trace.points else "trace"
 
 
-def told(trace: TraceState) -> dict[str, int]:
+def counts(trace: TraceState) -> dict[str, int]:
     """Return the values of the sentences about a trace."""
     return {"traced": len(trace.points), "least": MIN_TRACE_POINTS}

@@ -312,12 +312,12 @@ class Training:
         if state.phase is self.state.phase:
             self._keep_traced(state)
             return TrainingReply(True, data=data, events=(event,))
-        phase = self._enter(state, tracing.instruction(state), now, **tracing.told(state.trace))
+        phase = self._enter(state, tracing.instruction(state), now, **tracing.counts(state.trace))
         return TrainingReply(True, data=data, events=(event, phase))
 
     def _keep_traced(self, state: TrainingState) -> None:
         assert state.trace is not None
-        self._keep(state, tracing.instruction(state), **tracing.told(state.trace))
+        self._keep(state, tracing.instruction(state), **tracing.counts(state.trace))
 
     def _undo(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         state = self.state
@@ -372,7 +372,7 @@ class Training:
             return TrainingReply(True, events=(self._enter(running, "resumed", now),))
         resumed = tracing.ended(running)
         key = tracing.instruction(resumed)
-        event = self._enter(resumed, key, now, **tracing.told(trace))
+        event = self._enter(resumed, key, now, **tracing.counts(trace))
         return TrainingReply(True, events=(event,))
 
     def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
@@ -441,7 +441,7 @@ class Training:
     def _interrupted(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Pause a trial that runs; one whose points are all touched has no time to stop."""
         trace = self.state.trace
-        values = {} if trace is None else tracing.told(trace)
+        values = {} if trace is None else tracing.counts(trace)
         if self.state.phase is Phase.COMPLETE:
             key = "interrupted complete" if trace is None else "interrupted trace"
             event = self._enter(self.state, key, now, **values)

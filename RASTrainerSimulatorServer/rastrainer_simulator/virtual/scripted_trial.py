@@ -175,8 +175,8 @@ def play_procedure(
         TrialStoppedError: the server refused a command, or a tool did not get where it should.
         LinkError: the connection was lost.
     """
-    told = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
-    registered = register_trial(GivenPoints.of_answer(told), scenario)
+    answer = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
+    registered = register_trial(GivenPoints.of_answer(answer), scenario)
     send(client, CommandName.USE_REGISTRATION, registered.arguments(trial_id))
     send(client, CommandName.ACCEPT_REGISTRATION, {})
     state = _wait(client, lambda state: state["phase"] == Phase.ALIGNING.value)
@@ -189,8 +189,8 @@ def play_procedure(
         assert bone.inner_mm is not None, "the plan was checked"
         _place(client, trajectory, number, bone.inner_mm)
         on_progress(f"{trajectory.name}: the electrode is placed")
-    told = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
-    return TrialRecord.from_json(told["record"])
+    answer = send(client, CommandName.GET_TRIAL, {"trialId": trial_id})
+    return TrialRecord.from_json(answer["record"])
 
 
 def _place(client: Client, trajectory: ProcedureTrajectory, number: int, inner_mm: float) -> None:

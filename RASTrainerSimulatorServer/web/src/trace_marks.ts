@@ -48,7 +48,7 @@ export class TraceMarks {
     }
   }
 
-  /** Forget the trace: the simulator tells all of it again. */
+  /** Forget the trace: the simulator sends all of it again. */
   reset(): void {
     this.take({ type: "trace", known: 0, points: [], coveredMm: 0, next: null });
   }

@@ -1,4 +1,4 @@
-"""The report tells how far raters agree, and whether marks go with the computed score."""
+"""The report shows how far raters agree, and whether marks go with the computed score."""
 
 import re
 from dataclasses import replace
@@ -101,7 +101,7 @@ def test_one_rater_or_two_replays_are_no_agreement_and_said_so():
     ratings = tuple(r for r in data.ratings if r.rater == "R1" or r.trial_id in few)
     words = words_of(raters(replace(data, ratings=ratings)))
     assert "R1 and R2 have rated 2 replays in common" in words
-    assert "cannot be told of 2 scored replays" in words
+    assert "cannot be seen from 2 scored replays" in words
 
 
 def test_raters_who_agree_everywhere_have_no_interval():

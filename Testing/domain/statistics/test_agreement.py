@@ -1,4 +1,4 @@
-"""Agreement of raters: published and independent values, and what cannot be told."""
+"""Agreement of raters: published and independent values, and what cannot be computed."""
 
 import numpy as np
 import pytest

@@ -75,7 +75,7 @@ def test_a_scenario_is_compared_by_every_method_with_text_csv_json_and_a_picture
     assert all(name in drawn for name in names)
     text = (tmp_path / "out" / "methods.txt").read_text()
     assert "skin shift 2 mm RMS" in text
-    assert "they do not tell which is better" in text
+    assert "they do not show which is better" in text
 
 
 def test_the_same_seed_is_the_same_trial_and_screws_do_not_move_with_the_skin(landmarked):

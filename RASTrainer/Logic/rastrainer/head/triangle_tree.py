@@ -16,7 +16,7 @@ LEAF = 8
 """Triangles in a box of the lowest level."""
 TOP_LEVEL = 5
 REPRESENTED_LEVEL = 7
-"""Boxes of this level are told apart by the middle of one lowest box within each."""
+"""Boxes of this level are distinguished by the middle of one lowest box within each."""
 
 
 @dataclass(frozen=True)

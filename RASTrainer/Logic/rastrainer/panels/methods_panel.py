@@ -56,7 +56,7 @@ class MethodsPanel:
 
     def _said(self, found: tuple[ComparedMethod, ...]) -> str:
         text = _(
-            "Residuals of different methods are of different points: they do not tell which is "
+            "Residuals of different methods are of different points: they do not show which is "
             "better. The true error does."
         )
         if len(found) == len(NAMES):

@@ -23,7 +23,7 @@ from rastrainer.registration.surface_placement import (
 NEARBY = 24
 """Starts; of the heads that were compared, the lowest minimum draws one in ten or more."""
 NEARBY_SD = 0.25, 1.0
-"""How far off every other is, in standard deviations of the pose as the residuals tell it."""
+"""How far off every other is, in standard deviations of the pose, estimated from the residuals."""
 NEARBY_MM = 2.0
 """How far off at most, along each axis of the pose."""
 NEARBY_STEPS, FOLLOWED = 2, 8

@@ -1,9 +1,9 @@
 """The target error to expect of a surface match, and where on the skin a point would help most.
 
 The curvature of the cost at its minimum is H = Σ JᵢᵀJᵢ with Jᵢ = (nᵢ, (pᵢ − c) × nᵢ): what each
-point tells of the pose. With the variance σ² of the points across the skin, σ²H⁻¹ is the covariance
-of the pose. Both are to first order, and for errors that are independent: a shift of the skin is
-not.
+point reveals about the pose. With the variance σ² of the points across the skin, σ²H⁻¹ is the
+covariance of the pose. Both are to first order, and for errors that are independent: a shift of the
+skin is not.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ DAB = 10
 
 @dataclass(frozen=True, eq=False)
 class PoseKnowledge:
-    """What points on the skin tell of the head's pose.
+    """What points on the skin reveal about the head's pose.
 
     Attributes:
         center: (3,) float, RAS mm, about which rotations are taken.
@@ -58,7 +58,7 @@ class PoseKnowledge:
 
 
 def knowledge_of(match: SurfaceMatch) -> PoseKnowledge:
-    """Return what a match tells of the pose: of its points that count, and their residuals.
+    """Return what a match reveals about the pose: from its points that count, and their residuals.
 
     σ² is Σ r²/(n − 6): the fit takes six parameters from the residuals.
 
@@ -81,7 +81,7 @@ def knowledge_of(match: SurfaceMatch) -> PoseKnowledge:
 def knowledge_so_far(
     places: np.ndarray, normals: np.ndarray, mesh: HeadMesh, noise_mm: float = USUAL_NOISE_MM
 ) -> PoseKnowledge:
-    """Return what the points of an unfinished trace tell, of any number; none is none.
+    """Return what the points of an unfinished trace reveal, however few; nothing without points.
 
     Before the first point, a pose is known to 10 mm and 0.2 rad on each axis.
 
@@ -169,10 +169,10 @@ def next_best_place(
     moved = _moves(np.asarray(targets, dtype=float) - knowledge.center)
     weight = np.einsum("tij,tik->jk", moved, moved) / len(moved)
     inverse = np.linalg.inv(knowledge.curvature)
-    told, _ = _rows(mesh.vertices[rows], mesh.vertex_normals[rows], knowledge.center)
-    turned = told @ inverse
+    directions, _ = _rows(mesh.vertices[rows], mesh.vertex_normals[rows], knowledge.center)
+    turned = directions @ inverse
     gain = DAB * np.einsum("vi,ij,vj->v", turned, weight, turned)
-    gain /= 1.0 + DAB * np.einsum("vi,vi->v", turned, told)
+    gain /= 1.0 + DAB * np.einsum("vi,vi->v", turned, directions)
     best = int(gain.argmax())
     now = float(np.sum(inverse * weight))
     return NextPlace(
@@ -186,7 +186,7 @@ def next_best_place(
 def _rows(
     places: np.ndarray, normals: np.ndarray, center: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return what each point tells of the pose, J (n, 6), and the center of rotations (3,)."""
+    """Return what each point reveals about the pose, J (n, 6), and the center of rotations (3,)."""
     middle = places.mean(axis=0) if center is None else center
     return np.concatenate([normals, np.cross(places - middle, normals)], axis=1), middle
 

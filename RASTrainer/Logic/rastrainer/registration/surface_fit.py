@@ -3,7 +3,7 @@
 The sum of the squared distances to the nearest points on the triangles is minimized by the method
 of Gauss and Newton. A distance grows along the line to its nearest point, so each step is that of
 point-to-plane ICP (Chen and Medioni 1992), with that line as the plane's normal. Near the end, the
-curvature is exact: nearest points on edges and corners are told from those within a triangle. Where
+curvature is exact: a nearest point on an edge or a corner differs from one within a triangle. Where
 a step leads up, since other triangles are nearest there, it is shortened to the minimum of the
 parabola through both costs and the slope. Points far outside of the spread of all are left out
 (trimmed ICP, Chetverikov 2002).

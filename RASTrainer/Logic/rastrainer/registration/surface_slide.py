@@ -12,7 +12,7 @@ LEAST_NOISE_MM, ALIKE_MM = 1.0, 20.0
 """Standard deviation of what all points within a cube of so many mm are off alike, as skin is
 pressed and drawn along. Residuals do not show it, and more points in one place do not reduce it."""
 TARGETS_ASIDE_MM = 30.0
-"""Of the places in the brain where a slide is told, from the head's middle along each axis."""
+"""Of the places in the brain where a slide is measured, from the head's middle along each axis."""
 NORMAL_95 = 1.96
 _LOOSEST_MM = 100.0
 _DIRECTIONS = ("left or right", "forward or back", "up or down")

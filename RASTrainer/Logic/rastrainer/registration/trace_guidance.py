@@ -87,9 +87,9 @@ def nearest_traced_mm(
 
 
 class TraceGuide:
-    """Follows a trace, and tells where its next points would help most.
+    """Follows a trace, and finds where its next points would help most.
 
-    A place is told until a centimeter has been drawn within `COVERED_MM` of it, or until a stroke
+    A place stays until a centimeter has been drawn within `COVERED_MM` of it, or until a stroke
     that was drawn elsewhere has ended: one that jumped about could not be followed.
     """
 
@@ -132,7 +132,7 @@ class TraceGuide:
         self._places = places
 
     def _is_kept(self, is_drawing: bool) -> bool:
-        """Return whether the place that was told last is still to be drawn at."""
+        """Return whether the last place found is still to be drawn at."""
         if self._told_at == len(self._places):
             return True
         if self._told is None or self._told_at < 0 or not is_drawing:

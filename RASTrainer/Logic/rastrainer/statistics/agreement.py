@@ -12,7 +12,7 @@ from rastrainer.statistics.estimates import TAIL, t_quantile
 from rastrainer.statistics.scipy_modules import scipy_module
 
 FEWEST = 3
-"""Of two rated objects, no agreement can be told."""
+"""Of two rated objects, no agreement can be computed."""
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Agreement:
 
     Attributes:
         value: At most 1.
-        interval: The 95 % interval; None where the data tell none, such as of raters who agree
+        interval: The 95 % interval; None where the data give none, such as of raters who agree
             everywhere.
     """
 
@@ -73,7 +73,7 @@ def intraclass_correlations(ratings: np.ndarray) -> IntraclassCorrelations:
     # Of what is rounded away, nothing is estimated.
     least = 1e-12 * max(1.0, float(np.ptp(ratings)) ** 2)
     if rows < least:
-        raise InputError("On average, all objects were rated the same: agreement cannot be told.")
+        raise InputError("On average, all objects were rated the same: agreement is undefined.")
     value = (rows - error) / (rows + (k - 1) * error + k * (columns - error) / n)
     single = Agreement(value, None)
     if error >= least:
@@ -102,7 +102,7 @@ def _of_mean(single: Agreement, k: int) -> Agreement:
 
     def of_mean(value: float) -> float:
         below = 1 + (k - 1) * value
-        # Below −1/(k − 1), the mean of the raters tells nothing.
+        # Below −1/(k − 1), the mean of the raters means nothing.
         return k * value / below if below > 0 else -math.inf
 
     limits = single.interval
@@ -162,7 +162,7 @@ def kappa_of_table(table: np.ndarray, weights: np.ndarray) -> float:
     observed = float(np.sum(weights * shares))
     by_chance = float(shares.sum(axis=1) @ weights @ shares.sum(axis=0))
     if by_chance >= 1.0 - 1e-12:
-        raise InputError("Both raters gave one and the same mark: agreement cannot be told.")
+        raise InputError("Both raters gave one and the same mark: agreement cannot be computed.")
     return (observed - by_chance) / (1 - by_chance)
 
 

@@ -61,18 +61,18 @@ class GivenPoints:
         Raises:
             InputError: they are missing or invalid, or too few for their method.
         """
-        method, told = method_of(answer.get("method")), answer.get("touches")
-        is_all = isinstance(told, list) and (
-            len(told) == FIDUCIAL_COUNT
+        method, given = method_of(answer.get("method")), answer.get("touches")
+        is_all = isinstance(given, list) and (
+            len(given) == FIDUCIAL_COUNT
             if method is RegistrationMethod.FIDUCIALS
-            else COARSE_LANDMARKS <= len(told) <= FIDUCIAL_COUNT
+            else COARSE_LANDMARKS <= len(given) <= FIDUCIAL_COUNT
         )
-        if not isinstance(told, list) or not is_all:
+        if not isinstance(given, list) or not is_all:
             wanted = FIDUCIAL_COUNT if method is RegistrationMethod.FIDUCIALS else "landmarks"
             raise InputError(
                 f"The simulator's answer to GetTrial must hold touches, a list of {wanted}."
             )
-        points = [checked_keys(touch, _TOUCH_KEYS, "Each touch of the trial") for touch in told]
+        points = [checked_keys(touch, _TOUCH_KEYS, "Each touch of the trial") for touch in given]
         places = np.array([point["positionMm"] for point in points])
         touches = PointList(tuple(point["label"] for point in points), places)
         trace = _trace_of(answer, method, least_traced)

@@ -50,7 +50,7 @@ class MethodResult:
     Attributes:
         method: the method.
         points: number of points whose residuals count.
-        residual_mm: their root mean square, mm. It does not tell the error.
+        residual_mm: their root mean square, mm. It does not show the error.
         matrix: (4, 4) float, World→RAS, mm.
         errors: expected at each target, with their intervals.
         true_mm: (m,) float, the true target error; None where the truth is unknown.

@@ -36,7 +36,7 @@ class ProcedureOutcome:
     score: ProcedureScore
 
     def summary(self) -> dict[str, Any]:
-        """Return what the trainee is told, ready for JSON: few numbers for each trajectory."""
+        """Return the feedback for the trainee, ready for JSON: few numbers for each trajectory."""
         analysis, score = self.analysis, self.score
         return {
             "score": score.score,

@@ -56,7 +56,7 @@ def unshifted_tre_mm(
 def skin_sentence(
     skin: SkinShift, true_tre_mm: float, unshifted_mm: float | None
 ) -> Sentence | None:
-    """Return what a trainee is told after a trial; None where the skin lay as in the images."""
+    """Return what the trainee reads after a trial; None where the skin lay as in the images."""
     if skin.is_none:
         return None
     amounts = {"shift": skin.rms_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}

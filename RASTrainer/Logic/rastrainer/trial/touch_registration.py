@@ -35,7 +35,7 @@ from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.score_reference import point_normals
 
 LEAST_ALONG_SURFACE = 6
-"""Touches; of fewer, the residuals do not tell the error along the skin from that across it."""
+"""Touches; of fewer, the residuals do not separate the error along the skin from that across it."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def _by_trace(
 
 
 def _localization_error(fit: Registration, normals: np.ndarray) -> LocalizationError:
-    """Return how the points are localized: few do not tell along the skin from across it."""
+    """Return how the points are localized; few cannot separate errors along and across the skin."""
     if len(fit.labels) < LEAST_ALONG_SURFACE:
         return isotropic_error(fit)
     return error_along_surface(fit, normals)

@@ -58,7 +58,7 @@ class Sprite:
         self.size = (width, height)
 
     def show(self, left: float, bottom: float, width: float = 0, height: float = 0) -> None:
-        """Show it, its lower left corner so many pixels from the window's; stretched if told."""
+        """Show it, its lower left corner so many pixels from the window's, or stretched."""
         width, height = width or self.size[0], height or self.size[1]
         for index, (right, up) in enumerate(_CORNERS):
             self._points.SetPoint(index, left + right * width, bottom + up * height, 0.0)

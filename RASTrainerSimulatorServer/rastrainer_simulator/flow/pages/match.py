@@ -1,6 +1,6 @@
 """The page on which a trainee accepts the match of a trace, or draws on.
 
-A small residual does not mean a small error: both are told, and what looks wrong with the match.
+A small residual does not mean a small error: both are shown, and what looks wrong with the match.
 """
 
 from __future__ import annotations

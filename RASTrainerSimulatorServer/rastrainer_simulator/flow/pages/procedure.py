@@ -102,27 +102,27 @@ _SPLIT = (
     ("depth", "depthMm", "depthByRegistrationMm", "depthByHandMm", math.inf),
     ("angle", "angleDeg", "angleByRegistrationDeg", "angleByHandDeg", ANGLE_LIMIT_DEG),
 )
-"""An error, its members in what is told of a trajectory, and the limit of the score."""
+"""An error, its members in the details of a trajectory, and the limit of the score."""
 
 
 def procedure_details(result: TrialResult | None) -> Mapping[str, Any]:
-    """Return what is told of a trial's procedure; empty where nothing is."""
-    told = None if result is None else result.details.get("procedure")
-    return told if isinstance(told, dict) else {}
+    """Return the details of a trial's procedure; empty without one."""
+    details = None if result is None else result.details.get("procedure")
+    return details if isinstance(details, dict) else {}
 
 
 def procedure_facts(session: TrainingSession, result: TrialResult) -> list[Fact]:
     """Return the procedure's score and its errors in short; [] in a trial of touches alone."""
-    told, say = procedure_details(result), session.texts.say
-    score = _number(told, "score")
+    details, say = procedure_details(result), session.texts.say
+    score = _number(details, "score")
     if score is None:
         return []
-    is_good = told.get("acceptable") is True
+    is_good = details.get("acceptable") is True
     key = "result.of 100" if is_good else "result.unacceptable score"
     tone = Tone.GOOD if is_good else Tone.WARNING
     facts = [Fact(say("procedure-errors.score"), say(key, score=score), tone)]
     parts = ("targetRmsMm", "targetByRegistrationRmsMm", "targetByHandRmsMm")
-    numbers = [_number(told, name) for name in parts]
+    numbers = [_number(details, name) for name in parts]
     if None not in numbers:
         values = dict(zip(("error", "registration", "hand"), numbers, strict=True))
         facts.append(Fact(say("procedure-errors.rms"), say("procedure-errors.split mm", **values)))
@@ -141,13 +141,13 @@ class ProcedureErrorsPage(SessionPage):
     def menu(self) -> Menu:
         """Return the table of the chosen trajectory."""
         each = self._trajectories
-        told = each[self._number] if each else {}
+        details = each[self._number] if each else {}
         several = len(each) > 1
-        choice = (self.choice("trajectory", _name(told)),) if several else ()
-        title = self.say("procedure-errors.title", name=_name(told))
+        choice = (self.choice("trajectory", _name(details)),) if several else ()
+        title = self.say("procedure-errors.title", name=_name(details))
         items: tuple[MenuItem, ...] = (*choice, self.button("lines"), self.button("back"))
         texts = (self.say("procedure-errors.text"),)
-        return Menu(self.name, title, texts, tuple(self._facts(told)), items)
+        return Menu(self.name, title, texts, tuple(self._facts(details)), items)
 
     def accept(self, item: str) -> None:
         """Show the lines on the head, or go back."""
@@ -162,26 +162,26 @@ class ProcedureErrorsPage(SessionPage):
 
     @property
     def _trajectories(self) -> Sequence[Mapping[str, Any]]:
-        told = procedure_details(self.session.training.result).get("trajectories")
-        listed = told[:MAX_TRAJECTORIES] if isinstance(told, list) else []
+        found = procedure_details(self.session.training.result).get("trajectories")
+        listed = found[:MAX_TRAJECTORIES] if isinstance(found, list) else []
         return [each for each in listed if isinstance(each, dict)]
 
-    def _facts(self, told: Mapping[str, Any]) -> list[Fact]:
+    def _facts(self, details: Mapping[str, Any]) -> list[Fact]:
         facts = []
         for name, whole, registration, hand, limit in _SPLIT:
-            numbers = [_number(told, member) for member in (whole, registration, hand)]
+            numbers = [_number(details, member) for member in (whole, registration, hand)]
             if None in numbers:
                 continue
             values = dict(zip(("error", "registration", "hand"), numbers, strict=True))
             unit = "deg" if name == "angle" else "mm"
             text = self.say(f"procedure-errors.split {unit}", **values)
             facts.append(Fact(self.say(f"procedure-errors.{name}"), text, _tone(numbers[0], limit)))
-        facts += self._drilled(told)
+        facts += self._drilled(details)
         return facts
 
-    def _drilled(self, told: Mapping[str, Any]) -> list[Fact]:
+    def _drilled(self, details: Mapping[str, Any]) -> list[Fact]:
         """Return how deep the drill plunged, and the distance kept to the nearest structure."""
-        plunge, kept = _number(told, "plungeMm"), _number(told, "keptMm")
+        plunge, kept = _number(details, "plungeMm"), _number(details, "keptMm")
         facts = []
         label = self.say("procedure-errors.plunge")
         if plunge is None:
@@ -191,7 +191,7 @@ class ProcedureErrorsPage(SessionPage):
             text = self.say("result.mm", error=plunge)
             facts.append(Fact(label, text, _tone(plunge, PLUNGE_LIMIT_MM)))
         if kept is not None:
-            nearest = _text(told.get("nearest"))
+            nearest = _text(details.get("nearest"))
             key = "procedure-errors.hit" if kept <= 0.0 else "procedure-errors.kept"
             tone = Tone.ERROR if kept <= 0.0 else Tone.PLAIN
             facts.append(Fact(nearest, self.say(key, distance=kept), tone))
@@ -235,14 +235,14 @@ def _tone(error: float | None, limit: float) -> Tone:
     return Tone.WARNING if abs(error) > limit else Tone.GOOD
 
 
-def _number(told: Mapping[str, Any], name: str) -> float | None:
-    """Return a number that was told; None for anything else."""
-    value = told.get(name)
+def _number(details: Mapping[str, Any], name: str) -> float | None:
+    """Return a number of the details; None for anything else."""
+    value = details.get(name)
     return float(value) if is_number(value) and math.isfinite(value) else None
 
 
-def _name(told: Mapping[str, Any]) -> str:
-    return _text(told.get("name"))
+def _name(details: Mapping[str, Any]) -> str:
+    return _text(details.get("name"))
 
 
 def _text(value: object) -> str:

@@ -82,10 +82,10 @@ class WaitingPage(FinishedPage):
         problem = "" if own is None else own.problem
         if not is_there and own is not None and not problem and self._step() is None:
             key = "waiting.own"
-        told = self.say(key, trainee=session.training.trainee)
+        waiting = self.say(key, trainee=session.training.trainee)
         why = (self.say("waiting.problem", reason=problem),) if problem else ()
         facts = _facts_of_trial(session)
-        return Menu(self.name, self.say("waiting.title"), (told, *why), facts, self.items())
+        return Menu(self.name, self.say("waiting.title"), (waiting, *why), facts, self.items())
 
 
 class ResultPage(FinishedPage):
@@ -208,12 +208,12 @@ class ResultPage(FinishedPage):
 
 def _beyond_limits(result: TrialResult) -> list[str]:
     """Return the keys of the sentences that say why a trial is not acceptable."""
-    told = (
+    limits = (
         ("isAccurate", "result.not accurate"),
         ("isUnbiased", "result.not unbiased"),
         ("isSafe", "result.not safe"),
     )
-    return [key for name, key in told if result.details.get(name) is False]
+    return [key for name, key in limits if result.details.get(name) is False]
 
 
 def _not_good(fact: Fact) -> Fact:
@@ -241,32 +241,34 @@ def _facts_of_trial(session: TrainingSession) -> tuple[Fact, ...]:
 
 def _feedback(texts: Texts, result: TrialResult) -> list[str]:
     """Return the feedback; that a trial is not acceptable is said before it, with the reason."""
-    told = result.details.get("feedback")
-    if _beyond_limits(result) and isinstance(told, list):
-        others = [e for e in told if not (isinstance(e, dict) and e.get("key") == "unacceptable")]
+    feedback = result.details.get("feedback")
+    if _beyond_limits(result) and isinstance(feedback, list):
+        others = [
+            e for e in feedback if not (isinstance(e, dict) and e.get("key") == "unacceptable")
+        ]
         result = replace(result, details={**result.details, "feedback": others})
     return _sentences(texts, result, "feedback", MAX_SHORT)
 
 
 def _sentences(texts: Texts, result: TrialResult, name: str, most: int) -> list[str]:
     """Return what Slicer says about the registration: what is no sentence is left out."""
-    told = result.details.get(name)
-    if not isinstance(told, list):
+    said = result.details.get(name)
+    if not isinstance(said, list):
         return []
-    worded = (_worded(texts, each) for each in told[:most])
+    worded = (_worded(texts, each) for each in said[:most])
     return [sentence[:LONGEST_SENTENCE] for sentence in worded if sentence]
 
 
-def _worded(texts: Texts, told: Any) -> str:
+def _worded(texts: Texts, said: Any) -> str:
     """Return a text as it is, and what has a key here in the trainee's language; "" for others."""
-    if not isinstance(told, dict):
-        return told if isinstance(told, str) and told.isprintable() else ""
-    key, values = f"feedback.{told.get('key')}", told.get("values")
+    if not isinstance(said, dict):
+        return said if isinstance(said, str) and said.isprintable() else ""
+    key, values = f"feedback.{said.get('key')}", said.get("values")
     if key in texts and isinstance(values, dict):
         # What does not fit the sentence, as that of another version, is said in English.
         with contextlib.suppress(KeyError, ValueError, TypeError):
             return texts.say(key, **{name: _value(texts, value) for name, value in values.items()})
-    text = told.get("text")
+    text = said.get("text")
     return text if isinstance(text, str) and text.isprintable() else ""
 
 
@@ -275,15 +277,15 @@ def _value(texts: Texts, value: Any) -> Any:
     if _is_number(value):
         return value
     if isinstance(value, dict):
-        # A part has no parts of its own, however deep what is told may be.
+        # A part has no parts of its own, however deep what is said may be.
         return _worded(texts, {**value, "values": _plain(value.get("values"))})
     return _worded(texts, value)
 
 
 def _plain(values: Any) -> dict[str, Any]:
     """Return those values that are numbers or texts."""
-    told = values.items() if isinstance(values, dict) else ()
-    return {name: value for name, value in told if isinstance(value, str) or _is_number(value)}
+    items = values.items() if isinstance(values, dict) else ()
+    return {name: value for name, value in items if isinstance(value, str) or _is_number(value)}
 
 
 def _is_number(value: object) -> TypeGuard[float]:

@@ -1,4 +1,4 @@
-"""What a trainee is told of the match of a trace before it is accepted, computed in a thread."""
+"""What a trainee reads about the match of a trace before accepting it, computed in a thread."""
 
 from __future__ import annotations
 
@@ -48,13 +48,13 @@ def look_at_match(training: TrainingState, scenario: Scenario) -> Future[MatchRe
 
 
 def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
-    """Return what is told of the match of a trial's trace.
+    """Return what is shown of the match of a trial's trace.
 
     Raises:
         InputError: the trace cannot be matched.
     """
-    told = {"task": training.task, "method": training.method.value, **given(training)}
-    registered = register_trial(GivenPoints.of_answer(told), scenario)
+    answer = {"task": training.task, "method": training.method.value, **given(training)}
+    registered = register_trial(GivenPoints.of_answer(answer), scenario)
     match, error = registered.match, registered.target_errors[RIGID]
     assert match is not None, "the method has a trace"
     return MatchReport(

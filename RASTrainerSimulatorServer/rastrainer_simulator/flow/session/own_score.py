@@ -147,8 +147,8 @@ def register_open_trial(ask: Ask, trial_id: str, scenario: Scenario) -> None:
     Raises:
         InputError: they cannot be registered, or another registration is in use.
     """
-    told = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
-    registered = register_trial(GivenPoints.of_answer(told), scenario, pause=_rest)
+    answer = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
+    registered = register_trial(GivenPoints.of_answer(answer), scenario, pause=_rest)
     _asked(ask, CommandName.USE_REGISTRATION, registered.arguments(trial_id))
 
 
@@ -158,9 +158,9 @@ def registered_alone(ask: Ask, trial_id: str, scenario: Scenario) -> TrialAnalys
     Raises:
         InputError: there is no such trial, or it cannot be registered.
     """
-    told = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
+    answer = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
     cohort = read_trials(asset_path(*PUBLISHED_STUDY))
-    return analyze_trial(TrialRecord.from_json(told["record"]), scenario, cohort, pause=_rest)
+    return analyze_trial(TrialRecord.from_json(answer["record"]), scenario, cohort, pause=_rest)
 
 
 def score_alone(

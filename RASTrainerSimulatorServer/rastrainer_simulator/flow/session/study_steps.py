@@ -15,7 +15,7 @@ MAX_TRAINEES = 1000
 """Of whom steps are kept; the oldest is forgotten first."""
 
 PLAYED, ANSWERED = "played", "answered"
-"""In place of a step's kind: it was done here, and Slicer will tell what comes after it."""
+"""In place of a step's kind: it was done here, and Slicer will say what comes next."""
 
 
 class StudySteps:
@@ -70,9 +70,9 @@ class StudySteps:
         """
         step = self._steps.get(trainee)
         if step is not None and step.kind == StepKind.QUESTIONNAIRE:
-            told = {"number": step.number, "questionnaire": step.questionnaire}
+            step_data = {"number": step.number, "questionnaire": step.questionnaire}
             self._answers[trainee] = StepAnswers.from_json(
-                {"trainee": trainee, "answers": list(answers), **told}
+                {"trainee": trainee, "answers": list(answers), **step_data}
             )
             self._steps[trainee] = replace(step, kind=ANSWERED)
 

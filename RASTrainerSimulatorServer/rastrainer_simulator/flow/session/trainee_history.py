@@ -213,8 +213,8 @@ def _past_trial(journal: Path) -> PastTrial | None:
         if "registered" not in last or "scored" not in last:
             return None
         record = TrialRecord.from_json(last["registered"]["record"])
-        told = last["scored"]["arguments"]
-        details = told["details"]
+        scored = last["scored"]["arguments"]
+        details = scored["details"]
         if record.task == TRIAL_RUN or "scoreVersion" not in details:
             return None
         return PastTrial(
@@ -222,7 +222,7 @@ def _past_trial(journal: Path) -> PastTrial | None:
             record.task,
             record.mode,
             record.completion_time_s,
-            float(told["score"]),
+            float(scored["score"]),
             details["isAccurate"] is True
             and details.get("isUnbiased") is not False
             and details["isSafe"] is not False,

@@ -177,7 +177,7 @@ class Publisher:
     loop's.
 
     Attributes:
-        is_guided: tells whether a trainee who traces the skin is shown where to draw next.
+        is_guided: says whether a trainee who traces the skin is shown where to draw next.
     """
 
     def __init__(self, latest: Callable[[], SimulationState]):

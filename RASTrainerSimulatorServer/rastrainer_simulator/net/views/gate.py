@@ -142,7 +142,7 @@ class Gate:
         return response
 
     def _check_pause(self) -> None:
-        """Refuse while pairing is paused; the one who caused the pause is told of the new code."""
+        """Refuse while pairing is paused; the one who caused the pause is sent the new code."""
         refuse_for(self._code.seconds_to_wait(), TOO_MANY)
 
 

@@ -1,4 +1,4 @@
-"""What all views are told beside the state: the news of a trace, and of who wears a headset."""
+"""What all views are sent beside the state: the news of a trace, and of who wears a headset."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class TraceNews:
         self._pacer = Pacer(NEWS_HZ)
 
     def news(self, now: SimulationState, guidance: TraceGuidance, time_s: float) -> str | None:
-        """Return what is new, as a message; None where nothing is, or it is too early to tell.
+        """Return what is new, as a message; None where nothing is, or it is too early to send it.
 
         Args:
             now: a state.
@@ -50,7 +50,7 @@ class TraceNews:
         return outgoing.trace(known, new, wanted)
 
     def everything(self) -> str | None:
-        """Return all that has been told, for a view that has just joined; None for nothing."""
+        """Return all that has been sent, for a view that has just joined; None for nothing."""
         if not self._places and self._guidance == TraceGuidance():
             return None
         return outgoing.trace(0, self._places, self._guidance)
@@ -73,12 +73,12 @@ NOBODY = "null"
 
 
 class Mirror:
-    """Keeps what the newest headset has told; one that comes back is another view."""
+    """Keeps what the newest headset has sent; one that comes back is another view."""
 
     def __init__(self) -> None:
         self._headsets: set[int] = set()
         self.text = NOBODY
-        """JSON of what the newest headset told last; "null" without one that is worn."""
+        """JSON of what the newest headset sent last; "null" without one that is worn."""
 
     def joined(self, view: int) -> None:
         """Follow a headset from now on."""
@@ -92,6 +92,6 @@ class Mirror:
         self._headsets.discard(view)
 
     def take(self, view: int, worn: Worn) -> None:
-        """Take what a headset tells; only the newest is followed."""
+        """Take what a headset sends; only the newest is followed."""
         if view == max(self._headsets, default=None):
             self.text = NOBODY if worn.eyes is None else outgoing.wearer(worn)

@@ -22,7 +22,7 @@ from rastrainer_simulator.ops.instructor_pin import PinGuesses
 async def open_views(
     source: StateSource,
     presenter: Presenter,
-    tell: Callable[[str], None],
+    announce: Callable[[str], None],
     port: int | None,
     robot_meshes: Path | None,
     certificates: Path | None = None,
@@ -31,7 +31,7 @@ async def open_views(
     config: Path | None = None,
     pin: PinGuesses | None = None,
 ) -> ViewServer:
-    """Return a server that listens on this computer; `tell` is given what people must know.
+    """Return a server that listens on this computer; `announce` is given what people must know.
 
     With a folder for certificates it listens to the local network, too, by TLS: on the next port
     or, where that is taken, any free one.
@@ -50,7 +50,7 @@ async def open_views(
     """
 
     def tell_new_code(code: str) -> None:
-        tell(f"has a new pairing code for views: {code}")
+        announce(f"has a new pairing code for views: {code}")
 
     server = ViewServer(
         source, presenter, tell_new_code, robot_meshes, limits, scenario_picture, config, pin
@@ -64,14 +64,14 @@ async def open_views(
         server.sessions.admit(agreed)
     found = await _listen(server, port)
     where = f"http://{DEFAULT_HOST}:{found}"
-    tell(f"serves views on {where}, pairing code {server.code.code}")
+    announce(f"serves views on {where}, pairing code {server.code.code}")
     if certificates is not None:
-        await _listen_in_network(server, found, certificates, tell)
+        await _listen_in_network(server, found, certificates, announce)
     return server
 
 
 async def _listen_in_network(
-    server: ViewServer, local: int, certificates: Path, tell: Callable[[str], None]
+    server: ViewServer, local: int, certificates: Path, announce: Callable[[str], None]
 ) -> None:
     from rastrainer_simulator.net.views import certificate
 
@@ -84,11 +84,11 @@ async def _listen_in_network(
     pages = [f"https://{name}:{found}" for name in addresses or [socket.gethostname()]]
     server.announce(*pages)
     where = " or ".join(pages)
-    tell(
+    announce(
         f"serves the local network on {where}; the browser warns of a certificate made here: "
         f"compare its SHA-256 fingerprint, {certificate.fingerprint(certificates)}"
     )
-    tell(
+    announce(
         f"serves a headset on a USB cable: adb reverse tcp:{local} tcp:{local}, then open "
         f"http://localhost:{local} in its browser"
     )

@@ -48,7 +48,7 @@ class Feedback:
         sound: name of the sound to play, "" for none.
         volume: of the sound, 0 to 1; 0 while sounds are muted.
         rumble: strength of the vibration, 0 to 1.
-        data: what else there is to tell, ready for JSON; lengths in mm.
+        data: what else there is to say, ready for JSON; lengths in mm.
     """
 
     number: int
@@ -116,7 +116,7 @@ class Seat:
         task: title of the open trial's task, "" without one.
         count: points of this task; 0 without a trial.
         screen: title of the open menu, "" while the trainee works.
-        instruction: what the trainee is told to do.
+        instruction: what the trainee is asked to do.
         warnings: what is wrong, as the trainee reads it.
         score: the trainee's latest, 0 to 100; None before the first.
         holder: what drives the arm, "" for nothing.

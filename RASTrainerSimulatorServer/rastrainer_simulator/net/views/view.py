@@ -75,12 +75,12 @@ class View:
 
     @property
     def is_spectator(self) -> bool:
-        """Whether it only watches: the flow, which counts who sees a trial, is never told of it."""
+        """Whether it only watches: the flow, which counts who sees a trial, never hears of it."""
         return self.hello.kind in messages.ONLY_WATCH
 
     @property
     def is_board(self) -> bool:
-        """Whether it is told of the seat only, and of no pose."""
+        """Whether it is sent news of the seat only, and of no pose."""
         return self.hello.kind == messages.BOARD
 
     async def serve(self) -> None:

@@ -34,7 +34,7 @@ class Views:
     """The joined views; `is_due` may be called in any thread, all else in the event loop's.
 
     Attributes:
-        mirror: what spectators are told of who wears a headset.
+        mirror: what spectators are shown of who wears a headset.
     """
 
     def __init__(

@@ -65,7 +65,7 @@ export class Pen {
     this.context.stroke();
   }
 
-  /** Draw a circle, or fill it where no line width is told. */
+  /** Draw a circle, or fill it where no line width is given. */
   circle(x: number, y: number, radius: number, color: string, lineWidth = 0): void {
     this.context.beginPath();
     this.context.arc(x, y, radius, 0, 2 * Math.PI);

@@ -1,7 +1,7 @@
 /** What a headset is called. */
 
 const LONGEST = 80;
-/** Profiles of the controllers, where the browser itself does not tell. */
+/** Profiles of the controllers, where the browser itself does not say. */
 const BY_PROFILE: Readonly<Record<string, string>> = {
   "meta-quest-touch-plus": "Meta Quest 3",
   "meta-quest-touch-pro": "Meta Quest Pro",

@@ -42,7 +42,7 @@ OUTCOMES = (RESIDUAL, EXPECTED, TRUE)
 COLORS = {RESIDUAL: "#6b7785", EXPECTED: "#0b6fa4", TRUE: "#d1661b"}
 INTRO = (
     "Residuals of different methods are of different points: a small residual does not mean a "
-    "small error, and does not tell which method is better. The true target error does."
+    "small error, and does not show which method is better. The true target error does."
 )
 PAIRED = (
     "Each trainee counts once, with the mean over the modes in which both methods were played; "

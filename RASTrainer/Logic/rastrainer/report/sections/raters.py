@@ -72,8 +72,8 @@ def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> str:
     shared = sorted(set.intersection(*(set(of_rater) for of_rater in marks.values())))
     left_out = "; ".join(f"{title.lower()} ({why})" for title, why in form.left_out.items())
     range_ = f"{form.lowest_total} to {form.highest_total}"
-    told = f"Totals of {counted(len(form.domains), 'domain')}, {range_}. Left out: {left_out}."
-    parts = [heading(form.title), paragraph(told)]
+    scope = f"Totals of {counted(len(form.domains), 'domain')}, {range_}. Left out: {left_out}."
+    parts = [heading(form.title), paragraph(scope)]
     if len(names) < 2 or len(shared) < FEWEST:
         replays = counted(len(shared), "replay")
         few = (
@@ -172,7 +172,7 @@ def _beside_the_score(form: RatingForm, marks: Marks, data: StudyData) -> list[s
         found = correlation(totals, computed)
     except InputError:
         text = (
-            f"Whether the score goes with the {form.title} marks cannot be told of "
+            f"Whether the score goes with the {form.title} marks cannot be seen from "
             f"{counted(len(rated), 'scored replay')}: three are needed, and both must vary."
         )
         return [paragraph(text)]

@@ -25,7 +25,7 @@ class ComparedMethod:
 
     Attributes:
         name: a `RegistrationMethod`.
-        residual: of the points that count; it does not tell the error.
+        residual: of the points that count; it does not show the error.
         expected: target error.
         interval: medians of the ends of its 95 % interval.
         true: target error.
@@ -91,8 +91,8 @@ class MethodComparisonLogic:
             if ended.exitStatus != 0:
                 sentence = ended.lastLine.removeprefix("rastrainer: ")
                 raise InputError(sentence or _("The simulator's program wrote nothing."))
-            told = read_json(folder / "methods.json", LIMIT_BYTES)
+            compared = read_json(folder / "methods.json", LIMIT_BYTES)
         try:
-            return tuple(ComparedMethod.of(*each) for each in told["methods"].items())
+            return tuple(ComparedMethod.of(*each) for each in compared["methods"].items())
         except (KeyError, TypeError, ValueError, AttributeError):
             raise InputError(_("The simulator's program is of another version.")) from None

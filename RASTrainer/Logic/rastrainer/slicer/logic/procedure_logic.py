@@ -57,20 +57,20 @@ class ProcedureStatus:
     @classmethod
     def of(cls, state: Mapping[str, Any]) -> ProcedureStatus:
         """Return the procedure's part of the simulator's state, which may hold anything."""
-        told = state.get("procedure")
-        if not isinstance(told, Mapping):
+        procedure = state.get("procedure")
+        if not isinstance(procedure, Mapping):
             return cls(phase=str(state.get("phase", Phase.IDLE.value)))
         return cls(
-            name=str(told.get("name", "")),
+            name=str(procedure.get("name", "")),
             phase=str(state.get("phase", Phase.IDLE.value)),
-            trajectory=int(knownNumber(told.get("trajectory")) or 0),
-            trajectories=int(knownNumber(told.get("trajectories")) or 0),
-            isRegistered=told.get("registrationInUse") is True,
-            entryDistanceMm=knownNumber(told.get("entryDistanceMm")),
-            angleDeg=knownNumber(told.get("angleDeg")),
-            standOffMm=knownNumber(told.get("standOffMm")),
-            feedMm=knownNumber(told.get("feedMm")) or 0.0,
-            lastCheckMm=knownNumber(told.get("lastCheckMm")),
+            trajectory=int(knownNumber(procedure.get("trajectory")) or 0),
+            trajectories=int(knownNumber(procedure.get("trajectories")) or 0),
+            isRegistered=procedure.get("registrationInUse") is True,
+            entryDistanceMm=knownNumber(procedure.get("entryDistanceMm")),
+            angleDeg=knownNumber(procedure.get("angleDeg")),
+            standOffMm=knownNumber(procedure.get("standOffMm")),
+            feedMm=knownNumber(procedure.get("feedMm")) or 0.0,
+            lastCheckMm=knownNumber(procedure.get("lastCheckMm")),
         )
 
     @property
@@ -214,8 +214,8 @@ class ProcedureLogic:
             self._ask(
                 CommandName.GET_TRIAL,
                 {"trialId": trialId},
-                lambda told: self._work.do(
-                    lambda: self._registered(told.data, scenario), use, self._fail
+                lambda reply: self._work.do(
+                    lambda: self._registered(reply.data, scenario), use, self._fail
                 ),
             )
 
@@ -224,10 +224,10 @@ class ProcedureLogic:
 
         self._ask(CommandName.LIST_TASKS, {}, askForTouches)
 
-    def _registered(self, told: Mapping[str, Any], scenarioName: str) -> TouchRegistration:
+    def _registered(self, answer: Mapping[str, Any], scenarioName: str) -> TouchRegistration:
         scenario = self._findScenario(scenarioName)
         progress = self._work.checkWanted
-        return self._run(REGISTER_OPEN, progress, GivenPoints.of_answer(told), scenario)
+        return self._run(REGISTER_OPEN, progress, GivenPoints.of_answer(answer), scenario)
 
     def _ask(self, name: str, arguments: Mapping[str, Any], take: Callable[[Reply], None]) -> None:
         def takeAnswer(reply: Reply) -> None:

@@ -87,18 +87,18 @@ class CheckedLine:
     isHeld: bool | None
 
     @classmethod
-    def of(cls, told: Mapping[str, Any]) -> CheckedLine:
+    def of(cls, measured: Mapping[str, Any]) -> CheckedLine:
         """Return a line of the file that `rastrainer scenario lines` writes."""
-        distances = told["noGoMm"]
+        distances = measured["noGoMm"]
         nearest = min(distances, key=distances.get, default="")
         return cls(
-            name=told["name"],
-            angleDeg=told["skullAngleDeg"],
+            name=measured["name"],
+            angleDeg=measured["skullAngleDeg"],
             noGo=nearest,
             noGoMm=distances.get(nearest),
-            other=told["nearestLine"],
-            otherMm=told["nearestLineMm"],
-            isHeld=told["isHeld"],
+            other=measured["nearestLine"],
+            otherMm=measured["nearestLineMm"],
+            isHeld=measured["isHeld"],
         )
 
 
@@ -184,12 +184,13 @@ class ProcedurePlanLogic:
         with tempfile.TemporaryDirectory() as temporary:
             folder = Path(temporary)
             path = self._write(folder, plan)
-            told = folder / "lines.json"
-            words = ["lines", str(scenario.folder), "--procedure", str(path), "--json", str(told)]
+            measures = folder / "lines.json"
+            words = ["lines", str(scenario.folder), "--procedure", str(path)]
+            words += ["--json", str(measures)]
             refusal = self._files.run(words, ownProgram, progress, mayFail=True)
-            if not told.is_file():
+            if not measures.is_file():
                 raise InputError(refusal)
-            (measured,) = json.loads(told.read_text(encoding="utf-8"))
+            (measured,) = json.loads(measures.read_text(encoding="utf-8"))
         lines = tuple(CheckedLine.of(line) for line in measured["lines"])
         return CheckedPlan(lines, tuple(measured["wrong"]))
 

@@ -23,7 +23,7 @@ _TRACED_PHASES = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
 
 @dataclass(frozen=True)
 class _Wanted:
-    """What the simulator tells of a trace; another one is to be shown."""
+    """What the simulator says about a trace; another one is to be shown."""
 
     trialId: str
     kept: int
@@ -88,16 +88,16 @@ class TraceLogic:
         )
 
     def _follow(self, state: Mapping[str, Any]) -> None:
-        told, wasShown = state.get("trace"), self._wanted is not None
+        trace, wasShown = state.get("trace"), self._wanted is not None
         self._wanted = None
         isOpen = state.get("phase") in _TRACED_PHASES and not state.get("nextPoint")
-        if isinstance(told, Mapping) and isOpen:
+        if isinstance(trace, Mapping) and isOpen:
             self._wanted = _Wanted(
                 str(state.get("trialId", "")),
-                int(knownNumber(told.get("kept")) or 0),
-                int(knownNumber(told.get("strokes")) or 0),
-                told.get("on") is True,
-                told.get("isGuided") is True,
+                int(knownNumber(trace.get("kept")) or 0),
+                int(knownNumber(trace.get("strokes")) or 0),
+                trace.get("on") is True,
+                trace.get("isGuided") is True,
             )
         if self._wanted is None and wasShown:
             self._shown = None
@@ -118,12 +118,12 @@ class TraceLogic:
         )
 
     def _followed(
-        self, scenario: Scenario, told: Mapping[str, Any], isDrawing: bool
+        self, scenario: Scenario, answer: Mapping[str, Any], isDrawing: bool
     ) -> FollowedTrace:
         """Return the trace on the head; called in the background."""
         if self._follower is None:
             self._follower = TraceFollower(scenario)
-        return self._follower.follow(GivenPoints.of_answer(told, least_traced=0), isDrawing)
+        return self._follower.follow(GivenPoints.of_answer(answer, least_traced=0), isDrawing)
 
     def _show(self, trace: FollowedTrace, wanted: _Wanted) -> None:
         self._isAsking = False

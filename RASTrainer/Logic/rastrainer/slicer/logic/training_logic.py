@@ -271,10 +271,10 @@ def tutorialSentence(trainee: str) -> str:
 
 def procedureOf(state: Mapping[str, Any]) -> str:
     """Return the name of the procedure in the simulator's state; empty where there is none."""
-    told = state.get("procedure")
-    return str(told.get("name", "")) if isinstance(told, Mapping) else ""
+    procedure = state.get("procedure")
+    return str(procedure.get("name", "")) if isinstance(procedure, Mapping) else ""
 
 
 def knownNumber(value: Any) -> float | None:
-    """Return a number that the simulator has told; None where it is none."""
+    """Return a number that the simulator has sent; None where it is none."""
     return float(value) if is_number(value) else None

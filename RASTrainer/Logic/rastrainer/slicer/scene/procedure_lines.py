@@ -68,7 +68,7 @@ def showProcedureErrors(scene: Any, analysis: ProcedureAnalysis) -> Any:
 
 
 def forgetProcedureErrors(scene: Any) -> None:
-    """Remove what was told of a procedure once its truth was known."""
+    """Remove what was shown of a procedure once its truth was known."""
     for role in (Role.REGISTERED_LINE, Role.TRUE_LINE):
         for node in nodesOf(scene, LINE, role):
             scene.RemoveNode(node)

@@ -67,7 +67,7 @@ GEARS = RatingForm(
     ),
     left_out={
         "Bimanual dexterity": "the trainee drives one arm",
-        "Autonomy": "a replay does not tell who has helped",
+        "Autonomy": "a replay does not show who has helped",
     },
     source="Goh, Goldfarb, Sander, Miles and Dunkin 2012, Global evaluative assessment of robotic "
     "skills: validation of a clinical assessment tool to measure robotic surgical skills",

@@ -15,7 +15,7 @@ class RatingWork:
     Every mark is stored when it is given, so that work can be left and taken up at any time.
 
     Attributes:
-        trial_ids: In the rater's order; their places are all that the rater is told of them.
+        trial_ids: In the rater's order; their places are all that the rater learns about them.
         place: Of the present replay, from 0.
         forms: Those to be filled in.
     """
