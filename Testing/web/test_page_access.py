@@ -138,8 +138,8 @@ def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_
 
 def at_work(language: str) -> Screen:
     """Return a trial with two warnings."""
-    say = Texts(LANGUAGES[language]).say
-    ways = ", ".join(say(f"way.{way}") for way in ("right", "back"))
+    texts = Texts(LANGUAGES[language])
+    say, ways = texts.say, texts.listed(texts.say(f"way.{way}") for way in ("right", "back"))
     point = say("status.point", point="13")
     return Screen(
         language=language,

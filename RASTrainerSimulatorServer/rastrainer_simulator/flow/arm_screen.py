@@ -145,7 +145,7 @@ class ArmScreen:
             "status.toward",
             name=name,
             distance=f"{STEP_MM * round(away / STEP_MM):.0f}",
-            direction=", ".join(session.texts.say(f"way.{word}") for word in words),
+            direction=session.texts.listed(session.texts.say(f"way.{word}") for word in words),
         )
 
     def _axes(self) -> Axes:

@@ -1,6 +1,7 @@
 """What the window shows of what the simulator says, rendered for real but for a display."""
 
 import asyncio
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from rastrainer_simulator.desktop.performance import Quality, first_quality
 from rastrainer_simulator.desktop.picture import Pointer
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
 from rastrainer_simulator.net.views.screen import Hint, Screen
+from rastrainer_simulator.ops.chinese_font import chinese_font
 from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.read_png import read_png
@@ -299,3 +301,17 @@ def test_a_picture_that_cannot_be_kept_is_told_in_one_sentence(show, inbox, tmp_
 )
 def test_software_rendering_is_recognized(name, quality):
     assert first_quality(name) is quality
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a font is always there")
+def test_without_a_font_for_chinese_the_window_says_so_in_english(
+    show, picture, monkeypatch, tmp_path
+):
+    show(replace(SCREEN, language="zh-Hans"))
+    assert picture._content(0.0).screen.menu is None
+    with monkeypatch.context() as patch:
+        patch.setenv("PATH", str(tmp_path))
+        chinese_font.cache_clear()
+        (sentence,) = picture._content(0.0).screen.menu.paragraphs
+        assert sentence.startswith("This computer has no font with Chinese characters")
+    chinese_font.cache_clear()

@@ -143,7 +143,7 @@ class ConflictPage(SessionPage):
         text = self.say(
             "conflict.text",
             input=self.session.operator.input_label(self._device, self._wanted),
-            other=", ".join(self.say(f"control.{other.value}") for other in others),
+            other=self.session.texts.listed(self.say(f"control.{other.value}") for other in others),
             control=self.say(f"control.{self._control.value}"),
         )
         items = tuple(self.button(item) for item in ("exchange", "another", "cancel"))

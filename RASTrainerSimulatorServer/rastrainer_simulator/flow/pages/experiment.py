@@ -121,7 +121,7 @@ class ExperimentPage(SessionPage):
         scores = session.history.trend(session.trainee.strip(), session.mode)
         if not scores:
             return None
-        told = ", ".join(f"{score:.0f}" for score in scores)
+        told = session.texts.listed(f"{score:.0f}" for score in scores)
         mark = PASS_MARK if self._step() is None else 0.0
         return ScoreTrend(self.say("experiment.scores", scores=told), scores, mark)
 

@@ -163,5 +163,5 @@ class PadTestPage(SessionPage):
     def _input(self, device: InputDevice, name: str) -> tuple[str, str]:
         table = self.session.bindings.table(device)
         works = [control for control, inputs in table.items() if name in inputs]
-        names = ", ".join(self.say(f"control.{control.value}") for control in works)
+        names = self.session.texts.listed(self.say(f"control.{each.value}") for each in works)
         return self.session.operator.input_label(device, name), names or self.say("test.nothing")

@@ -69,7 +69,8 @@ class TutorialDonePage(SessionPage):
     def menu(self) -> Menu:
         """Return the figures and what comes next."""
         outcome = self._outcome
-        touches = ", ".join(self.say("tutorial.mm", error=error) for error in outcome.errors_mm)
+        errors = (self.say("tutorial.mm", error=error) for error in outcome.errors_mm)
+        touches = self.session.texts.listed(errors)
         reason = obstacle(self.session, TRIAL_RUN)
         trial_run = self.button("trial-run", is_enabled=not reason, help=reason)
         return Menu(

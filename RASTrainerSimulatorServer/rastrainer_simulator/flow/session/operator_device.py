@@ -100,7 +100,7 @@ class OperatorDevice:
     def input_labels(self, device: InputDevice, control: ControlName) -> str:
         """Return all inputs of a control."""
         names = self.controls.bindings.table(device)[control]
-        return ", ".join(self.input_label(device, name) for name in names)
+        return self.texts.listed(self.input_label(device, name) for name in names)
 
     def input_label(self, device: InputDevice, name: str) -> str:
         """Return what an input is called."""

@@ -1,8 +1,8 @@
 """The same texts in Simplified Chinese, which address the trainee as "您".
 
 Point: 点. Touch, as a noun: 触碰. Fiducial: 标记点. Landmark: 解剖标志. Registration: 配准.
-Target: 靶点. FRE: 配准误差. TRE: 靶点误差. Trial: 试验. Trial run: 自由练习. Trace: 描迹.
-Stroke: 一笔. Match: 匹配. Undo: 撤销. Abort: 中止. Tool: 工具. Tip: 尖端. Arm: 机械臂.
+Target: 靶点. FRE: 配准误差. TRE: 靶点误差. Experiment: 实验. Trial: 试验. Trial run: 自由练习.
+Trace: 描迹. Stroke: 一笔. Match: 匹配. Undo: 撤销. Abort: 中止. Tool: 工具. Tip: 尖端. Arm: 机械臂.
 Guide: 导向器. Instrument: 器械. Planned line: 计划路径. Entry point: 入点. Inner table: 颅骨内板.
 Checkpoint: 验证点. Seat: 工位. Replay: 回放. Headset: 头显.
 
@@ -28,17 +28,17 @@ _ITEMS: Mapping[str, str] = {
     "sus_8": "用起来很麻烦",
     "sus_9": "使用时有信心",
     "sus_10": "事先要学很多东西",
-    "tlx_mental": "脑力要求",
-    "tlx_physical": "体力要求",
-    "tlx_temporal": "时间要求",
-    "tlx_performance": "绩效",
+    "tlx_mental": "脑力需求",
+    "tlx_physical": "体力需求",
+    "tlx_temporal": "时间需求",
+    "tlx_performance": "绩效水平",
     "tlx_effort": "努力程度",
-    "tlx_frustration": "挫败感",
-    "ssq_discomfort": "全身不适",
+    "tlx_frustration": "受挫程度",
+    "ssq_discomfort": "一般不适",
     "ssq_fatigue": "疲劳",
     "ssq_headache": "头痛",
     "ssq_eyestrain": "眼疲劳",
-    "ssq_focusing": "对焦困难",
+    "ssq_focusing": "难以聚焦",
     "ssq_salivation": "唾液增多",
     "ssq_sweating": "出汗",
     "ssq_nausea": "恶心",
@@ -275,7 +275,7 @@ _TABLE: Mapping[str, str] = {
     "controls.test": "试用操作",
     "controls.rebind": "更改按键",
     "controls.back": "返回",
-    "experiment.title": "试验",
+    "experiment.title": "实验",
     "experiment.trainee": "您的 ID",
     "experiment.trainee help": "此 ID 由指导教师提供，随试验一起保存。",
     "experiment.clicked": "用鼠标输入 ID",
@@ -433,7 +433,7 @@ _TABLE: Mapping[str, str] = {
     "result.mm": "{error:.2f} mm",
     "result.points": "{points:.1f}",
     "result.time": "时间",
-    "result.repeated": "被拒绝 / 撤回的触碰",
+    "result.repeated": "被拒绝 / 撤销的触碰",
     "result.next": "下一项：{task}",
     "result.again": "再做一次：{task}",
     "result.replay": "回放试验",
@@ -485,7 +485,7 @@ _TABLE: Mapping[str, str] = {
     "{poor:.0f} mm 起",
     "errors.back": "返回",
     "result.worst": "显示最差触碰",
-    "result.menu": "试验菜单",
+    "result.menu": "实验菜单",
     # The tutorial: {control} is what the trainee presses or pushes, such as "Left stick up".
     "tutorial.title": "教程",
     "tutorial.place": "第 {step} 步，共 {steps} 步",
@@ -514,7 +514,7 @@ _TABLE: Mapping[str, str] = {
     "tutorial.best view": "点 {point} 的最佳视角：{control}。",
     "tutorial.lower": "将尖端降到点 {point} 上：圆环收拢，到皮肤上时变绿。",
     "tutorial.touch": "记录触碰：{control}。距该点 10 mm 以内的触碰才计入。",
-    "tutorial.undo": "人人都会失误。撤回触碰：{control}。",
+    "tutorial.undo": "人人都会失误。撤销触碰：{control}。",
     "tutorial.pause": "打开菜单：{control}。此时一切都会等待；然后请继续。",
     "tutorial.guided": "现在请触碰 {count} 个点，每个都尽量准确。从点 {point} 开始。",
     "tutorial.praise": "做得好。",
@@ -536,7 +536,7 @@ _TABLE: Mapping[str, str] = {
     "tutorial-done.touches": "最后三次的误差",
     "tutorial-done.trial-run": "开始自由练习",
     "tutorial-done.again": "再做一次教程",
-    "tutorial-done.menu": "试验菜单",
+    "tutorial-done.menu": "实验菜单",
     # Settings.
     "settings.title": "设置",
     "settings.back": "返回",
@@ -672,7 +672,7 @@ _TABLE: Mapping[str, str] = {
     "control.view_higher": "从上方观察",
     "control.view_farther": "拉远视角",
     "control.view_nearer": "拉近视角",
-    "control.accept": "接受",
+    "control.accept": "确定",
     "control.back": "返回",
     "control.up": "上",
     "control.down": "下",
@@ -840,7 +840,7 @@ _TABLE: Mapping[str, str] = {
     "hint.front": "正面视角",
     "hint.menu": "菜单",
     "hint.choose": "选择",
-    "hint.accept": "接受",
+    "hint.accept": "确定",
     "hint.back": "返回",
     "hint.play": "播放、暂停",
     "hint.seek": "后退、前进 5 s",
@@ -909,6 +909,7 @@ _TABLE: Mapping[str, str] = {
     "replay.no worst": "无法确定此试验的最差触碰。",
     "replay.no journal": "无法回放此试验：其日志已不在记录文件夹中。",
     "decimal sign": ".",
+    "list separator": "、",
 }
 
 CHINESE: Mapping[str, str] = MappingProxyType(

@@ -892,5 +892,6 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "replay.no journal": "The trial cannot be replayed: its journal is no longer in the "
         "records folder.",
         "decimal sign": ".",
+        "list separator": ", ",
     }
 )

@@ -1017,6 +1017,7 @@ _TABLE: Mapping[str, str] = {
     "replay.no journal": "L'essai ne peut pas être remontré : son journal n'est plus dans le "
     "dossier des enregistrements.",
     "decimal sign": ",",
+    "list separator": ", ",
 }
 
 FRENCH: Mapping[str, str] = MappingProxyType(

@@ -1020,5 +1020,6 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "replay.no journal": "Der Versuch kann nicht wiedergegeben werden: Sein Journal ist nicht "
         "mehr im Ordner der Aufzeichnungen.",
         "decimal sign": ",",
+        "list separator": ", ",
     }
 )

@@ -1012,5 +1012,6 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "replay.no journal": "El ensayo no se puede volver a mostrar: su diario ya no está en la "
         "carpeta de grabaciones.",
         "decimal sign": ",",
+        "list separator": ", ",
     }
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from string import Formatter
 
 from rastrainer_simulator.ops.texts.chinese import CHINESE
@@ -75,6 +75,10 @@ class Texts:
     def say(self, key: str, **values: object) -> LocalizedText:
         """Return the sentence with its values filled in."""
         return LocalizedText(self._formatter.vformat(self._table[key], (), values), key, values)
+
+    def listed(self, words: Iterable[str]) -> str:
+        """Return words one after the other, with the language's sign between them."""
+        return self._table["list separator"].join(words)
 
     def again(self, sentence: str) -> str:
         """Return a sentence in this language; one that is not ours stays as it is."""

@@ -120,7 +120,7 @@ export class Tile {
 function stateOf({ link, seat }: TileNews): string {
   if (seat === null) return say(link === "watching" ? "link.connecting" : `link.${link}`);
   const phase = say(`phase.${seat.phase}`);
-  const doing = seat.task === "" ? phase : `${seat.task}: ${phase}`;
+  const doing = seat.task === "" ? phase : say("doing", { task: seat.task, phase });
   return WORKING.includes(seat.phase) ? `${doing}, ${say(`touch.${seat.touch}`)}` : doing;
 }
 

@@ -105,6 +105,7 @@ export const BOARD: BoardTexts = chinese({
   "link.away": "模拟器没有应答。",
   "link.unpaired": "模拟器已不认识此看板。",
   "link.other certificate": "证书已更改：请重新核对其指纹。",
+  doing: "{task}：{phase}",
   "phase.idle": "无试验",
   "phase.running": "触碰中",
   "phase.paused": "已暂停",

@@ -105,6 +105,7 @@ export const BOARD = {
   "link.away": "The simulator does not answer.",
   "link.unpaired": "The simulator does not know this board any more.",
   "link.other certificate": "The certificate has changed: compare its fingerprint again.",
+  doing: "{task}: {phase}",
   "phase.idle": "No trial",
   "phase.running": "Touching",
   "phase.paused": "Paused",

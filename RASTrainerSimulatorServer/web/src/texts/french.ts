@@ -106,6 +106,7 @@ export const BOARD: BoardTexts = french({
   "link.away": "Le simulateur ne répond pas.",
   "link.unpaired": "Le simulateur ne connaît plus ce tableau.",
   "link.other certificate": "Le certificat a changé : comparez à nouveau son empreinte.",
+  doing: "{task} : {phase}",
   "phase.idle": "Aucun essai",
   "phase.running": "Touche les points",
   "phase.paused": "En pause",

@@ -105,6 +105,7 @@ export const BOARD: BoardTexts = {
   "link.away": "Der Simulator antwortet nicht.",
   "link.unpaired": "Der Simulator kennt diese Übersicht nicht mehr.",
   "link.other certificate": "Das Zertifikat ist ein anderes: Vergleiche seinen Fingerabdruck neu.",
+  doing: "{task}: {phase}",
   "phase.idle": "Kein Versuch",
   "phase.running": "Berührt Punkte",
   "phase.paused": "Angehalten",

@@ -105,6 +105,7 @@ export const BOARD: BoardTexts = {
   "link.away": "El simulador no responde.",
   "link.unpaired": "El simulador ya no conoce este tablero.",
   "link.other certificate": "El certificado ha cambiado: compare de nuevo su huella.",
+  doing: "{task}: {phase}",
   "phase.idle": "Ningún ensayo",
   "phase.running": "Toca los puntos",
   "phase.paused": "En pausa",
