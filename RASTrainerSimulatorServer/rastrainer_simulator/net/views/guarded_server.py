@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-import ssl
 from collections.abc import Sequence
 from pathlib import Path
 
 from aiohttp import web
 
-from rastrainer.errors import InputError
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.listener import Listener
-from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
-from rastrainer_simulator.net.views.gate import Gate, PairingCode, add_security_headers
+from rastrainer_simulator.net.views.connections import Connections
+from rastrainer_simulator.net.views.gate import Gate, PairingCode
+from rastrainer_simulator.net.views.limited_server import LimitedServer
 from rastrainer_simulator.net.views.sessions import Sessions
 
 LARGEST_BODY = 1024
-SHUTDOWN_S = 1.0
 
 
-class GuardedServer:
+class GuardedServer(LimitedServer):
     """An HTTP server behind a `Gate`, on any number of ports."""
 
     def __init__(
@@ -40,9 +37,7 @@ class GuardedServer:
             routes: what else is answered.
             page: folder of the built page, whose files are public; None where there is none.
         """
-        self._limits = limits
-        self._connections = Connections(limits.connections, limits.first_message_s)
-        connections = self._connections
+        connections = Connections(limits.connections, limits.first_message_s)
         gate = Gate(
             sessions,
             code,
@@ -50,47 +45,6 @@ class GuardedServer:
             connections.note_key,
             AsyncRateLimiter(limits.requests_per_s),
         )
-        app = web.Application(middlewares=[gate.check], client_max_size=LARGEST_BODY)
-        app.on_response_prepare.append(add_security_headers)
-        app.add_routes([web.post("/pair", gate.pair), *routes])
-        if page is not None:
-            app.add_routes([web.static("/", page)])
-        self._runner = web.AppRunner(
-            app,
-            access_log=None,
-            logger=http_log(),
-            keepalive_timeout=KEEP_ALIVE_S,
-            shutdown_timeout=SHUTDOWN_S,
-        )
-        self._listeners: list[Listener] = []
-
-    async def listen(self, host: str, port: int, tls: ssl.SSLContext | None = None) -> int:
-        """Listen, by TLS where there is a certificate; return on which port, 0 is any free one.
-
-        Raises:
-            InputError: the address cannot be listened on.
-        """
-        listener = Listener(
-            self._connections,
-            self._limits.new_connections_per_s,
-            tls,
-            self._limits.first_message_s,
-        )
-        try:
-            found = await listener.listen(host, port)
-        except (OSError, OverflowError) as error:
-            raise InputError(f"Views cannot be served on {host}:{port}: {error}.") from None
-        self._listeners.append(listener)
-        if self._connections.server is None:
-            await self._runner.setup()
-            self._connections.server = self._runner.server
-        return found
-
-    def stop_listening(self) -> None:
-        """Take no further connection."""
-        for listener in self._listeners:
-            listener.close()
-
-    async def close(self) -> None:
-        """End what is still connected."""
-        await self._runner.cleanup()
+        static = [] if page is None else [web.static("/", page)]
+        paths = [web.post("/pair", gate.pair), *routes, *static]
+        super().__init__(connections, limits, gate.check, paths, LARGEST_BODY)
