@@ -25,7 +25,7 @@ audit_packages, bill_of_materials, third_party_notices, wheel_page = map(
 )
 
 EXTRAS = {
-    "requirements.lock": ("page", "slicer"),
+    "requirements.lock": ("lti", "page", "slicer"),
     "requirements-test.lock": ("test",),
     "requirements-bench.lock": ("bench",),
     "requirements-soak.lock": ("soak",),
@@ -33,7 +33,7 @@ EXTRAS = {
     "requirements-docs.lock": ("docs",),
 }
 """What `make lock` makes each lock from, beside the project's own dependencies."""
-PEERS_LOCKS = tuple(ROOT / f"requirements-{name}.lock" for name in ("ralph", "icp"))
+PEERS_LOCKS = tuple(ROOT / f"requirements-{name}.lock" for name in ("ralph", "icp", "openedx"))
 """Of peers in the tests, which have environments and files of requirements of their own."""
 NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")
 

@@ -24,6 +24,7 @@ SUBCOMMANDS = {
     "scenario": "rastrainer_simulator.cli.scenario",
     "simulator": "rastrainer_simulator.cli.simulator",
     "board": "rastrainer_simulator.cli.board",
+    "lti": "rastrainer_simulator.cli.lti",
     "instructor-pin": "rastrainer_simulator.cli.instructor_pin",
     "window": "rastrainer_simulator.cli.window",
     "doctor": "rastrainer_simulator.cli.doctor_command",

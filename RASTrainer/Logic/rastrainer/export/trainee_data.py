@@ -11,6 +11,7 @@ from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.rating.rating_store import RatingStore
 
@@ -118,4 +119,5 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     names = [path.name for path in erased if path.suffix == SUFFIX]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]
     trials = study.delete_trainee(pseudonym)
+    PlatformLinks(study.database.path).forget(pseudonym)
     return Erasure(trials, len(names), tuple(missing), tuple(unreadable))

@@ -908,6 +908,30 @@ _TABLE: Mapping[str, str] = {
     "replay.back": "返回结果",
     "replay.no worst": "无法确定此试验的最差触碰。",
     "replay.no journal": "无法回放此试验：其日志已不在记录文件夹中。",
+    # What a learning platform's users read after a launch.
+    "lti.you are": "您在模拟器上的化名",
+    "lti.what to do": "接下来怎么做",
+    "lti.go": "请到实验室的模拟器前，让工作人员在 3D Slicer 的“Trainees”中选择 {pseudonym}。",
+    "lti.play": "请{mode}进行{task}，次数不限。",
+    "lti.any task": "任意一项任务",
+    "lti.any mode": "在桌面屏幕上或用头显",
+    "lti.return": "要在此查看新的得分，请再次打开课程中的链接。",
+    "lti.scores": "您的试验",
+    "lti.seconds": "{seconds:.0f} s",
+    "lti.no trials": "还没有计入此链接的试验。",
+    "lti.grade best": "您最好的合格得分会发送给课程：{score:.1f} / 100。",
+    "lti.grade latest": "您最近一次合格试验的得分会发送给课程：{score:.1f} / 100。",
+    "lti.no grade yet": "一旦有试验合格，课程就会收到成绩。",
+    "lti.no grade": "此链接不向课程发送成绩。",
+    "lti.data": "您的数据",
+    "lti.data text": "{platform} 最多只会收到您的成绩及其发送时间。实验室把您在 {platform} 的用户"
+    "编号与化名一起保存在私有文件中，但不保存您的姓名和电子邮箱。您的试验能否用于研究，实验室会另"
+    "行征求您的意见。",
+    "lti.no learner": "您不是此课程的学员，因此没有化名，也没有成绩。",
+    "lti.link works": "链接可用，成绩可以发送给课程。",
+    "lti.refused": "无法使用此次启动",
+    "lti.refused help": "请再次打开课程中的链接。如果再次看到此页，请把以下内容出示给课程或模拟器"
+    "的负责人。",
     "decimal sign": ".",
     "list separator": "、",
 }

@@ -891,6 +891,34 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "replay.no worst": "The worst touch of this trial cannot be determined.",
         "replay.no journal": "The trial cannot be replayed: its journal is no longer in the "
         "records folder.",
+        # What a learning platform's users read after a launch.
+        "lti.you are": "Your pseudonym at the simulator",
+        "lti.what to do": "What to do",
+        "lti.go": "Go to a simulator of your lab, and have {pseudonym} chosen in 3D Slicer, under "
+        "Trainees.",
+        "lti.play": "Play {task} {mode}, as often as you like.",
+        "lti.any task": "any task",
+        "lti.any mode": "on the desktop screen or with the headset",
+        "lti.return": "Open the link in your course again to see your new scores here.",
+        "lti.scores": "Your trials",
+        "lti.seconds": "{seconds:.0f} s",
+        "lti.no trials": "There is none yet that counts for this link.",
+        "lti.grade best": "Your best acceptable score goes to your course: {score:.1f} / 100.",
+        "lti.grade latest": "The score of your latest acceptable trial goes to your course: "
+        "{score:.1f} / 100.",
+        "lti.no grade yet": "Your course gets a grade once a trial is acceptable.",
+        "lti.no grade": "This link returns no grade to the course.",
+        "lti.data": "Your data",
+        "lti.data text": "{platform} gets at most your grade and when it was sent. This lab keeps "
+        "your user number of {platform} with your pseudonym in a private file, but neither your "
+        "name nor your e-mail address. Whether your trials may be used for research is asked in "
+        "the lab.",
+        "lti.no learner": "You are not a learner of this course, so you get no pseudonym and no "
+        "grade.",
+        "lti.link works": "The link works, and grades can be returned to the course.",
+        "lti.refused": "This launch cannot be used",
+        "lti.refused help": "Open the link in your course again. If you see this page once more, "
+        "show those who run the course or the simulator what follows.",
         "decimal sign": ".",
         "list separator": ", ",
     }

@@ -1016,6 +1016,35 @@ _TABLE: Mapping[str, str] = {
     "replay.no worst": "Le pire pointage de cet essai ne peut pas être déterminé.",
     "replay.no journal": "L'essai ne peut pas être remontré : son journal n'est plus dans le "
     "dossier des enregistrements.",
+    # What a learning platform's users read after a launch.
+    "lti.you are": "Votre pseudonyme au simulateur",
+    "lti.what to do": "Marche à suivre",
+    "lti.go": "Allez à un simulateur de votre laboratoire et faites choisir {pseudonym} dans 3D "
+    "Slicer, sous « Trainees ».",
+    "lti.play": "Faites {task} {mode}, aussi souvent que vous le voulez.",
+    "lti.any task": "une tâche au choix",
+    "lti.any mode": "à l'écran ou avec le casque",
+    "lti.return": "Ouvrez à nouveau le lien dans votre cours pour voir ici vos nouveaux scores.",
+    "lti.scores": "Vos essais",
+    "lti.seconds": "{seconds:.0f} s",
+    "lti.no trials": "Aucun ne compte encore pour ce lien.",
+    "lti.grade best": "Votre meilleur score acceptable est transmis à votre cours : {score:.1f} / "
+    "100.",
+    "lti.grade latest": "Le score de votre dernier essai acceptable est transmis à votre cours : "
+    "{score:.1f} / 100.",
+    "lti.no grade yet": "Votre cours recevra une note dès qu'un essai sera acceptable.",
+    "lti.no grade": "Ce lien ne transmet aucune note au cours.",
+    "lti.data": "Vos données",
+    "lti.data text": "{platform} reçoit tout au plus votre note et le moment de son envoi. Ce "
+    "laboratoire conserve votre numéro d'utilisateur de {platform} avec votre pseudonyme dans un "
+    "fichier privé, mais ni votre nom ni votre adresse électronique. L'utilisation de vos essais "
+    "pour la recherche vous est demandée au laboratoire.",
+    "lti.no learner": "Vous ne suivez pas ce cours en tant qu'apprenant : vous ne recevez donc ni "
+    "pseudonyme ni note.",
+    "lti.link works": "Le lien fonctionne, et des notes peuvent être transmises au cours.",
+    "lti.refused": "Ce lancement ne peut pas être utilisé",
+    "lti.refused help": "Ouvrez à nouveau le lien dans votre cours. Si cette page réapparaît, "
+    "montrez ce qui suit aux responsables du cours ou du simulateur.",
     "decimal sign": ",",
     "list separator": ", ",
 }

@@ -1019,6 +1019,37 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "replay.no worst": "Die schlechteste Berührung dieses Versuchs lässt sich nicht bestimmen.",
         "replay.no journal": "Der Versuch kann nicht wiedergegeben werden: Sein Journal ist nicht "
         "mehr im Ordner der Aufzeichnungen.",
+        # What a learning platform's users read after a launch.
+        "lti.you are": "Dein Pseudonym am Simulator",
+        "lti.what to do": "So geht es weiter",
+        "lti.go": "Geh an einen Simulator deines Labors und lass in 3D Slicer unter „Trainees“ "
+        "{pseudonym} auswählen.",
+        "lti.play": "Spiele {task} {mode}, so oft du willst.",
+        "lti.any task": "eine beliebige Aufgabe",
+        "lti.any mode": "am Bildschirm oder mit dem Headset",
+        "lti.return": "Öffne den Link in deinem Kurs erneut, um hier deine neuen Punktzahlen zu "
+        "sehen.",
+        "lti.scores": "Deine Versuche",
+        "lti.seconds": "{seconds:.0f} s",
+        "lti.no trials": "Es gibt noch keinen, der für diesen Link zählt.",
+        "lti.grade best": "Deine beste zulässige Punktzahl geht an deinen Kurs: {score:.1f} / 100.",
+        "lti.grade latest": "Die Punktzahl deines letzten zulässigen Versuchs geht an deinen "
+        "Kurs: {score:.1f} / 100.",
+        "lti.no grade yet": "Dein Kurs bekommt eine Bewertung, sobald ein Versuch zulässig ist.",
+        "lti.no grade": "Dieser Link gibt dem Kurs keine Bewertung zurück.",
+        "lti.data": "Deine Daten",
+        "lti.data text": "{platform} bekommt höchstens deine Bewertung und den Zeitpunkt, zu dem "
+        "sie gesendet wurde. Das Labor bewahrt deine Nutzernummer bei {platform} zusammen mit "
+        "deinem Pseudonym in einer privaten Datei auf, aber weder deinen Namen noch deine "
+        "E-Mail-Adresse. Ob deine Versuche für die Forschung verwendet werden dürfen, wirst du im "
+        "Labor gefragt.",
+        "lti.no learner": "Du nimmst an diesem Kurs nicht als Lernender teil und bekommst deshalb "
+        "weder Pseudonym noch Bewertung.",
+        "lti.link works": "Der Link funktioniert, und Bewertungen können an den Kurs "
+        "zurückgegeben werden.",
+        "lti.refused": "Dieser Start kann nicht verwendet werden",
+        "lti.refused help": "Öffne den Link in deinem Kurs erneut. Wenn diese Seite wieder "
+        "erscheint, zeige denen, die den Kurs oder den Simulator betreuen, was hier folgt.",
         "decimal sign": ",",
         "list separator": ", ",
     }

@@ -1011,6 +1011,34 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "replay.no worst": "No se puede determinar el peor toque de este ensayo.",
         "replay.no journal": "El ensayo no se puede volver a mostrar: su diario ya no está en la "
         "carpeta de grabaciones.",
+        # What a learning platform's users read after a launch.
+        "lti.you are": "Su seudónimo en el simulador",
+        "lti.what to do": "Qué hacer",
+        "lti.go": "Vaya a un simulador de su laboratorio y haga que elijan {pseudonym} en 3D "
+        "Slicer, en «Trainees».",
+        "lti.play": "Haga {task} {mode}, tantas veces como quiera.",
+        "lti.any task": "cualquier tarea",
+        "lti.any mode": "en la pantalla o con el visor",
+        "lti.return": "Abra de nuevo el enlace en su curso para ver aquí sus nuevas puntuaciones.",
+        "lti.scores": "Sus ensayos",
+        "lti.seconds": "{seconds:.0f} s",
+        "lti.no trials": "Todavía no hay ninguno que cuente para este enlace.",
+        "lti.grade best": "Su mejor puntuación aceptable se envía a su curso: {score:.1f} / 100.",
+        "lti.grade latest": "La puntuación de su último ensayo aceptable se envía a su curso: "
+        "{score:.1f} / 100.",
+        "lti.no grade yet": "Su curso recibirá una calificación en cuanto un ensayo sea aceptable.",
+        "lti.no grade": "Este enlace no devuelve ninguna calificación al curso.",
+        "lti.data": "Sus datos",
+        "lti.data text": "{platform} recibe como mucho su calificación y el momento de su envío. "
+        "Este laboratorio guarda su número de usuario de {platform} junto con su seudónimo en un "
+        "archivo privado, pero ni su nombre ni su correo electrónico. En el laboratorio se le "
+        "pregunta si sus ensayos pueden usarse para la investigación.",
+        "lti.no learner": "Usted no participa en este curso como alumno, por lo que no recibe "
+        "seudónimo ni calificación.",
+        "lti.link works": "El enlace funciona y las calificaciones pueden devolverse al curso.",
+        "lti.refused": "Este inicio no se puede usar",
+        "lti.refused help": "Abra de nuevo el enlace en su curso. Si vuelve a ver esta página, "
+        "muestre lo que sigue a quienes llevan el curso o el simulador.",
         "decimal sign": ",",
         "list separator": ", ",
     }

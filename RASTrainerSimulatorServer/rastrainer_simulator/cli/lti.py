@@ -1,0 +1,142 @@
+"""`rastrainer lti STUDY`: launches from a learning platform, and grades returned to it."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import importlib.util
+import ssl
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import failure_reason, printable_name
+from rastrainer.protocol import DEFAULT_HOST
+
+if TYPE_CHECKING:
+    from rastrainer_simulator.lti.settings import LtiSettings
+    from rastrainer_simulator.lti.tool_key import ToolKey
+
+DEFAULT_LTI_PORT = 18965
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add the subcommand to the parser of `rastrainer`."""
+    parser = subparsers.add_parser(
+        "lti",
+        help="let a course of a learning platform launch RASTrainer, and return grades (LTI 1.3)",
+        description=(
+            "Serves launches by LTI 1.3 until Ctrl-C: a learner of a course becomes a trainee of "
+            "the study, under a pseudonym, and their scores become grades of the course. Nothing "
+            "but these grades is sent. Platforms are registered in lti.json in the folder of "
+            "settings."
+        ),
+    )
+    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database", nargs="?")
+    parser.add_argument(
+        "--show", action="store_true", help="print what the platform's administrator enters"
+    )
+    parser.add_argument(
+        "--port",
+        type=int,
+        default=DEFAULT_LTI_PORT,
+        help="to listen on, 0 for any free one (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--lan",
+        action="store_true",
+        help="listen in the network, by TLS (default: on this computer only, for a reverse proxy)",
+    )
+    parser.add_argument(
+        "--certificate",
+        type=Path,
+        metavar="FILE",
+        help="PEM with private key and chain, for --lan (default: one made on this computer)",
+    )
+    parser.add_argument(
+        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve until it is stopped, or print what to register, and return the exit status.
+
+    Raises:
+        InputError: settings, key, certificate or study cannot be used, or the port not listened on.
+    """
+    if importlib.util.find_spec("jwt") is None:
+        raise InputError("This needs PyJWT: install it with pip install 'rastrainer[lti]'.")
+    if not 0 <= arguments.port < 65536:
+        raise InputError("--port must be a number from 0 to 65535.")
+    from rastrainer_simulator.lti.settings import read_lti_settings
+    from rastrainer_simulator.lti.tool_key import ToolKey
+    from rastrainer_simulator.ops.folders import config_folder
+
+    config = arguments.config or config_folder()
+    settings = read_lti_settings(config)
+    key = ToolKey(config)
+    if arguments.show:
+        _show(settings, key)
+        return 0
+    if arguments.study is None:
+        raise InputError("Name the study whose trainees the learners become.")
+    tls = _tls(arguments.certificate, config) if arguments.lan else None
+    asyncio.run(_serve(arguments, settings, key, tls))
+    return 0
+
+
+async def _serve(
+    arguments: argparse.Namespace, settings: LtiSettings, key: ToolKey, tls: ssl.SSLContext | None
+) -> None:
+    from rastrainer_simulator.lti.lti_server import LtiServer
+    from rastrainer_simulator.lti.platform_client import PlatformClient
+    from rastrainer_simulator.server.server import stop_on_signals
+
+    stop = asyncio.Event()
+    async with PlatformClient() as client:
+        server = LtiServer(arguments.study, settings, key, client)
+        try:
+            with stop_on_signals(asyncio.get_running_loop(), stop):
+                host = "0.0.0.0" if arguments.lan else DEFAULT_HOST
+                port = await server.listen(host, arguments.port, tls)
+                server.return_grades()
+                names = ", ".join(each.name for each in settings.platforms) or "no platform yet"
+                print(
+                    f"RASTrainer LTI listens on {host}:{port} as {settings.address}: {names}",
+                    flush=True,
+                )
+                await stop.wait()
+        finally:
+            await server.close()
+
+
+def _show(settings: LtiSettings, key: ToolKey) -> None:
+    from rastrainer_simulator.lti.settings import KEYS, LOGIN
+
+    print(f"Login initiation URL:            {settings.address}{LOGIN}")
+    print(f"Redirect and target link URL:    {settings.launch_url}")
+    print(f"Public keys (JWKS) URL:          {settings.address}{KEYS}")
+    print("Custom parameters of a link:     task=task-1 mode=desktop rule=best")
+    print("Grades need the service:         Assignment and Grade Services, score")
+    for platform in settings.platforms:
+        print(f"Registered: {platform.name} ({platform.issuer}), client ID {platform.client_id}")
+    print("Where the platform cannot reach the JWKS URL, it takes this public key:")
+    print(key.public_pem, end="")
+
+
+def _tls(certificate: Path | None, config: Path) -> ssl.SSLContext:
+    if certificate is None:
+        from rastrainer_simulator.net.views.certificate import tls_context
+
+        return tls_context(config)
+    context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    try:
+        context.load_cert_chain(certificate)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"{printable_name(certificate)} is no certificate with its private key (PEM): "
+            f"{failure_reason(error)}."
+        ) from None
+    return context

@@ -1,0 +1,174 @@
+"""Which learning platforms may launch, as the lab's private file of settings says."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import printable_name, read_json
+from rastrainer.json_checks import Argument, checked_keys, text, texts, yes_or_no
+from rastrainer_simulator.net.loopback import is_loopback
+
+SETTINGS_FILE = "lti.json"
+MOST_PLATFORMS = 20
+_MAX_BYTES = 100_000
+LOGIN, LAUNCH, KEYS = "/login", "/launch", "/jwks"
+
+
+def https_url(value: Any) -> str:
+    """Accept the address of a page: https, but for this computer, without a name or password."""
+    try:
+        parts = urlsplit(text(500)(value))
+        is_usable = bool(parts.hostname) and not (parts.username or parts.fragment)
+        is_safe = parts.scheme == "https" or is_loopback(parts.hostname or "")
+        _port = parts.port
+    except ValueError:
+        is_usable = is_safe = False
+    if not is_usable or not is_safe or parts.scheme not in ("https", "http"):
+        raise ValueError("an address such as https://courses.example.org/page")
+    return value
+
+
+def origin(url: str) -> str:
+    """Return scheme, host and port of a checked address."""
+    parts = urlsplit(url)
+    port = parts.port or {"https": 443, "http": 80}[parts.scheme]
+    return f"{parts.scheme}://{parts.hostname}:{port}"
+
+
+def _own_address(value: Any) -> str:
+    address = https_url(value).rstrip("/")
+    if urlsplit(address).query:
+        raise ValueError("an address without a query")
+    return address
+
+
+@dataclasses.dataclass(frozen=True)
+class LearningPlatform:
+    """A learning platform, as its administrator has registered this tool there.
+
+    Attributes:
+        name: For people in the lab.
+        issuer: That signs its messages.
+        client_id: Of this tool there.
+        deployment_ids: That may launch.
+        authentication_url: Where a browser is sent to be identified.
+        token_url: That gives access to its services.
+        key_set_url: Of its public keys.
+        line_item_origins: Further servers of it that take grades.
+        sends_grades: Whether grades are returned to it.
+    """
+
+    name: str
+    issuer: str
+    client_id: str
+    deployment_ids: tuple[str, ...]
+    authentication_url: str
+    token_url: str
+    key_set_url: str
+    line_item_origins: tuple[str, ...]
+    sends_grades: bool
+
+    def takes_grades_at(self, url: object) -> bool:
+        """Return whether an address from a launch is one of its own, which may see our token."""
+        own = (self.authentication_url, self.token_url, self.key_set_url, *self.line_item_origins)
+        try:
+            return origin(https_url(url)) in {origin(each) for each in own}
+        except ValueError:
+            return False
+
+
+_PLATFORM_KEYS = {
+    "name": Argument(text(60)),
+    "issuer": Argument(https_url),
+    "clientId": Argument(text(255)),
+    "deploymentIds": Argument(texts(1, 50)),
+    "authenticationUrl": Argument(https_url),
+    "tokenUrl": Argument(https_url),
+    "keySetUrl": Argument(https_url),
+    "lineItemOrigins": Argument(texts(0, 10), ()),
+    "sendGrades": Argument(yes_or_no, True),
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class LtiSettings:
+    """The settings.
+
+    Attributes:
+        address: By which browsers reach this tool.
+        platforms: That may launch.
+    """
+
+    address: str
+    platforms: tuple[LearningPlatform, ...]
+
+    @property
+    def launch_url(self) -> str:
+        """Where platforms send launches to."""
+        return f"{self.address}{LAUNCH}"
+
+    def platform(self, issuer: str, client_id: str) -> LearningPlatform | None:
+        """Return a platform; without a client ID, the only one of its issuer; None if unknown."""
+        found = [
+            each
+            for each in self.platforms
+            if each.issuer == issuer and client_id in ("", each.client_id)
+        ]
+        return found[0] if len(found) == 1 else None
+
+
+def read_lti_settings(config: Path) -> LtiSettings:
+    """Return the settings in a folder.
+
+    Raises:
+        InputError: there are none, or they cannot be used.
+    """
+    path = config / SETTINGS_FILE
+    what = printable_name(path)
+    if not path.exists():
+        raise InputError(
+            f"There is no {what}. Make it with the address by which browsers reach this computer, "
+            'such as {"address": "https://rastrainer.example.org", "platforms": []}.'
+        )
+    values = read_json(path, _MAX_BYTES)
+    keys = {"address": Argument(_own_address), "platforms": Argument(_list_of_platforms)}
+    checked = _only(values, keys, what)
+    platforms = tuple(
+        _platform(each, f"{what}: platform {number}")
+        for number, each in enumerate(checked["platforms"], 1)
+    )
+    names = [(each.issuer, each.client_id) for each in platforms]
+    if len(set(names)) < len(names):
+        raise InputError(f"{what}: two platforms have the same issuer and clientId.")
+    return LtiSettings(checked["address"], platforms)
+
+
+def _list_of_platforms(value: Any) -> list[Any]:
+    if not isinstance(value, list) or len(value) > MOST_PLATFORMS:
+        raise ValueError(f"a list of up to {MOST_PLATFORMS} platforms")
+    return value
+
+
+def _platform(value: Any, what: str) -> LearningPlatform:
+    checked = _only(value, _PLATFORM_KEYS, what)
+    for each in checked["lineItemOrigins"]:
+        try:
+            https_url(each)
+        except ValueError as error:
+            raise InputError(f"{what}: each of lineItemOrigins must be {error}.") from None
+    return LearningPlatform(*checked.values())
+
+
+def _only(value: Any, keys: dict[str, Argument], what: str) -> dict[str, Any]:
+    """Return the checked values; a key that is misspelled must not be silently without effect."""
+    checked = checked_keys(value, keys, what)
+    unknown = sorted(set(value) - set(keys))
+    if unknown:
+        raise InputError(
+            f"{what}: there is no {printable_name(unknown[0])}; use {', '.join(keys)}."
+        )
+    return checked
