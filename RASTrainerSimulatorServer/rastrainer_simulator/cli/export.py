@@ -22,10 +22,15 @@ from rastrainer.export.tidy_csv import (
 from rastrainer.export.xapi import HOME_PAGE, statements_text
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.folder import read_trajectory
+from rastrainer.json_checks import accepted
 from rastrainer.report.elements.scores import with_ctps
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer_simulator.cli.record_store_settings import (
+    home_page_url,
+    read_record_store_settings,
+)
 from rastrainer_simulator.cli.shared import add_incomplete, read_known_study
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
@@ -51,9 +56,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--home-page",
-        default=HOME_PAGE,
         metavar="URL",
-        help="of the lab's system, for xAPI (default: %(default)s)",
+        help=f"of the lab's system, for xAPI (default: as set, or {HOME_PAGE})",
+    )
+    parser.add_argument(
+        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
     )
     add_incomplete(parser)
     parser.set_defaults(run=run)
@@ -95,12 +102,18 @@ def _write(name: str, data: StudyData, arguments: argparse.Namespace) -> str:
         write_text(folder / "answers.csv", answers_csv(data))
         write_text(folder / "ratings.csv", ratings_csv(data))
     elif name == "xapi":
-        write_text(folder / "statements.json", statements_text(data, arguments.home_page))
+        write_text(folder / "statements.json", statements_text(data, _home_page(arguments)))
     else:
         for trial, stored in _stored(data, arguments.study):
             write_slicer_files(stored, folder / trial.trial_id)
         return f"{len(data.trials)} trials"
     return f"{len(data.trials)} trials, {len(data.aborted)} aborted ones"
+
+
+def _home_page(arguments: argparse.Namespace) -> str:
+    if arguments.home_page:
+        return accepted(home_page_url, arguments.home_page, "--home-page")
+    return read_record_store_settings(arguments.config).home_page or HOME_PAGE
 
 
 def _stored(data: StudyData, path: Path) -> Iterator[tuple[TrialRow, StoredTrial]]:

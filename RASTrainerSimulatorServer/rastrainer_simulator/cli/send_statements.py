@@ -9,14 +9,19 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.export.xapi import statements
 from rastrainer.files.reading import printable_name, read_json, read_text
 from rastrainer.files.writing import write_json
+from rastrainer.json_checks import accepted
 from rastrainer.number_text import counted
 from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.cli.record_store_settings import (
+    RECORD_STORE_FILE,
+    home_page_url,
+    read_record_store_settings,
+)
 from rastrainer_simulator.net.record_store import BATCH, Delivery, RecordStore, StoreAwayError
 
 CREDENTIALS_VARIABLE = "RASTRAINER_XAPI_CREDENTIALS"
@@ -132,12 +137,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         ),
     )
     parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
-    parser.add_argument("--store", required=True, metavar="URL", help="of its xAPI endpoint")
+    parser.add_argument("--store", metavar="URL", help="of its xAPI endpoint (default: as set)")
     parser.add_argument(
         "--home-page",
-        required=True,
         metavar="URL",
-        help="of the lab's system; it makes pseudonyms and tasks unique",
+        help="of the lab's system; it makes pseudonyms and tasks unique (default: as set)",
     )
     parser.add_argument("--credentials", type=Path, metavar="FILE", help="that only you can read")
     parser.add_argument(
@@ -145,6 +149,12 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         type=float,
         metavar="S",
         help="keep sending new trials, looking for them every S seconds, until Ctrl-C",
+    )
+    parser.add_argument(
+        "--config",
+        type=Path,
+        metavar="DIR",
+        help=f"folder of your settings, in which {RECORD_STORE_FILE} may set the others",
     )
     parser.set_defaults(run=run)
 
@@ -155,15 +165,23 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         InputError: study, addresses or credentials cannot be used, or the store refuses them.
     """
-    home_page = _checked_home_page(arguments.home_page)
     if arguments.watch is not None and not 1.0 <= arguments.watch <= 86_400.0:
         raise InputError("--watch must be from 1 to 86400 s.")
-    store = RecordStore(arguments.store, _credentials(arguments.credentials))
+    settings = read_record_store_settings(arguments.config)
+    address = arguments.store or settings.store
+    if not address:
+        raise InputError(
+            f"Give the record store's address with --store, or as store in {RECORD_STORE_FILE}."
+        )
+    home_page = accepted(
+        home_page_url, arguments.home_page or settings.home_page, "--home-page (homePage)"
+    )
+    store = RecordStore(address, _credentials(arguments.credentials or settings.credentials))
 
     def read() -> list[dict[str, Any]]:
         return statements(read_study_data(arguments.study, allow_incomplete=True), home_page)
 
-    sender = Sender(read, store, SentStatements(arguments.study, arguments.store, home_page))
+    sender = Sender(read, store, SentStatements(arguments.study, address, home_page))
     if arguments.watch is not None:
         sender.watch(arguments.watch)
     try:
@@ -180,17 +198,6 @@ def _tell(delivery: Delivery) -> None:
         print(f"{name}: the store has another version of this statement, and keeps it", flush=True)
     for name, reason in delivery.refused.items():
         print(f"{name}: refused by the store ({reason})", flush=True)
-
-
-def _checked_home_page(text: str) -> str:
-    parts = urlsplit(text)
-    host = parts.hostname or ""
-    if parts.scheme not in ("https", "http") or not host or host.endswith(".invalid"):
-        raise InputError(
-            f"{printable_name(text)} is no address of a lab's system; give one that is yours, such "
-            "as https://lab.example.org."
-        )
-    return text.rstrip("/")
 
 
 def _credentials(path: Path | None) -> str:

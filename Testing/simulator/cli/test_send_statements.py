@@ -8,6 +8,10 @@ from rastrainer.errors import InputError
 from rastrainer.export.xapi import statements
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.cli.record_store_settings import (
+    RECORD_STORE_FILE,
+    read_record_store_settings,
+)
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
 from rastrainer_simulator.net.record_store import BATCH, RecordStore
 from Testing.domain.study.played_study import study_with_trials
@@ -159,13 +163,47 @@ def test_the_command_sends_a_study_and_says_what_is_missing(store, tmp_path, cap
     sent = json.loads((stored_study.parent / f"{stored_study.name}.xapi-sent.json").read_text())
     assert sorted(*sent.values()) == sorted(store.statements)
     assert main([*words, "--home-page", "https://rastrainer.invalid"]) == 2
-    assert "no address of a lab's system" in capsys.readouterr().err
+    assert "must be the address of the lab's own system" in capsys.readouterr().err
     assert main([*words, "--home-page", HOME]) == 2
     assert "RASTRAINER_XAPI_CREDENTIALS" in capsys.readouterr().err
     store.planned = [503]
     (stored_study.parent / f"{stored_study.name}.xapi-sent.json").unlink()
     assert main(given) == 1
     assert "run the command again" in capsys.readouterr().err
+
+
+def test_what_is_the_same_each_time_is_set_once(store, tmp_path, capsys):
+    stored_study = tmp_path / "study.db"
+    study_with_trials(stored_study)
+    words = ["send-statements", str(stored_study), "--config", str(tmp_path)]
+    assert main(words) == 2
+    assert "with --store, or as store in record-store.json" in capsys.readouterr().err
+    (tmp_path / "secret").write_text(CREDENTIALS)
+    (tmp_path / "secret").chmod(0o600)
+    settings = {"store": store.url, "homePage": f"{HOME}/", "credentials": "secret"}
+    (tmp_path / RECORD_STORE_FILE).write_text(json.dumps(settings))
+    assert main(words) == 0
+    expected = statements(read_study_data(stored_study), HOME)
+    assert list(store.statements.values()) == expected
+    exported = ["export", str(stored_study), "--format", "xapi", "--config", str(tmp_path)]
+    assert main([*exported, "-o", str(tmp_path / "out")]) == 0
+    assert json.loads((tmp_path / "out" / "xapi" / "statements.json").read_text()) == expected
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"homePage": "https://rastrainer.invalid"}, "homePage must be the address"),
+        ({"homepage": HOME}, "there is no homepage"),
+        ({"password": "secret"}, "there is no password"),
+        ([], "must be a JSON object"),
+    ],
+    ids=str,
+)
+def test_settings_that_cannot_be_used_are_named(tmp_path, settings, words):
+    (tmp_path / RECORD_STORE_FILE).write_text(json.dumps(settings))
+    with pytest.raises(InputError, match=words):
+        read_record_store_settings(tmp_path)
 
 
 def test_a_note_of_what_was_sent_that_is_damaged_is_named(tmp_path):

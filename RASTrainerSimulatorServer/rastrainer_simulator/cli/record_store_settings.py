@@ -1,0 +1,69 @@
+"""What is the same each time statements are made: the record store, and the lab's own address."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from rastrainer.errors import InputError
+from rastrainer.files.reading import printable_name, read_json
+from rastrainer.json_checks import Argument, checked_keys, text
+from rastrainer_simulator.ops.folders import config_folder
+
+RECORD_STORE_FILE = "record-store.json"
+_MAX_BYTES = 10_000
+
+
+def home_page_url(value: Any) -> str:
+    """Accept the address of a lab's own system, from which IRIs are made."""
+    parts = urlsplit(text(300, min_length=0)(value))
+    host = parts.hostname or ""
+    if parts.scheme not in ("https", "http") or not host or host.endswith(".invalid"):
+        raise ValueError("the address of the lab's own system, such as https://lab.example.org")
+    return value.rstrip("/")
+
+
+@dataclasses.dataclass(frozen=True)
+class RecordStoreSettings:
+    """What the file says; "" or None where it says nothing.
+
+    Attributes:
+        store: URL of the xAPI endpoint.
+        home_page: Of the lab's own system, from which the IRIs of statements are made.
+        credentials: File with name:password of the store.
+    """
+
+    store: str = ""
+    home_page: str = ""
+    credentials: Path | None = None
+
+
+_KEYS = {
+    "store": Argument(text(500), ""),
+    "homePage": Argument(home_page_url, ""),
+    "credentials": Argument(text(1000), ""),
+}
+
+
+def read_record_store_settings(config: Path | None) -> RecordStoreSettings:
+    """Return the settings in a folder, by default the usual one; without a file there are none.
+
+    Raises:
+        InputError: the file cannot be used.
+    """
+    folder = config or config_folder()
+    path = folder / RECORD_STORE_FILE
+    if not path.exists():
+        return RecordStoreSettings()
+    values = read_json(path, _MAX_BYTES)
+    checked = checked_keys(values, _KEYS, printable_name(path))
+    unknown = sorted(set(values) - set(_KEYS))
+    if unknown:
+        raise InputError(
+            f"{printable_name(path)}: there is no {printable_name(unknown[0])}; use "
+            f"{', '.join(_KEYS)}."
+        )
+    credentials = folder / checked["credentials"] if checked["credentials"] else None
+    return RecordStoreSettings(checked["store"], checked["homePage"], credentials)
