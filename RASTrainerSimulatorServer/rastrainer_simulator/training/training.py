@@ -6,10 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.skin_shift import SkinShift
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.scenario.method_task import TRACED_METHODS, method_of, task_by_method
@@ -21,6 +18,7 @@ from rastrainer_simulator.registration_state import FinalRegistration, TouchStat
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
+from rastrainer_simulator.training.placed_head import PlacedHead
 from rastrainer_simulator.training.procedure_phases import (
     OF_A_PROCEDURE,
     PhaseStep,
@@ -39,7 +37,7 @@ from rastrainer_simulator.training.rules import (
 )
 from rastrainer_simulator.training.trial_clock import KeptStates, TrialClock, trial_id, trial_seed
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import Vector
 
 if TYPE_CHECKING:
     from rastrainer.scenario.scenario import Scenario
@@ -70,10 +68,8 @@ class Training:
         self._number = 0
         self._clock = TrialClock(0.0)
         self._task: Task | None = None
-        self._fiducials: dict[str, Vector] = {}
-        self._mesh: HeadMesh | None = None
+        self._head = PlacedHead.nominal(scenario)
         self.trial_seed = 0
-        self.truth = Truth.of(scenario, scenario.head_to_world)
         self.state = TrainingState(instruction=self._texts.say("idle"))
         self._kept = KeptStates()
         self._kept.begin(self.state)
@@ -115,9 +111,14 @@ class Training:
             self.handle(command, moment)
 
     @property
+    def truth(self) -> Truth:
+        """Where the head really is."""
+        return self._head.truth
+
+    @property
     def goal(self) -> Vector | None:
         """Where the next fiducial is, World, m; None without one."""
-        return self._fiducials.get(self.state.next_point or "")
+        return self._head.fiducials.get(self.state.next_point or "")
 
     def handles(self, command: str) -> bool:
         """Return whether a command is the trial's business."""
@@ -166,23 +167,14 @@ class Training:
         try:
             method = method_of(arguments.get("method"))
             task = task_by_method(self._scenario, arguments["task"], method)
-            self._phases = self._phases_of(chosen_procedure, task)
-            self._mesh = None if skin.is_none else read_head_mesh(self._scenario.head_mesh)
+            phases = self._phases_of(chosen_procedure, task)
+            number, chosen = self._number, arguments.get("seed")
+            seed = trial_seed(self._seed, number) if chosen is None else chosen
+            self._head = PlacedHead.of_trial(self._scenario, task, seed, skin)
         except InputError as error:
             return TrainingReply(False, str(error))
-        number = self._number
         self._number += 1
-        chosen = arguments.get("seed")
-        self.trial_seed = trial_seed(self._seed, number) if chosen is None else chosen
-        self._task = task
-        self.truth = Truth.of(
-            self._scenario,
-            self._scenario.perturbed_head_to_world(self.trial_seed),
-            task,
-            skin if skin.is_none else replace(skin, seed=self.trial_seed),
-        )
-        places = self.truth.in_world(np.array(list(self.truth.fiducials.values()))) / MM_PER_M
-        self._fiducials = dict(zip(self.truth.fiducials, map(tuple, places.tolist()), strict=True))
+        self.trial_seed, self._task, self._phases = seed, task, phases
         self._clock = TrialClock(now.sim_time)
         idle = TrainingState(revision=self.state.revision)
         self._kept.begin(idle)
@@ -247,11 +239,11 @@ class Training:
         assert label is not None
         assert task is not None, "the phase allows no touch before a task is chosen"
         sentence = refused_touch(
-            now, label, self._fiducials, self._settings, self._texts, state.method
+            now, label, self._head.fiducials, self._settings, self._texts, state.method
         )
         place = {
             "label": label,
-            **tracing.tip_data(now, measured := self._measured(now.tip)),
+            **tracing.tip_data(now, measured := self._head.measured(now.tip)),
             "clearanceMm": MM_PER_M * now.tip_clearance,
             "depthMm": MM_PER_M * now.depth,
         }
@@ -290,19 +282,12 @@ class Training:
     def _traced(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Add a point to the stroke, which ends with the last one that a trial takes."""
         elapsed = self._clock.elapsed(now.sim_time)
-        self.state = tracing.with_point(self.state, now, self._measured(now.tip), elapsed)
+        self.state = tracing.with_point(self.state, now, self._head.measured(now.tip), elapsed)
         event, trace = tracing.point_event(self.state, now), self.state.trace
         if trace is None or not trace.is_full:
             return TrainingReply(True, events=(event,))
         over = self._stroke(tracing.ended(self.state), now)
         return replace(over, events=(event, *over.events))
-
-    def _measured(self, tip: Vector) -> Vector:
-        """Return where a tip is measured that the skin has shifted with, World, m."""
-        if self._mesh is None:
-            return tip
-        measured = self.truth.measured(MM_PER_M * np.array(tip), self._mesh)
-        return vector((measured / MM_PER_M).tolist())
 
     def _stroke(self, state: TrainingState, now: TouchMoment, **others: bool) -> TrainingReply:
         """Take on a state in which a stroke has begun, is ended or undone."""
@@ -477,8 +462,7 @@ class Training:
 
     def _leave(self) -> None:
         """Between trials the head is where it nominally is."""
-        self.truth = Truth.of(self._scenario, self._scenario.head_to_world)
-        self._fiducials, self._mesh = {}, None
+        self._head = PlacedHead.nominal(self._scenario)
 
 
 def _interruption(state: TrainingState) -> str:
