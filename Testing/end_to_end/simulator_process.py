@@ -11,7 +11,6 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from Testing.free_port import free_port
 from Testing.without_tutorial import leave_tutorial_out
 
 COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli.main", "simulator"]
@@ -33,7 +32,7 @@ class SimulatorProcess:
     def __init__(self, records: Path, *arguments: str, **others: Any):
         config = records.with_name(records.name + "-config")
         leave_tutorial_out(config)
-        settings = ["--port", str(free_port()), "--records", str(records), "--config", str(config)]
+        settings = ["--port", "0", "--records", str(records), "--config", str(config)]
         # A pipe that nobody reads would be full after some minutes.
         self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self._process = subprocess.Popen(

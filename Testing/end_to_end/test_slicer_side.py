@@ -24,6 +24,7 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trial import say_hello
 from Testing.end_to_end.onto_skin import lower_onto_skin
 from Testing.end_to_end.simulator_process import SimulatorProcess
+from Testing.free_port import free_port
 from Testing.slicer.simulator_double import run_logic_until
 
 COLIN = asset_path("scenarios", "colin27")
@@ -103,7 +104,8 @@ def slicer_side(tmp_path_factory):
     """What Slicer's side has seen of a trial whose simulator crashed before it was kept."""
     folder = tmp_path_factory.mktemp("lab")
     side = SlicerSide(folder / "study.db")
-    with SimulatorProcess(folder / "records", "--speed", "20") as simulator:
+    port = ("--port", str(free_port()))
+    with SimulatorProcess(folder / "records", "--speed", "20", *port) as simulator:
         side.link.connectTo(port=simulator.port)
         side.run_until(side.is_in(LinkState.CONNECTED))
         side.run_until(start_playing(simulator.port))
@@ -112,7 +114,7 @@ def slicer_side(tmp_path_factory):
     side.run_until(side.is_in(LinkState.ABSENT))
     side.live_counts, side.live_points = list(side.counts), side.points
     side.open_logic()
-    with SimulatorProcess(folder / "records", "--port", str(simulator.port)):
+    with SimulatorProcess(folder / "records", *port):
         side.run_until(lambda: side.scored)
         side.run_until(side.is_in(LinkState.CONNECTED))
     side.link.disconnect()

@@ -71,10 +71,10 @@ def test_a_module_that_is_reloaded_many_times_leaves_no_more_behind_than_once(ho
         used()
         host.reload()
     many = settled(host, before)
-    nodes = many.pop("nodes"), once.pop("nodes")
+    # A thread of the module before may still be ending.
+    assert many.pop("threads") <= once.pop("threads")
     assert many == once
     assert {name: many[name] - before[name] for name in KEPT} == dict.fromkeys(KEPT, 1)
-    assert nodes[0] == nodes[1]
 
 
 def test_a_reloaded_module_works_and_the_one_before_does_nothing_more(host, used):
