@@ -33,6 +33,7 @@ LAYERS = {
         rastrainer.journal, rastrainer.trial
         rastrainer.study.database
         rastrainer.study.protocol, rastrainer.study.rating
+        rastrainer.study.curriculum
         rastrainer.study
         rastrainer.export, rastrainer.report.elements
         rastrainer.report.sections

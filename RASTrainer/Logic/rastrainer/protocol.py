@@ -162,6 +162,26 @@ class StepKind(str, Enum):
     BREAK = "break"
 
 
+class GoalKind(str, Enum):
+    """When an assignment of a curriculum is reached.
+
+    `SCORE`: some trials in a row pass. `COMPETENT`: its trials show competence by LC-CUSUM.
+    """
+
+    SCORE = "score"
+    COMPETENT = "competent"
+
+
+class AssignmentState(str, Enum):
+    """Where a trainee stands with an assignment: `LOCKED` waits for others to be reached."""
+
+    LOCKED = "locked"
+    OPEN = "open"
+    REACHED = "reached"
+
+
+MAX_ASSIGNMENTS, MAX_GATES, MAX_GOAL_TRIALS = 24, 6, 50
+"""Of a curriculum: assignments, how many one waits for, and trials in a row."""
 ALL_DONE, FREE, REPEAT = "all-done", "free", "repeat"
 """Instead of a step: none is left, the trainee follows no study, or the step's trial was aborted
 and needs a reason to be repeated."""

@@ -17,6 +17,7 @@ SUBCOMMANDS = {
     "score": "rastrainer_simulator.cli.score",
     "measure": "rastrainer_simulator.cli.measure",
     "pass-mark": "rastrainer_simulator.cli.pass_mark",
+    "curriculum": "rastrainer_simulator.cli.curriculum",
     "report": "rastrainer_simulator.cli.report",
     "export": "rastrainer_simulator.cli.export",
     "send-statements": "rastrainer_simulator.cli.send_statements",

@@ -324,3 +324,31 @@ def test_aborted_trials_of_the_groups_are_reported_since_they_have_no_score(stud
     assert main(words(study)) == 0
     assert "They aborted 3 trials after a touch" in capsys.readouterr().out
     assert means(study, NOVICES) == before
+
+
+CURRICULUM = SHIPPED.with_name("example-curriculum.json")
+
+
+def test_a_curriculum_is_set_for_one_or_all_and_the_table_says_where_they_stand(study, capsys):
+    assert main(["curriculum", str(study)]) == 0
+    assert capsys.readouterr().out == "No trainee follows a curriculum.\n"
+    assert main(["curriculum", str(study), "--set", str(CURRICULUM)]) == 0
+    output = capsys.readouterr().out
+    assert output.startswith("Everybody follows “First steps” from now.\n\nE0, First steps: ")
+    assert output.count("First steps: ") == 10
+    assert main(["curriculum", str(study), "--trainee", "N0"]) == 0
+    title, _header, *rows = capsys.readouterr().out.strip().splitlines()
+    assert title.startswith("N0, First steps: 0 of 6 reached. Next: Task 1, the weakest open one")
+    assert "most points are lost by time" in title
+    assert rows[0].startswith("first-points   Task 1")
+    assert "0 of 2 trials in a row at 70 or more" in rows[0]
+    assert "locked until first-points is reached" in rows[1]
+    assert "0 % of the way to competence (LC-CUSUM)" in rows[4]
+    assert main(["curriculum", str(study), "--end", "--trainee", "N0"]) == 0
+    assert capsys.readouterr().out == "N0 follows no curriculum from now.\n"
+    assert main(["curriculum", str(study), "--trainee", "N0"]) == 0
+    assert capsys.readouterr().out == "N0 does not follow a curriculum.\n"
+    assert main(["curriculum", str(study), "--set", str(SHIPPED)]) == 2
+    assert "must be left out; a curriculum has" in capsys.readouterr().err
+    assert main(["curriculum", str(study), "--trainee", "N9"]) == 2
+    assert "no trainee" in capsys.readouterr().err

@@ -8,6 +8,7 @@ from typing import Any
 
 from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
@@ -37,6 +38,14 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
                 "repeat_reason": stored.repeat_reason,
             }
             for stored in AbortedTrials(study).of(pseudonym)
+        ],
+        "curricula": [
+            {
+                "curriculum": None if chosen.curriculum is None else chosen.curriculum.to_json(),
+                "stored_utc": chosen.stored_utc,
+            }
+            for chosen in CurriculumStore(study).choices()
+            if chosen.trainee == pseudonym
         ],
         "ratings": [
             {"trial_id": rating.trial_id, "form": rating.form, "marks": dict(rating.marks)}

@@ -145,6 +145,7 @@ class ScoreMeasures:
         return self.safety
 
 
+SCORE_PARTS = ("time", "accuracy", "common bias", "safety")
 SAFETY_METRICS = ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm")
 """Motion metrics of `rastrainer.motion` that are scored."""
 
@@ -185,6 +186,17 @@ class TrialScore:
     def acceptable(self) -> bool:
         """Whether the trial is within all limits."""
         return self.is_accurate and self.is_unbiased is not False and self.is_safe is not False
+
+    @property
+    def parts(self) -> dict[str, float]:
+        """The desirability of each part whose product is scored, 0 to 1, by `SCORE_PARTS`."""
+        parts = {"time": self.time_desirability, "accuracy": self.accuracy_desirability}
+        if self.measures.common_bias_mm is not None:
+            trueness = _trueness(self.measures.common_bias_mm)
+            parts |= {"accuracy": self.accuracy_desirability / trueness, "common bias": trueness}
+        if self.safety_desirability is not None:
+            parts["safety"] = self.safety_desirability
+        return parts
 
     def to_json(self) -> dict[str, Any]:
         """Return the score as a JSON object."""
@@ -244,6 +256,11 @@ def score_version(method: RegistrationMethod) -> str:
     return SCORE_VERSION if is_by_fiducials else f"{SCORE_VERSION}-{method.value}"
 
 
+def method_of_version(version: str) -> str:
+    """Return by which method a trial with a score of this version was registered."""
+    return version.partition("-")[2] or RegistrationMethod.FIDUCIALS.value
+
+
 def passes(score: float, acceptable: bool, pass_mark: float) -> bool:
     """Return whether a trial reaches the mark and is within all limits."""
     return acceptable and score >= pass_mark
@@ -292,8 +309,11 @@ def score_trial(
 
 
 def _accuracy(tre_mm: float, bias_mm: float | None, reference: ScoreReference) -> float:
-    trueness = falling(bias_mm or 0.0, HALF_COMMON_BIAS_MM, COMMON_BIAS_POWER)
-    return falling(tre_mm, reference.tre_mm) * trueness
+    return falling(tre_mm, reference.tre_mm) * _trueness(bias_mm or 0.0)
+
+
+def _trueness(bias_mm: float) -> float:
+    return falling(bias_mm, HALF_COMMON_BIAS_MM, COMMON_BIAS_POWER)
 
 
 def _safety(contact_time_s: float, contact_path_mm: float, depth_mm: float) -> float:

@@ -195,4 +195,17 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         """,
         "CREATE INDEX rating_marks_of_trial ON rating_marks (trial_id, rater)",
     ),
+    (
+        # Which curriculum trainees follow, everybody where no trainee is named; NULL is none. The
+        # last choice counts.
+        """
+        CREATE TABLE curriculum_choices (
+            id INTEGER PRIMARY KEY,
+            trainee_id INTEGER REFERENCES trainees (id) ON DELETE CASCADE,
+            curriculum_json TEXT,
+            stored_utc TEXT NOT NULL
+        )
+        """,
+        "CREATE INDEX curriculum_choices_of_trainee ON curriculum_choices (trainee_id)",
+    ),
 )

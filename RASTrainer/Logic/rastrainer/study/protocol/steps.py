@@ -68,17 +68,29 @@ class Step:
     @property
     def sentence(self) -> str:
         """The instruction for the trainee."""
-        where = f" {_IN_MODE[self.mode]}" if self.mode else ""
         if self.kind is StepKind.QUESTIONNAIRE:
             return f"Answer the questionnaire {QUESTIONNAIRES[self.questionnaire].title}."
         if self.kind is StepKind.BREAK:
             return f"Take a break of at least {self.minutes:g} minutes."
         if self.kind is StepKind.TRIAL_RUN:
+            where = f" {_IN_MODE[self.mode]}" if self.mode else ""
             return f"Get to know the trial run{where} for {self.minutes:g} minutes."
-        task = self.task.replace("-", " ").capitalize()
-        method = _BY_METHOD.get(self.method, "")
-        procedure = f" with the procedure {self.procedure}" if self.procedure else ""
-        return f"Play {task}{method}{procedure}{where}."
+        return f"Play {trial_title(self.task, self.mode, self.method, self.procedure)}."
+
+
+def trial_title(task: str, mode: str, method: str, procedure: str) -> str:
+    """Return what people call such a trial, such as "Task 3 by a trace over the skin"; "" is any.
+
+    Args:
+        task: Its name.
+        mode: Display mode; "" for any.
+        method: By what it is registered; nothing is said of fiducials.
+        procedure: That it continues with; "" for none.
+    """
+    name = task.replace("-", " ").capitalize()
+    then = f" with the procedure {procedure}" if procedure else ""
+    where = f" {_IN_MODE[mode]}" if mode else ""
+    return f"{name}{_BY_METHOD.get(method, '')}{then}{where}"
 
 
 def steps_for(protocol: StudyProtocol, place: int) -> tuple[Step, ...]:

@@ -1,0 +1,110 @@
+"""Which curriculum each trainee of a study follows: each choice is stored, the last one counts."""
+
+from __future__ import annotations
+
+import sqlite3
+from dataclasses import dataclass
+
+from rastrainer.study.curriculum.counted_trials import counted_trials
+from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
+from rastrainer.study.curriculum.standing import CurriculumStanding, standing_in
+from rastrainer.study.database import study_trainees
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.study_trainees import TRAINEE_ID
+from rastrainer.study.database.study_trials import decoded, json_text
+from rastrainer.study.database.values import utc_now
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import StudyProtocol, pass_mark_of
+
+
+@dataclass(frozen=True)
+class CurriculumChoice:
+    """What was chosen once.
+
+    Attributes:
+        trainee: Pseudonym; "" for everybody.
+        curriculum: That was chosen; None for none.
+        stored_utc: ISO 8601.
+    """
+
+    trainee: str
+    curriculum: Curriculum | None
+    stored_utc: str
+
+
+class CurriculumStore:
+    """The curricula of one study. One thread may use it."""
+
+    def __init__(self, study: Study) -> None:
+        self._study = study
+
+    def choose(self, curriculum: Curriculum | None, pseudonym: str = "") -> None:
+        """Have a trainee, or by "" everybody, also who comes later, follow a curriculum or none.
+
+        What was chosen last counts: a choice for everybody ends those for single trainees.
+
+        Raises:
+            InputError: an unknown trainee.
+        """
+        text = None if curriculum is None else json_text(curriculum.to_json())
+        with self._study.database.writing() as connection:
+            if pseudonym:
+                study_trainees.find(connection, pseudonym)
+            connection.execute(
+                "INSERT INTO curriculum_choices (trainee_id, curriculum_json, stored_utc) "
+                f"VALUES (({TRAINEE_ID}), ?, ?)",
+                (pseudonym, text, utc_now()),
+            )
+
+    def choices(self) -> tuple[CurriculumChoice, ...]:
+        """Return all choices, the first one first."""
+        with self._study.database.reading() as connection:
+            rows = connection.execute(
+                "SELECT coalesce(pseudonym, ''), curriculum_json, curriculum_choices.stored_utc "
+                "FROM curriculum_choices LEFT JOIN trainees ON trainees.id = trainee_id "
+                "ORDER BY curriculum_choices.id"
+            ).fetchall()
+        return tuple(CurriculumChoice(name, _read(text), utc) for name, text, utc in rows)
+
+    def curriculum_of(self, pseudonym: str) -> Curriculum | None:
+        """Return what a trainee follows; an unknown one, what everybody does. None for nothing."""
+        with self._study.database.reading() as connection:
+            return _curriculum_of(connection, pseudonym)
+
+    def standing(self, pseudonym: str) -> CurriculumStanding | None:
+        """Return where a trainee stands; None without a curriculum.
+
+        Raises:
+            InputError: an unknown trainee.
+        """
+        return self._standing(pseudonym, StudyProgress(self._study).protocol())
+
+    def standings(self) -> dict[str, CurriculumStanding]:
+        """Return where each active trainee with a curriculum stands, by pseudonym."""
+        protocol = StudyProgress(self._study).protocol()
+        names = [trainee.pseudonym for trainee in self._study.trainees()]
+        found = {name: self._standing(name, protocol) for name in names}
+        return {name: each for name, each in found.items() if each is not None}
+
+    def _standing(
+        self, pseudonym: str, protocol: StudyProtocol | None
+    ) -> CurriculumStanding | None:
+        with self._study.database.reading() as connection:
+            curriculum = _curriculum_of(connection, pseudonym)
+            if curriculum is None:
+                return None
+            trials = counted_trials(connection, pseudonym)
+        return standing_in(curriculum, trials, lambda version: pass_mark_of(protocol, version))
+
+
+def _curriculum_of(connection: sqlite3.Connection, pseudonym: str) -> Curriculum | None:
+    row = connection.execute(
+        "SELECT curriculum_json FROM curriculum_choices "
+        f"WHERE trainee_id = ({TRAINEE_ID}) OR trainee_id IS NULL ORDER BY id DESC LIMIT 1",
+        (pseudonym,),
+    ).fetchone()
+    return None if row is None else _read(row[0])
+
+
+def _read(text: str | None) -> Curriculum | None:
+    return None if text is None else decoded(text, curriculum_from_json)

@@ -1,0 +1,296 @@
+"""A curriculum: its file, goals, gates, and which assignment comes next."""
+
+import json
+import random
+import uuid
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.export.trainee_data import export_trainee
+from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind
+from rastrainer.study.curriculum.counted_trials import CountedTrial, counted_trials
+from rastrainer.study.curriculum.curriculum import (
+    Assignment,
+    Curriculum,
+    curriculum_from_json,
+    read_curriculum,
+)
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
+from rastrainer.study.curriculum.standing import standing_in
+from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.schema import MIGRATIONS
+from rastrainer.study.database.study import Study
+from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
+
+SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
+LOCKED, OPEN, REACHED = AssignmentState.LOCKED, AssignmentState.OPEN, AssignmentState.REACHED
+PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True, version="3")
+FAILED = replace(PASSED, score=50.0)
+ABORTED = CountedTrial("task-1", "desktop", is_aborted=True)
+ONE = Assignment("one", "task-1", trials=2)
+TWO = Assignment("two", "task-2", trials=1, after=("one",))
+
+
+def stand(trials, *assignments):
+    curriculum = Curriculum("c", "C", assignments or (ONE, TWO))
+    return standing_in(curriculum, trials, lambda _version: 70.0)
+
+
+def states(trials, *assignments):
+    return [each.state for each in stand(trials, *assignments).standings]
+
+
+def test_the_shipped_curriculum_is_read_and_written_unchanged():
+    curriculum = read_curriculum(SHIPPED)
+    assert curriculum.to_json() == json.loads(SHIPPED.read_text(encoding="utf-8")) | {
+        "assignments": [each.to_json() for each in curriculum.assignments]
+    }
+    assert curriculum_from_json(curriculum.to_json()) == curriculum
+    assert [each.goal for each in curriculum.assignments].count(GoalKind.COMPETENT) == 1
+
+
+def file_with(**changes):
+    first = {"name": "one", "task": "task-1", "goal": {"kind": "score", "trials": 2}}
+    whole = {"formatVersion": 1, "name": "c", "title": "C", "assignments": [first]}
+    return {**whole, **changes}
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"formatVersion": 2}, "formatVersion must be 1"),
+        ({"goals": []}, "goals must be left out; a curriculum has formatVersion"),
+        ({"name": "A b"}, "name must be lower-case letters"),
+        ({"assignments": []}, f"a list of 1 to {MAX_ASSIGNMENTS} objects"),
+        ({"title": "x" * 81}, "title must be printable text of 1 to 80"),
+    ],
+    ids=["version", "unknown key", "name", "empty", "long title"],
+)
+def test_a_wrong_file_is_refused_with_the_field_and_what_would_be_right(changes, said):
+    with pytest.raises(InputError, match=said):
+        curriculum_from_json(file_with(**changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"task": "trial-run"}, "task must be a task that is scored"),
+        ({"mode": "wall"}, "mode must be one of desktop, hmd"),
+        ({"method": "magic"}, "method must be one of fiducials"),
+        ({"goal": {"kind": "fun"}}, "goal.kind must be one of score, competent"),
+        ({"goal": {"kind": "score", "trials": 0}}, "goal.trials must be a whole number from 1"),
+        ({"goal": {"kind": "score", "trials": 1, "mark": 101}}, "goal.mark must be a number from"),
+        ({"goal": {"kind": "competent", "trials": 3}}, "goal.trials must be left out"),
+        ({"after": ["one"]}, "after must be a list of assignments that stand before"),
+        ({"after": ["two"]}, "after must be a list of assignments that stand before"),
+        ({"until": 3}, "until must be left out; an assignment has name"),
+    ],
+    ids=[
+        *("trial run", "mode", "method", "kind", "no trials", "mark", "trials of competence"),
+        *("itself", "later", "unknown key"),
+    ],
+)
+def test_a_wrong_assignment_is_refused_with_the_field(changes, said):
+    first = file_with()["assignments"][0]
+    with pytest.raises(InputError, match=said):
+        curriculum_from_json(file_with(assignments=[{**first, **changes}]))
+    with pytest.raises(InputError, match="one that no other assignment has"):
+        curriculum_from_json(file_with(assignments=[first, first]))
+
+
+def test_a_goal_by_score_is_reached_by_trials_in_a_row_and_stays_reached():
+    assert states([]) == [OPEN, LOCKED]
+    assert states([PASSED, FAILED, PASSED]) == [OPEN, LOCKED]
+    one = stand([PASSED, FAILED, PASSED]).standings[0]
+    assert (one.done, one.needed, one.played) == (1, 2, 3)
+    assert states([PASSED, PASSED, FAILED, FAILED]) == [REACHED, OPEN]
+    assert stand([PASSED, PASSED, FAILED]).standings[0].done == 2
+
+
+def test_only_trials_as_the_assignment_asks_count():
+    in_headset = replace(ONE, mode="hmd", trials=1)
+    by_surface = replace(ONE, method="surface", trials=1)
+    biopsy = replace(ONE, procedure="biopsy", trials=1)
+    assert states([PASSED], in_headset) == [OPEN]
+    assert states([replace(PASSED, mode="hmd")], in_headset) == [REACHED]
+    assert states([PASSED], by_surface) == [OPEN]
+    surface = replace(PASSED, method="surface", version="3-surface")
+    assert states([surface], by_surface) == [REACHED]
+    assert states([surface], replace(ONE, trials=1)) == [OPEN]
+    assert states([PASSED], biopsy) == [OPEN]
+    done = replace(PASSED, procedure="biopsy", version="procedure-1")
+    assert states([done], biopsy) == [REACHED]
+    assert states([done], replace(ONE, trials=1)) == [OPEN]
+
+
+def test_a_trial_beyond_a_limit_fails_whatever_its_score():
+    assert states([replace(PASSED, acceptable=False)], replace(ONE, trials=1)) == [OPEN]
+
+
+def test_a_bad_trial_cannot_be_undone_by_aborting_it():
+    assert states([PASSED, ABORTED, PASSED]) == [OPEN, LOCKED]
+    assert stand([PASSED, ABORTED]).standings[0].done == 0
+    assert stand([PASSED, ABORTED]).standings[0].mean == 40.0
+    in_procedure = replace(ABORTED, is_in_procedure=True)
+    assert states([PASSED, in_procedure, PASSED]) == [REACHED, OPEN]
+
+
+def test_scores_of_two_versions_reach_no_goal_together_but_a_reached_one_stays():
+    old = replace(PASSED, version="2")
+    assert states([old, PASSED]) == [OPEN, LOCKED]
+    assert states([old, old, FAILED]) == [REACHED, OPEN]
+    assert states([old, replace(ABORTED), old]) == [OPEN, LOCKED]
+
+
+def test_a_goal_without_a_mark_is_that_of_the_study_and_never_reached_where_there_is_none():
+    curriculum = Curriculum("c", "C", (replace(ONE, trials=1),))
+    found = standing_in(curriculum, [PASSED], lambda _version: None)
+    assert (found.standings[0].state, found.standings[0].mark) == (OPEN, None)
+    own = Curriculum("c", "C", (replace(ONE, trials=1, mark=75.0),))
+    assert standing_in(own, [PASSED], lambda _version: None).reached == 1
+
+
+def test_a_goal_by_lc_cusum_is_reached_at_competence_and_says_how_far_it_is():
+    competent = replace(ONE, goal=GoalKind.COMPETENT, trials=0)
+    shares = [stand([PASSED] * count, competent).standings[0].done for count in range(30)]
+    assert shares == sorted(shares)
+    assert shares[0] == 0
+    assert shares[-1] == 100
+    first = shares.index(100)
+    assert states([PASSED] * first, competent) == [REACHED]
+    assert states([PASSED] * (first - 1), competent) == [OPEN]
+    assert states([PASSED] * (first - 1) + [FAILED], competent) == [OPEN]
+
+
+def test_the_weakest_open_assignment_comes_next_and_an_unplayed_one_before_it():
+    three = [Assignment(name, f"task-{name}", trials=2) for name in ("1", "2", "3")]
+    assert stand([], *three).next_best.assignment.name == "1"
+    first = stand([replace(PASSED, score=60.0)], *three)
+    assert first.next_best.assignment.name == "2"
+    scores = {"1": 60.0, "2": 40.0, "3": 90.0}
+    trials = [replace(PASSED, task=f"task-{n}", score=score) for n, score in scores.items()]
+    assert stand(trials, *three).next_best.assignment.name == "2"
+    marked = [three[0], three[1], replace(three[2], mark=99.0)]
+    assert stand(trials[::2], marked[0], marked[2]).next_best.assignment.name == "3"
+
+
+def test_the_part_of_the_score_that_cost_most_is_named():
+    def trial(**parts):
+        return replace(PASSED, parts=parts)
+
+    found = stand([trial(time=0.9, accuracy=0.4), trial(time=0.7, accuracy=0.6)])
+    assert found.standings[0].weakest == "accuracy"
+    assert stand([ABORTED]).standings[0].weakest == ""
+    parts = gentle_score(60.0, 0.4, common_bias_mm=1.2).parts
+    assert min(parts, key=parts.get) == "common bias"
+    assert set(parts) == {"time", "accuracy", "common bias", "safety"}
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_further_trial_never_takes_back_what_was_reached(seed):
+    chance = random.Random(seed)
+    names = [f"a{number}" for number in range(8)]
+    assignments = tuple(
+        Assignment(
+            name,
+            f"task-{chance.randint(1, 4)}",
+            trials=(trials := chance.randint(0, 3)),
+            goal=GoalKind.SCORE if trials else GoalKind.COMPETENT,
+            after=tuple(chance.sample(names[:place], min(place, chance.randint(0, 2)))),
+        )
+        for place, name in enumerate(names)
+    )
+    trials, before = [], set()
+    for _ in range(60):
+        kind = chance.choice([PASSED, PASSED, FAILED, ABORTED, replace(PASSED, version="2")])
+        trials.append(replace(kind, task=f"task-{chance.randint(1, 4)}"))
+        found = stand(trials, *assignments)
+        now = {each.assignment.name for each in found.standings if each.state is REACHED}
+        assert before <= now
+        before = now
+        for each in found.standings:
+            is_waiting = bool(set(each.assignment.after) - now)
+            assert (each.state is LOCKED) == (is_waiting and each.assignment.name not in now)
+            assert 0 <= each.done <= each.needed
+        best = found.next_best
+        assert (best is None) == (OPEN not in [each.state for each in found.standings])
+        assert best is None or best.state is OPEN
+
+
+@pytest.fixture
+def study(tmp_path):
+    with Study.open(tmp_path / "study.db") as opened:
+        opened.create_trainee("A")
+        opened.create_trainee("B")
+        yield opened
+
+
+def test_what_was_chosen_last_counts_for_one_and_for_everybody(study):
+    store = CurriculumStore(study)
+    first, second = (Curriculum(name, name, (ONE,)) for name in ("first", "second"))
+    assert store.curriculum_of("A") is None
+    assert store.standing("A") is None
+    store.choose(first)
+    store.choose(second, "A")
+    assert (store.curriculum_of("A"), store.curriculum_of("B")) == (second, first)
+    assert store.curriculum_of("later") == first
+    store.choose(None, "B")
+    assert list(store.standings()) == ["A"]
+    store.choose(first)
+    assert (store.curriculum_of("A"), store.curriculum_of("B")) == (first, first)
+    chosen = [(each.trainee, each.curriculum) for each in store.choices()]
+    assert chosen == [("", first), ("A", second), ("B", None), ("", first)]
+    with pytest.raises(InputError, match="no trainee"):
+        store.choose(first, "C")
+
+
+def test_a_choice_is_exported_and_deleted_with_its_trainee(study, tmp_path):
+    store = CurriculumStore(study)
+    store.choose(Curriculum("c", "C", (ONE,)), "A")
+    export_trainee(study, "A", tmp_path / "a.json")
+    (told,) = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["curricula"]
+    assert told["curriculum"]["name"] == "c"
+    study.delete_trainee("A")
+    assert store.choices() == ()
+
+
+def record(number, **changes):
+    utc = f"2024-05-17T10:{number:02d}:00Z"
+    told = {"trainee": "A", "startedUtc": utc, "completedUtc": utc}
+    return make_record(trialId=str(uuid.UUID(int=number)), **(told | changes))
+
+
+def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(study):
+    good = gentle_score(60.0, 0.2)
+    assert good.score > 70
+    study.add_trial(record(3), score=good)
+    study.add_trial(record(1), score=good)
+    study.add_trial(record(4, task="trial-run"), score=good)
+    study.add_trial(record(5))
+    at = {"trainee": "A", "startedUtc": "2024-05-17T10:02:00Z"}
+    AbortedTrials(study).add(make_aborted(**at))
+    with study.database.reading() as connection:
+        found = counted_trials(connection, "A")
+    assert [trial.is_aborted for trial in found] == [False, True, False]
+    assert found[0].parts["common bias"] == 1.0
+    store = CurriculumStore(study)
+    store.choose(Curriculum("c", "C", (ONE, TWO)))
+    assert (store.standing("A").standings[0].done, store.standing("A").reached) == (1, 0)
+    study.add_trial(record(6), score=good)
+    assert store.standing("A").reached == 1
+    assert store.standing("B").reached == 0
+
+
+def test_a_study_of_an_earlier_format_gets_the_table(tmp_path, monkeypatch):
+    path = tmp_path / "old.db"
+    monkeypatch.setattr("rastrainer.study.database.database.MIGRATIONS", MIGRATIONS[:8])
+    with Study.open(path) as old:
+        old.create_trainee("A")
+    monkeypatch.undo()
+    with Study.open(path) as study:
+        CurriculumStore(study).choose(read_curriculum(SHIPPED))
+    with Study.open_for_reading(path) as study:
+        assert CurriculumStore(study).curriculum_of("A") == read_curriculum(SHIPPED)
