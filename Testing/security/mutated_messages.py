@@ -46,6 +46,13 @@ COMMANDS = {
     "TrialScored": {"trialId": TRIAL, "score": 70, "details": {"version": "2"}},
     "PlanTarget": {"positionMm": [500, 0, 300], "entryMm": [500, 0, 400], "name": "target"},
     "StudyStep": {"trainee": "P01", "kind": "trial", "number": 2, "count": 9, "task": "task-1"},
+    "Curriculum": {
+        "trainee": "P01",
+        "next": "one",
+        "assignments": [
+            {"name": "one", "task": "task-1", "goal": "score", "state": "open", "needed": 2}
+        ],
+    },
     "GetTrial": {"trialId": TRIAL},
     "AcknowledgeTrial": {"trialId": TRIAL},
 }

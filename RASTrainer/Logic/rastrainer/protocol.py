@@ -15,12 +15,14 @@ from rastrainer.errors import InputError
 from rastrainer.finite_json import MAX_RECORD_VALUES, decode_message_object
 from rastrainer.json_checks import (
     Argument,
+    checked_keys,
     number,
     numbers,
     one_of,
     plain_object,
     pseudonym,
     text,
+    texts,
     trial_id,
     whole_number,
     yes_or_no,
@@ -226,6 +228,7 @@ class CommandName:
     TRIAL_SCORED = "TrialScored"
     PLAN_TARGET = "PlanTarget"
     STUDY_STEP = "StudyStep"
+    CURRICULUM = "Curriculum"
     GET_TRIAL = "GetTrial"
     ACKNOWLEDGE_TRIAL = "AcknowledgeTrial"
     TRIAL_COMPLETED = "TrialCompleted"
@@ -256,6 +259,38 @@ def skin_amounts(value: Any) -> dict[str, float]:
     raise ValueError(
         f"an object of {' and '.join(SKIN_KEYS)}, each a number from 0 to {SKIN_LIMIT_MM:g} mm"
     )
+
+
+_ASSIGNMENT: Mapping[str, Argument] = {
+    "name": Argument(text(40)),
+    "task": Argument(text(40)),
+    "mode": Argument(one_of("", *(mode.value for mode in Mode)), ""),
+    "method": Argument(text(40, 0), ""),
+    "procedure": Argument(text(40, 0), ""),
+    "goal": Argument(one_of(*(kind.value for kind in GoalKind))),
+    "state": Argument(one_of(*(state.value for state in AssignmentState))),
+    "done": Argument(whole_number(0, 100), 0),
+    "needed": Argument(whole_number(1, 100)),
+    "mark": Argument(number(0, 100), 0.0),
+    "played": Argument(whole_number(0, 1_000_000), 0),
+    "missing": Argument(texts(0, MAX_GATES), ()),
+    "weakest": Argument(text(20, 0), ""),
+}
+
+
+def told_assignments(value: Any) -> tuple[dict[str, Any], ...]:
+    """Accept a list of where a trainee stands with each assignment; what is left out is default.
+
+    Raises:
+        ValueError: anything else; the words follow "must be".
+        InputError: a key of an assignment is unknown, missing or out of range.
+    """
+    if not isinstance(value, list) or len(value) > MAX_ASSIGNMENTS:
+        raise ValueError(f"a list of up to {MAX_ASSIGNMENTS} assignments")
+    for each in value:
+        if isinstance(each, Mapping) and not set(each) <= set(_ASSIGNMENT):
+            raise ValueError(f"a list of assignments, each an object of {', '.join(_ASSIGNMENT)}")
+    return tuple(checked_keys(each, _ASSIGNMENT, "An assignment") for each in value)
 
 
 _REGISTRATION: Mapping[str, Argument] = {
@@ -351,6 +386,12 @@ COMMAND_ARGUMENTS: Mapping[str, Mapping[str, Argument]] = {
         "tutorial": Argument(one_of(*(rule.value for rule in TutorialRule)), ""),
         "method": Argument(text(40, 0), ""),
         "skin": Argument(skin_amounts, {}),
+    },
+    CommandName.CURRICULUM: {
+        "trainee": Argument(text()),
+        "title": Argument(text(80, 0), ""),
+        "next": Argument(text(40, 0), ""),
+        "assignments": Argument(told_assignments, ()),
     },
     CommandName.GET_TRIAL: {"trialId": Argument(trial_id)},
     CommandName.ACKNOWLEDGE_TRIAL: {"trialId": Argument(trial_id)},

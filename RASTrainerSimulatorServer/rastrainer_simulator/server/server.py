@@ -18,11 +18,13 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
 from rastrainer.scenario.method_task import task_by_method
+from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.flow.session.curricula import Curricula
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     Preferences,
@@ -113,6 +115,7 @@ class SimulatorServer:
         self._settings = self._preferred_settings()
         self._seeds = itertools.count(options.seed)
         self._study = StudySteps()
+        self._curricula = Curricula()
         self._pin = PinGuesses(InstructorPin(self._config))
         # First: until the folder is ours, another simulator may add to the trial to resume.
         self._records = RecordsFolder(options.records)
@@ -254,6 +257,7 @@ class SimulatorServer:
             is_slicer_connected=lambda: link.is_slicer_connected,
             quit=stop.set,
             study=self._study,
+            curricula=self._curricula,
             scores_alone=self._options.scores_alone,
             pin=self._pin,
             languages=tuple(filter(has_letters, LANGUAGES))
@@ -329,6 +333,9 @@ class SimulatorServer:
             return self._scenarios.load(arguments["folder"])
         if name == CommandName.STUDY_STEP:
             self._study.take(StudyStep.from_arguments(arguments))
+            return _answered(Answer(0, True))
+        if name == CommandName.CURRICULUM:
+            self._curricula.take(ToldCurriculum.from_arguments(arguments))
             return _answered(Answer(0, True))
         if name == CommandName.START_TUTORIAL:
             return _answered(self._start_tutorial(**arguments))

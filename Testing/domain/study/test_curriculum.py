@@ -10,7 +10,15 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.export.trainee_data import export_trainee
-from rastrainer.protocol import MAX_ASSIGNMENTS, AssignmentState, GoalKind
+from rastrainer.protocol import (
+    MAX_ASSIGNMENTS,
+    MAX_GATES,
+    AssignmentState,
+    CommandName,
+    GoalKind,
+    check_arguments,
+    decode_json_object,
+)
 from rastrainer.study.curriculum.counted_trials import CountedTrial, counted_trials
 from rastrainer.study.curriculum.curriculum import (
     Assignment,
@@ -20,6 +28,7 @@ from rastrainer.study.curriculum.curriculum import (
 )
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
+from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.schema import MIGRATIONS
 from rastrainer.study.database.study import Study
@@ -294,3 +303,59 @@ def test_a_study_of_an_earlier_format_gets_the_table(tmp_path, monkeypatch):
         CurriculumStore(study).choose(read_curriculum(SHIPPED))
     with Study.open_for_reading(path) as study:
         assert CurriculumStore(study).curriculum_of("A") == read_curriculum(SHIPPED)
+
+
+def told_of(trials, *assignments):
+    arguments = ToldCurriculum.of("A", stand(trials, *assignments)).arguments()
+    return check_arguments(CommandName.CURRICULUM, json.loads(json.dumps(arguments)))
+
+
+def test_what_slicer_tells_the_simulator_arrives_as_it_was_and_fits_into_a_message():
+    checked = told_of([PASSED])
+    assert ToldCurriculum.from_arguments(checked) == ToldCurriculum.of("A", stand([PASSED]))
+    none = check_arguments(CommandName.CURRICULUM, ToldCurriculum("A").arguments())
+    assert ToldCurriculum.from_arguments(none) == ToldCurriculum("A")
+    names = [f"{number:02d}{'x' * 38}" for number in range(MAX_ASSIGNMENTS)]
+    largest = [
+        Assignment(
+            *(name, name, "desktop", "landmarks-surface", name),
+            trials=50,
+            after=tuple(names[max(0, place - MAX_GATES) : place]),
+        )
+        for place, name in enumerate(names)
+    ]
+    whole = ToldCurriculum.of("A" * 64, stand([], *largest)).arguments()
+    decode_json_object(json.dumps(whole))
+    assert len(json.dumps(whole)) < 20_000
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"name": "x" * 41},
+        {"state": "won"},
+        {"goal": "fun"},
+        {"done": 101},
+        {"done": True},
+        {"needed": 0},
+        {"mark": -1},
+        {"mark": 1e9},
+        {"missing": ["a"] * 7},
+        {"missing": "one"},
+        {"mode": "wall"},
+        {"task": "\n"},
+        {"more": 1},
+    ],
+    ids=lambda told: json.dumps(told)[:30],
+)
+def test_a_hostile_message_is_refused(told):
+    good = ToldCurriculum.of("A", stand([])).arguments()
+    bad = {**good, "assignments": [{**good["assignments"][0], **told}]}
+    with pytest.raises(InputError):
+        check_arguments(CommandName.CURRICULUM, bad)
+
+
+@pytest.mark.parametrize("assignments", [{}, "x", [1], [[]], [{}], [None] * 99], ids=str)
+def test_what_is_no_list_of_assignments_is_refused(assignments):
+    with pytest.raises(InputError):
+        check_arguments(CommandName.CURRICULUM, {"trainee": "A", "assignments": assignments})

@@ -11,6 +11,7 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.method_task import method_of, playable_methods
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
+from rastrainer_simulator.flow.pages.assignments import AssignmentsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import (
     ClickedIdPage,
@@ -18,6 +19,7 @@ from rastrainer_simulator.flow.pages.trainee_id import (
     QuestionnairePage,
 )
 from rastrainer_simulator.flow.session.obstacles import (
+    assignment_obstacle,
     needs_tutorial,
     obstacle,
     tutorial_obstacle,
@@ -71,7 +73,14 @@ class ExperimentPage(SessionPage):
             self.name,
             self.say("experiment.title"),
             said,
-            items=(*answer, *choices, *self._tutorial(), *tasks, self.button("back")),
+            items=(
+                *answer,
+                *choices,
+                *self._assignments(),
+                *self._tutorial(),
+                *tasks,
+                self.button("back"),
+            ),
             trend=trend,
         )
 
@@ -85,6 +94,8 @@ class ExperimentPage(SessionPage):
             self.session.pages.open(ClickedIdPage(self.session, self.write))
         elif item == "answer":
             self._answer()
+        elif item == "assignments":
+            self.session.pages.open(AssignmentsPage(self.session))
         elif item == "tutorial":
             self.session.begin_tutorial()
         elif item == "trainee":
@@ -147,6 +158,13 @@ class ExperimentPage(SessionPage):
         help_ = self.say("experiment.procedure help")
         return (self.choice("procedure", value, is_enabled=step is None, help=help_),)
 
+    def _assignments(self) -> tuple[MenuItem, ...]:
+        """Return the button of the curriculum; none for who has none."""
+        told, words = self.session.curriculum, self.session.assignment_words
+        if told is None:
+            return ()
+        return (self.button("assignments", value=words.summary(told), help=words.advice(told)),)
+
     def _tutorial(self) -> tuple[MenuItem, ...]:
         """Return the tutorial's button; none where there is no tutorial."""
         session = self.session
@@ -181,6 +199,10 @@ class ExperimentPage(SessionPage):
             return "answer"
         if needs_tutorial(self.session) and not tutorial_obstacle(self.session):
             return "tutorial"
+        told = self.session.curriculum
+        best = None if told is None else told.find(told.next)
+        if best is not None and not assignment_obstacle(self.session, best):
+            return "assignments"
         tasks = [self._task(task.name) for task in self.session.scenario.tasks]
         open_tasks = [task for task in tasks if task.is_enabled and not task.value]
         known = "mode" if self.session.trainee.strip() else ""

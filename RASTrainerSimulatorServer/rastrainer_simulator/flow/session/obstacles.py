@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from rastrainer.protocol import TRIAL_RUN, StepKind, TutorialRule
+from rastrainer.scenario.method_task import playable_methods
+from rastrainer.study.curriculum.told_curriculum import ToldAssignment
 from rastrainer_simulator.flow.session.session import TrainingSession
 
 
@@ -11,26 +13,59 @@ def obstacle(session: TrainingSession, task: str) -> str:
     unready = _unready(session)
     if unready:
         return unready
-    say = session.texts.say
-    trainee = session.trainee.strip()
-    step = session.study.step_of(trainee)
+    step = session.study.step_of(session.trainee.strip())
     if step is not None:
         is_asked = step.is_played and (step.task, step.mode) == (task, session.mode)
         if not is_asked:
-            return say("experiment.study", step=session.step_sentence(step))
-    elif session.preferences.order == "any":
-        return ""
-    if task == TRIAL_RUN and needs_tutorial(session):
-        return say("experiment.tutorial first")
-    if step is not None:
-        return ""
+            return session.texts.say("experiment.study", step=session.step_sentence(step))
+        return _tutorial_first(session, task)
+    told = session.curriculum
+    played_as = (session.mode, session.method_of(task).value, session.procedure_of(task))
+    assigned = () if told is None else told.assignments
+    own = [each for each in assigned if each.is_played_as(task, *played_as)]
+    if told is not None and own and all(each.is_locked for each in own):
+        return session.assignment_words.gate(told, own[0])
+    return _missing_before(session, task, is_assigned=bool(own))
+
+
+def assignment_obstacle(session: TrainingSession, each: ToldAssignment) -> str:
+    """Return why the trainee cannot begin a trial of an assignment; "" if nothing is in the way."""
+    unready, told = _unready(session), session.curriculum
+    if unready or told is None:
+        return unready
+    if each.is_locked:
+        return session.assignment_words.gate(told, each)
     scenario = session.scenario
-    order = [each.name for each in scenario.tasks]
-    missing = session.progress.missing_before(trainee, scenario.name, task, order)
+    is_on_head = (
+        each.task in {task.name for task in scenario.tasks}
+        and each.procedure in {"", *(procedure.name for procedure in scenario.procedures)}
+        and (not each.method or each.method in {m.value for m in playable_methods(scenario)})
+    )
+    if not is_on_head:
+        return session.texts.say("assignments.other head")
+    return _missing_before(session, each.task, is_assigned=True)
+
+
+def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> str:
+    """Return what has to be done first outside of a study; of assignments, their gates say that."""
+    if session.preferences.order == "any":
+        return ""
+    if task == TRIAL_RUN:
+        return _tutorial_first(session, task)
+    scenario = session.scenario
+    order = [
+        each.name for each in scenario.tasks if not is_assigned or each.name in (TRIAL_RUN, task)
+    ]
+    missing = session.progress.missing_before(session.trainee.strip(), scenario.name, task, order)
     if not missing:
         return ""
     key = "experiment.trial run first" if missing == TRIAL_RUN else "experiment.order"
-    return say(key, task=session.task_title(missing))
+    return session.texts.say(key, task=session.task_title(missing))
+
+
+def _tutorial_first(session: TrainingSession, task: str) -> str:
+    is_missing = task == TRIAL_RUN and needs_tutorial(session)
+    return session.texts.say("experiment.tutorial first") if is_missing else ""
 
 
 def tutorial_obstacle(session: TrainingSession) -> str:

@@ -26,11 +26,13 @@ from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.method_task import method_of, playable_methods
 from rastrainer.scenario.scenario import Scenario
+from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.commands import Commands
+from rastrainer_simulator.flow.session.curricula import AssignmentWords, Curricula
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
@@ -90,6 +92,7 @@ class FlowServices:
         is_slicer_connected: says whether a client that registers and scores is connected.
         quit: ends the process.
         study: knows what a study that Slicer leads asks of the trainees.
+        curricula: knows where trainees stand in their curricula.
         scores_alone: whether a trial outside of a study is scored here where no Slicer is
             connected.
         pin: the instructor's; None where there is never one.
@@ -104,6 +107,7 @@ class FlowServices:
     is_slicer_connected: Callable[[], bool]
     quit: Callable[[], None]
     study: StudySteps = field(default_factory=StudySteps)
+    curricula: Curricula = field(default_factory=Curricula)
     scores_alone: bool = False
     pin: PinGuesses | None = None
     languages: Sequence[str] = tuple(LANGUAGES)
@@ -234,6 +238,22 @@ class TrainingSession:
     def is_being_set_up(self) -> bool:
         """Whether other settings of the simulation, or another scenario, are on their way."""
         return self._setting_up is not None or self._wanted_settings is not None
+
+    @property
+    def curriculum(self) -> ToldCurriculum | None:
+        """Where the trainee stands in a curriculum.
+
+        None without one, in a study, which comes before it, and while no Slicer is connected.
+        """
+        trainee = self.trainee.strip()
+        if self.study.step_of(trainee) is not None or not self.is_slicer_connected():
+            return None
+        return self._services.curricula.of(trainee)
+
+    @property
+    def assignment_words(self) -> AssignmentWords:
+        """What says of assignments what trainees read."""
+        return AssignmentWords(self.texts, self.task_title, self.procedure_title)
 
     @property
     def does_view_follow(self) -> bool:

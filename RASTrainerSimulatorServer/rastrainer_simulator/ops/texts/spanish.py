@@ -362,6 +362,38 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "study.by landmarks": "por referencias de la cara",
         "study.by surface": "por un trazado en la piel",
         "study.by landmarks-surface": "por referencias y un trazado",
+        "experiment.assignments": "Sus objetivos",
+        "assignments.title": "Sus objetivos",
+        "assignments.back": "Atrás",
+        "assignments.with procedure": "{trial}, luego {procedure}",
+        "assignments.summary": "{reached} de {count} alcanzados",
+        "assignments.reached": "alcanzado",
+        "assignments.locked": "bloqueado",
+        "assignments.count": "{done} de {needed} seguidos",
+        "assignments.percent": "{done} %",
+        "assignments.one trial": "Se alcanza cuando un ensayo tiene {mark:g} puntos o más, dentro "
+        "de todos los límites.",
+        "assignments.trials": "Se alcanza cuando {needed} ensayos seguidos tienen {mark:g} puntos "
+        "o más, dentro de todos los límites.",
+        "assignments.competent": "Se alcanza cuando sus ensayos muestran competencia (LC-CUSUM); "
+        "un ensayo se aprueba con {mark:g} puntos o más.",
+        "assignments.no mark": "No hay umbral de aprobado para la puntuación actual: pregunte a "
+        "su instructor.",
+        "assignments.gate": "Bloqueado. Primero alcance: {assignments}.",
+        "assignments.other head": "Esta cabeza no tiene este objetivo: elija otra.",
+        "assignments.all reached": "Todos los objetivos están alcanzados.",
+        "assignments.next": "Siguiente: {assignment}, lo más flojo.",
+        "assignments.next unplayed": "Siguiente: {assignment}, aún sin practicar.",
+        "assignments.weakest": "Lo que más puntos cuesta: {part}.",
+        "assignments.part time": "el tiempo",
+        "assignments.part accuracy": "la precisión",
+        "assignments.part common bias": "el sesgo común a todos los toques",
+        "assignments.part safety": "el contacto no deseado y la presión",
+        "assignments.part target": "el error en el objetivo",
+        "assignments.part entry": "el error en la entrada",
+        "assignments.part angle": "el ángulo",
+        "assignments.part plunge": "taladrar demasiado hondo",
+        "assignments.part distance": "muy poca distancia a estructuras prohibidas",
         "experiment.answer": "Responder al cuestionario",
         "questionnaire.text": "{trainee}, responda a cada línea: {lowest} significa {low}, "
         "{highest} significa {high}, si la línea no dice otra cosa. Su instructor tiene el "

@@ -15,6 +15,7 @@ from rastrainer.scenario.tasks import Task
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
+from rastrainer.slicer.logic.curriculum_logic import CurriculumLogic
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
 from rastrainer.slicer.logic.method_comparison_logic import MethodComparisonLogic
 from rastrainer.slicer.logic.plan_logic import PlanLogic
@@ -88,6 +89,7 @@ class ModuleSession:
         training: trials under way.
         slices: keeps the slice views at the next point, or at the tool.
         study: leads through the protocol.
+        curriculum: what each trainee is to reach.
         trials: where finished trials arrive.
         aborted: where aborted trials arrive.
         replay: feedback on stored trials, and their replay.
@@ -152,6 +154,7 @@ class ModuleSession:
         self.training = TrainingLogic(scene, self.link, cache.find)
         self.slices = SliceFollower(scene, self.training)
         self.study = StudyLogic(self.trainees, self.training, self.link)
+        self.curriculum = CurriculumLogic(self.trainees, self.link)
         self.trials = TrialLogic(
             scene,
             self.link,
@@ -279,6 +282,7 @@ class ModuleSession:
         """Disconnect, close the study, and end the simulator that was started from here."""
         self.layout.giveBack()
         self.study.close()
+        self.curriculum.close()
         self.procedure.close()
         self.traces.close()
         self.training.close()

@@ -16,6 +16,21 @@ from rastrainer.study.database.values import utc_now
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, pass_mark_of
 
+_STAMPS = """
+    SELECT pseudonym,
+        (SELECT count(*) FROM aborted_trials WHERE aborted_trials.trainee_id = trainees.id),
+        (SELECT max(scores.id) FROM scores JOIN trials ON trials.trial_id = scores.trial_id
+            WHERE trials.trainee_id = trainees.id),
+        (SELECT max(procedure_outcomes.id) FROM procedure_outcomes
+            JOIN trials ON trials.trial_id = procedure_outcomes.trial_id
+            WHERE trials.trainee_id = trainees.id),
+        (SELECT max(curriculum_choices.id) FROM curriculum_choices
+            WHERE curriculum_choices.trainee_id = trainees.id
+                OR curriculum_choices.trainee_id IS NULL),
+        (SELECT count(*) FROM study_protocol)
+    FROM trainees WHERE archived = 0
+"""
+
 
 @dataclass(frozen=True)
 class CurriculumChoice:
@@ -78,6 +93,15 @@ class CurriculumStore:
             InputError: an unknown trainee.
         """
         return self._standing(pseudonym, StudyProgress(self._study).protocol())
+
+    def stamps(self) -> dict[str, tuple[int | None, ...]]:
+        """Return for each active trainee numbers that change with where they may stand.
+
+        They cost little: a window need not compute every standing again whenever something is new.
+        """
+        with self._study.database.reading() as connection:
+            rows = connection.execute(_STAMPS).fetchall()
+        return {name: tuple(numbers) for name, *numbers in rows}
 
     def standings(self) -> dict[str, CurriculumStanding]:
         """Return where each active trainee with a curriculum stands, by pseudonym."""

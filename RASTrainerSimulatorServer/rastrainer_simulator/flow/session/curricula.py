@@ -1,0 +1,99 @@
+"""What trainees are to reach, as Slicer tells it, in the words that trainees read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
+from rastrainer_simulator.ops.texts.texts import Texts
+
+MAX_TRAINEES = 1000
+"""Of whom curricula are kept; the oldest is forgotten first."""
+Titles = Callable[[str], str]
+"""From the name of a task or a procedure to what people call it."""
+
+
+class Curricula:
+    """Keeps where each trainee stands.
+
+    Nothing of it outlives the process: Slicer, which keeps the study, tells everything again once
+    it is connected.
+    """
+
+    def __init__(self) -> None:
+        self._told: dict[str, ToldCurriculum] = {}
+
+    def take(self, told: ToldCurriculum) -> None:
+        """Take what Slicer tells of a trainee."""
+        self._told.pop(told.trainee, None)
+        if told.assignments:
+            self._told[told.trainee] = told
+        if len(self._told) > MAX_TRAINEES:
+            del self._told[next(iter(self._told))]
+
+    def of(self, trainee: str) -> ToldCurriculum | None:
+        """Return where a trainee stands; None for who has no curriculum."""
+        return self._told.get(trainee)
+
+
+class AssignmentWords:
+    """Says what assignments are, in the trainee's language."""
+
+    def __init__(self, texts: Texts, task_title: Titles, procedure_title: Titles) -> None:
+        self._say = texts.say
+        self._texts = texts
+        self._task_title = task_title
+        self._procedure_title = procedure_title
+
+    def title(self, each: ToldAssignment) -> str:
+        """Return what people call an assignment."""
+        by = f"study.by {each.method}"
+        words = [self._task_title(each.task)]
+        words += [self._say(by)] if by in self._texts else []
+        words += [self._say(f"study.{each.mode}")] if each.mode else []
+        trial = " ".join(words)
+        if not each.procedure:
+            return trial
+        procedure = self._procedure_title(each.procedure)
+        return self._say("assignments.with procedure", trial=trial, procedure=procedure)
+
+    def progress(self, each: ToldAssignment) -> str:
+        """Return how far the trainee is, in few characters."""
+        if each.is_reached:
+            return self._say("assignments.reached")
+        if each.is_locked:
+            return self._say("assignments.locked")
+        key = "assignments.percent" if each.is_by_competence else "assignments.count"
+        return self._say(key, done=each.done, needed=each.needed)
+
+    def goal(self, each: ToldAssignment) -> str:
+        """Return when an assignment is reached."""
+        if not each.mark:
+            return self._say("assignments.no mark")
+        if each.is_by_competence:
+            return self._say("assignments.competent", mark=each.mark)
+        key = "assignments.one trial" if each.needed == 1 else "assignments.trials"
+        return self._say(key, needed=each.needed, mark=each.mark)
+
+    def gate(self, told: ToldCurriculum, each: ToldAssignment) -> str:
+        """Return what a locked assignment waits for."""
+        missing = [found for name in each.missing if (found := told.find(name)) is not None]
+        names = ", ".join(self.title(one) for one in missing) or "–"
+        return self._say("assignments.gate", assignments=names)
+
+    def summary(self, told: ToldCurriculum) -> str:
+        """Return how many assignments are reached."""
+        return self._say("assignments.summary", reached=told.reached, count=len(told.assignments))
+
+    def advice(self, told: ToldCurriculum) -> str:
+        """Return what to practice next, and why."""
+        best = told.find(told.next)
+        if best is None:
+            return self._say("assignments.all reached")
+        if not best.played:
+            return self._say("assignments.next unplayed", assignment=self.title(best))
+        sentence = self._say("assignments.next", assignment=self.title(best))
+        part = f"assignments.part {best.weakest}"
+        if part not in self._texts:
+            return sentence
+        return f"{sentence} {self._say('assignments.weakest', part=self._say(part))}"

@@ -1,0 +1,138 @@
+"""A trainee's curriculum at the seat: goals, gates, and the next assignment in the menu."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.protocol import TRIAL_RUN, AssignmentState, GoalKind
+from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
+from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer_simulator.flow.session.curricula import MAX_TRAINEES, Curricula
+
+LOCKED, OPEN, REACHED = (state.value for state in AssignmentState)
+SCORE, COMPETENT = (kind.value for kind in GoalKind)
+TOLD = ToldCurriculum(
+    "P07",
+    "First steps",
+    "two",
+    (
+        ToldAssignment("one", "task-1", SCORE, REACHED, 2, done=2, mark=70.0, played=3),
+        ToldAssignment(
+            "two", "task-2", SCORE, OPEN, 3, done=1, mark=72.5, played=2, weakest="time"
+        ),
+        ToldAssignment("three", "task-3", COMPETENT, LOCKED, 100, mark=70.0, missing=("two",)),
+        ToldAssignment("four", "task-4", SCORE, OPEN, 1, mode="hmd", mark=70.0),
+        ToldAssignment("five", "task-9", SCORE, OPEN, 1, procedure="none", mark=70.0),
+    ),
+)
+
+
+@pytest.fixture
+def menu(trainee, outside):
+    """The trainee at the experiment menu with the ID P07, the trial run done, and Slicer there."""
+    outside.has_slicer = True
+    session = trainee.presenter._session
+    session.progress.note("P07", session.scenario.name, TRIAL_RUN)
+    outside.services.curricula.take(TOLD)
+    trainee.choose("train")
+    trainee.until_menu("introduction")
+    trainee.choose("skip")
+    trainee.until_menu("controls")
+    trainee.choose("next")
+    trainee.until_menu("experiment")
+    trainee.presenter.on_text(1, "trainee", "P07")
+    trainee.step(20)
+    return trainee
+
+
+@pytest.fixture
+def page(menu):
+    menu.choose("assignments")
+    menu.until_menu("assignments")
+    return menu
+
+
+def test_the_menu_says_how_far_the_trainee_is_and_what_comes_next(menu):
+    row = menu.item("assignments")
+    assert (row.label, row.value) == ("Your assignments", "1 of 5 reached")
+    assert row.help == "Next: Task 2, your weakest. Most points are lost by time."
+
+
+def test_each_assignment_is_a_row_with_its_state_and_the_next_one_has_the_focus(page):
+    assert page.menu.paragraphs[0] == "First steps"
+    assert page.menu.focus == "assignment two"
+    rows = [(item.label, item.value, item.is_enabled) for item in page.menu.items]
+    assert rows == [
+        ("Task 1", "reached", True),
+        ("Task 2", "1 of 3 in a row", True),
+        ("Task 3", "locked", False),
+        ("Task 4 with the headset", "0 of 1 in a row", True),
+        ("task-9, then none", "0 of 1 in a row", False),
+        ("Back", "", True),
+    ]
+    assert page.item("assignment two").help == (
+        "Reached when 3 trials in a row have 72.5 points or more, within all limits."
+    )
+    assert page.item("assignment three").help == "Locked. First reach: Task 2."
+    assert "This head does not have it" in page.item("assignment five").help
+
+
+def test_an_assignment_begins_its_trial_in_its_mode(page):
+    page.choose("assignment four")
+    page.until_menu(None)
+    assert (page.state.training.task, page.state.training.mode) == ("task-4", "hmd")
+
+
+def test_a_locked_task_waits_for_its_gate_and_an_open_one_for_no_task_before_it(menu):
+    assert menu.item("task-2").is_enabled
+    assert not menu.item("task-3").is_enabled
+    assert menu.item("task-3").help == "Locked. First reach: Task 2."
+    assert menu.item("task-5").help == "Task 1 comes first."
+
+
+def test_a_study_comes_before_a_curriculum(menu, outside):
+    outside.services.study.take(StudyStep("P07", "trial", 3, 19, "task-3", "desktop"))
+    menu.step(20)
+    assert "assignments" not in [item.name for item in menu.menu.items]
+    assert menu.item("task-3").is_enabled
+    outside.services.study.take(StudyStep("P07"))
+    menu.step(20)
+    assert menu.item("assignments").is_enabled
+
+
+def test_without_slicer_nothing_is_locked_and_nothing_is_said(menu, outside):
+    outside.has_slicer = False
+    menu.step(20)
+    assert "assignments" not in [item.name for item in menu.menu.items]
+    assert menu.item("task-3").help == "Task 1 comes first."
+
+
+def test_the_page_closes_when_the_curriculum_ends(page, outside):
+    outside.services.curricula.take(ToldCurriculum("P07"))
+    page.until_menu("experiment")
+
+
+def test_what_slicer_tells_later_is_shown_at_once(page, outside):
+    reached = replace(TOLD.assignments[1], state=REACHED, done=3)
+    three = replace(TOLD.assignments[2], state=OPEN, missing=(), done=40)
+    told = (TOLD.assignments[0], reached, three)
+    outside.services.curricula.take(replace(TOLD, next="three", assignments=told))
+    page.step(20)
+    assert [item.value for item in page.menu.items[:3]] == ["reached", "reached", "40 %"]
+    assert "Next: Task 3, which you have not played yet." in page.menu.paragraphs
+    assert "show competence (LC-CUSUM)" in page.item("assignment three").help
+    outside.services.curricula.take(replace(TOLD, next="", assignments=told[:2]))
+    page.step(20)
+    assert "All assignments are reached." in page.menu.paragraphs
+
+
+def test_of_too_many_trainees_the_oldest_is_forgotten():
+    curricula = Curricula()
+    for number in range(MAX_TRAINEES + 1):
+        curricula.take(replace(TOLD, trainee=f"P{number}"))
+    assert curricula.of("P0") is None
+    assert curricula.of("P1") is not None
+    curricula.take(ToldCurriculum("P1"))
+    assert curricula.of("P1") is None

@@ -1,0 +1,106 @@
+"""Slicer tells the simulator where each trainee stands in the curriculum, when it is new."""
+
+import json
+import uuid
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.slicer.logic.curriculum_logic import CurriculumLogic
+from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.study.database.study import Study
+from Testing.domain.trial.trial_records import gentle_score, make_record
+from Testing.slicer.training_room import Room
+
+SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "example-curriculum.json"
+
+
+class Class:
+    """A study with two trainees, and its teacher's hands."""
+
+    def __init__(self, room, folder):
+        self.room = room
+        self.trainees = TraineeLogic(lambda: Study.open(folder / "study.db"), folder / "journals")
+        self.logic = CurriculumLogic(self.trainees, room.link)
+
+    def play(self, trainee, count):
+        """Have scored trials of the first task arrive."""
+        for _ in range(count):
+            record = make_record(trialId=str(uuid.uuid4()), trainee=trainee)
+            self.trainees.study.add_trial(record, score=gentle_score(60.0, 0.2))
+        self.trainees.changed.emit()
+
+    def told(self, count):
+        """Return what the simulator was told, once there are so many messages."""
+        self.room.run_until(lambda: len(self.room.sent("Curriculum")) >= count)
+        return self.room.sent("Curriculum")
+
+    def close(self):
+        self.logic.close()
+        self.trainees.close()
+
+
+@pytest.fixture
+def lesson(scene, scenario, tmp_path):
+    room = Room(scene, scenario)
+    lesson = Class(room, tmp_path)
+    for name in ("A", "B"):
+        lesson.trainees.create(name, consent=True)
+    yield lesson
+    lesson.close()
+    room.close()
+
+
+def states(told):
+    return [each["state"] for each in told["assignments"]]
+
+
+def test_everybody_is_told_of_and_then_who_has_something_new(lesson):
+    lesson.logic.choose(SHIPPED, isForEverybody=True)
+    told = lesson.told(2)
+    assert [each["trainee"] for each in told] == ["A", "B"]
+    assert states(told[0]) == ["open"] + ["locked"] * 5
+    assert (told[0]["title"], told[0]["next"]) == ("First steps", "first-points")
+    lesson.trainees.choose("A")
+    lesson.trainees.changed.emit()
+    lesson.play("A", 2)
+    told = lesson.told(3)
+    assert (told[2]["trainee"], states(told[2])) == (
+        "A",
+        ["reached", "open", "open", "open", "locked", "locked"],
+    )
+    assert told[2]["next"] == "second-points"
+    assert len(told) == 3, "B has nothing new, and being chosen is nothing new"
+
+
+def test_a_curriculum_of_one_trainee_ends_for_this_one_alone(lesson):
+    with pytest.raises(InputError, match="must be left out; a curriculum has"):
+        lesson.logic.choose(SHIPPED.with_name("published-protocol.json"), isForEverybody=True)
+    lesson.trainees.choose("")
+    with pytest.raises(InputError, match="Choose a trainee"):
+        lesson.logic.choose(SHIPPED, isForEverybody=False)
+    assert lesson.logic.standing() is None
+    lesson.trainees.choose("B")
+    lesson.logic.choose(SHIPPED, isForEverybody=False)
+    assert lesson.logic.standing().reached == 0
+    lesson.logic.end(isForEverybody=False)
+    told = lesson.told(2)
+    assert [each["trainee"] for each in told] == ["B", "B"]
+    assert "assignments" not in told[1]
+    assert lesson.logic.standing() is None
+
+
+def test_a_simulator_that_connects_later_is_told_everything_again(lesson):
+    lesson.logic.choose(SHIPPED, isForEverybody=True)
+    before = lesson.told(2)
+    lesson.room.link.opened.emit()
+    assert json.dumps(lesson.told(4)[2:]) == json.dumps(before)
+
+
+def test_who_is_deleted_or_archived_is_told_of_as_without_a_curriculum(lesson):
+    lesson.logic.choose(SHIPPED, isForEverybody=True)
+    lesson.trainees.choose("A")
+    lesson.trainees.setArchived(True)
+    told = lesson.told(3)
+    assert (told[2]["trainee"], "assignments" in told[2]) == ("A", False)
