@@ -21,6 +21,7 @@ LONG = Seat(
     score=100.0,
     holder="headset's controllers",
     slicer=True,
+    assignments="12 von 24 erreicht · Als Nächstes: Aufgabe 4 mit dem Headset, dann Biopsie.",
 )
 CUT_OFF = """() => [...document.querySelectorAll("body *")]
   .filter((part) => part.checkVisibility() && part.clientWidth > 0)

@@ -54,6 +54,7 @@ MEMBERS: Mapping[str, Callable[[Any], Any]] = {
     "holder": _short,
     "slicer": yes_or_no,
     "language": text(12),
+    "assignments": _sentence,
     "phase": one_of(*(phase.value for phase in Phase)),
     "touched": whole_number(0, 1000),
     "rejected": whole_number(0, 1_000_000),
@@ -61,6 +62,8 @@ MEMBERS: Mapping[str, Callable[[Any], Any]] = {
     "touch": one_of(*(stage.value for stage in TouchStage)),
 }
 """What a simulator says of its seat, and how each member is checked."""
+_OF_LATER_SIMULATORS = {"assignments": ""}
+"""What an earlier one does not say, and what that means."""
 
 
 class SeatLink(str, Enum):
@@ -148,6 +151,7 @@ def checked_seat(values: Mapping[str, Any]) -> dict[str, Any]:
     Raises:
         InputError: something is missing or cannot be.
     """
+    values = {**_OF_LATER_SIMULATORS, **values}
     missing = MEMBERS.keys() - values.keys()
     if missing:
         raise InputError(f"What a simulator says of its seat lacks {', '.join(sorted(missing))}.")

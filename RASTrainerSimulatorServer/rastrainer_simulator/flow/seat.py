@@ -32,7 +32,13 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
         holder=holder,
         slicer=session.is_slicer_connected(),
         language=screen.language,
+        assignments=_assignments(session),
     )
+
+
+def _assignments(session: TrainingSession) -> str:
+    told, words = session.curriculum, session.assignment_words
+    return "" if told is None else f"{words.summary(told)} · {words.advice(told)}"
 
 
 def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text: str) -> str:

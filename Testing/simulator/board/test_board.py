@@ -252,6 +252,7 @@ def good_seat() -> dict:
         "holder": "",
         "slicer": False,
         "language": "en",
+        "assignments": "",
         "phase": "running",
         "touched": 3,
         "rejected": 1,
@@ -270,6 +271,7 @@ def good_seat() -> dict:
         *(("phase", value) for value in ("flying", None)),
         *(("touch", value) for value in ("<b>", None)),
         ("slicer", "yes"),
+        *(("assignments", value) for value in (None, "x" * 601, "\n")),
     ],
 )
 def test_a_seat_that_says_what_no_simulator_says_is_not_shown(name, value):
@@ -281,6 +283,8 @@ def test_a_seat_that_says_what_no_simulator_says_is_not_shown(name, value):
 def test_a_seat_with_too_many_warnings_shows_the_first_and_one_that_lacks_something_is_refused():
     shown = checked_seat({**good_seat(), "warnings": [str(n) for n in range(1000)], "new": 1})
     assert (len(shown["warnings"]), "new" in shown) == (8, False)
+    earlier = {k: v for k, v in good_seat().items() if k != "assignments"}
+    assert checked_seat(earlier) == good_seat()
     with pytest.raises(ValueError, match="lacks touch"):
         checked_seat({k: v for k, v in good_seat().items() if k != "touch"})
 

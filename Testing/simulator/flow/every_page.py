@@ -7,11 +7,13 @@ from concurrent.futures import Future
 from dataclasses import replace
 from types import MappingProxyType
 
-from rastrainer.protocol import Phase
+from rastrainer.protocol import MAX_ASSIGNMENTS, Phase
+from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.study.rating.forms import FORMS
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
+    assignments,
     bindings,
     errors,
     experiment,
@@ -175,6 +177,18 @@ def names_of_pages(base: type = SessionPage) -> set[str]:
     return ({base.name} if base.name else set()).union(*below)
 
 
+def with_curriculum(session) -> None:
+    """Give the trainee a curriculum with as many assignments as there may be, and long titles."""
+    told = ToldAssignment("long", "task-5", "competent", "open", 100, "hmd", "landmarks-surface")
+    others = [
+        replace(told, name=f"n{number}", state=state)
+        for number, state in enumerate(("reached", "locked") * ((MAX_ASSIGNMENTS - 1) // 2))
+    ]
+    longest = replace(told, procedure="biopsy", played=3, mark=70.0, weakest="distance")
+    session._services.curricula.take(ToldCurriculum("P07", "x" * 80, "long", (longest, *others)))
+    session.is_slicer_connected = lambda: True
+
+
 def _pages(session) -> Iterator[SessionPage]:
     keys, touch = InputDevice.KEYBOARD, ControlName.TOUCH
     for simple in (start.StartPage, start.QuitPage, start.SettingsPage):
@@ -186,7 +200,9 @@ def _pages(session) -> Iterator[SessionPage]:
     yield bindings.BindingsPage(session)
     yield bindings.ListenPage(session, keys, touch)
     yield bindings.ConflictPage(session, keys, touch, "KeyC")
+    with_curriculum(session)
     yield experiment.ExperimentPage(session)
+    yield assignments.AssignmentsPage(session)
     yield trainee_id.KeyboardPage(session, lambda *_: None)
     yield trainee_id.ClickedIdPage(session, lambda *_: None)
     yield trainee_id.CharacterPage(session, lambda *_: None, trainee_id.ROWS[0])

@@ -60,20 +60,27 @@ def test_the_menu_says_how_far_the_trainee_is_and_what_comes_next(menu):
     assert row.help == "Next: Task 2, your weakest. Most points are lost by time."
 
 
+def test_a_board_reads_where_the_trainee_stands(menu, outside):
+    told = "1 of 5 reached · Next: Task 2, your weakest. Most points are lost by time."
+    assert menu.presenter.seat().assignments == told
+    outside.has_slicer = False
+    assert menu.presenter.seat().assignments == ""
+
+
 def test_each_assignment_is_a_row_with_its_state_and_the_next_one_has_the_focus(page):
     assert page.menu.paragraphs[0] == "First steps"
     assert page.menu.focus == "assignment two"
     rows = [(item.label, item.value, item.is_enabled) for item in page.menu.items]
     assert rows == [
         ("Task 1", "reached", True),
-        ("Task 2", "1 of 3 in a row", True),
+        ("Task 2", "1 / 3", True),
         ("Task 3", "locked", False),
-        ("Task 4 with the headset", "0 of 1 in a row", True),
-        ("task-9, then none", "0 of 1 in a row", False),
+        ("Task 4 · Headset", "0 / 1", True),
+        ("task-9 · none", "0 / 1", False),
         ("Back", "", True),
     ]
     assert page.item("assignment two").help == (
-        "Reached when 3 trials in a row have 72.5 points or more, within all limits."
+        "Task 2. Reached when 3 trials in a row have 72.5 points or more, within all limits."
     )
     assert page.item("assignment three").help == "Locked. First reach: Task 2."
     assert "This head does not have it" in page.item("assignment five").help

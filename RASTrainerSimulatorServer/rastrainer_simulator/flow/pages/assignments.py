@@ -54,8 +54,8 @@ class AssignmentsPage(SessionPage):
         reason = assignment_obstacle(self.session, each)
         return MenuItem(
             _PREFIX + each.name,
-            words.title(each),
+            words.label(each),
             value=words.progress(each),
             is_enabled=not reason,
-            help=reason or words.goal(each),
+            help=reason or f"{words.title(each)}. {words.goal(each)}",
         )

@@ -57,6 +57,17 @@ class AssignmentWords:
         procedure = self._procedure_title(each.procedure)
         return self._say("assignments.with procedure", trial=trial, procedure=procedure)
 
+    def label(self, each: ToldAssignment) -> str:
+        """Return a short title for a row: the task, and the first that is special about it."""
+        if each.procedure:
+            special = self._procedure_title(each.procedure)
+        elif f"method.{each.method}" in self._texts:
+            special = self._say(f"method.{each.method}")
+        else:
+            special = self._say(f"mode.{each.mode}") if each.mode else ""
+        title = self._task_title(each.task)
+        return f"{title} · {special}" if special else title
+
     def progress(self, each: ToldAssignment) -> str:
         """Return how far the trainee is, in few characters."""
         if each.is_reached:

@@ -122,6 +122,7 @@ class Seat:
         holder: what drives the arm, "" for nothing.
         slicer: whether a Slicer is connected.
         language: BCP 47 tag of the texts.
+        assignments: where the trainee stands in a curriculum, a sentence; "" without one.
     """
 
     trainee: str = ""
@@ -134,6 +135,7 @@ class Seat:
     holder: str = ""
     slicer: bool = False
     language: str = "en"
+    assignments: str = ""
 
 
 class Presenter(Protocol):

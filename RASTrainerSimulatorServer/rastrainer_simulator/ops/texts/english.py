@@ -260,7 +260,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "assignments.summary": "{reached} of {count} reached",
         "assignments.reached": "reached",
         "assignments.locked": "locked",
-        "assignments.count": "{done} of {needed} in a row",
+        "assignments.count": "{done} / {needed}",
         "assignments.percent": "{done} %",
         "assignments.one trial": "Reached when a trial has {mark:g} points or more, within all "
         "limits.",

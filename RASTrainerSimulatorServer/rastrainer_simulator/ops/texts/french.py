@@ -374,7 +374,7 @@ _TABLE: Mapping[str, str] = {
     "assignments.summary": "{reached} sur {count} atteints",
     "assignments.reached": "atteint",
     "assignments.locked": "verrouillé",
-    "assignments.count": "{done} sur {needed} de suite",
+    "assignments.count": "{done} / {needed}",
     "assignments.percent": "{done} %",
     "assignments.one trial": "Atteint quand un essai obtient {mark:g} points ou plus, sans "
     "dépasser aucune limite.",

@@ -374,7 +374,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "assignments.summary": "{reached} von {count} erreicht",
         "assignments.reached": "erreicht",
         "assignments.locked": "gesperrt",
-        "assignments.count": "{done} von {needed} in Folge",
+        "assignments.count": "{done} / {needed}",
         "assignments.percent": "{done} %",
         "assignments.one trial": "Erreicht, wenn ein Versuch mindestens {mark:g} Punkte hat, "
         "innerhalb aller Grenzen.",
@@ -410,7 +410,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "method.fiducials": "markierte Punkte",
         "method.landmarks": "Landmarken des Gesichts",
         "method.surface": "Spur über die Haut",
-        "method.landmarks-surface": "Landmarken, dann eine Spur",
+        "method.landmarks-surface": "Landmarken, dann Spur",
         "experiment.procedure": "Nach den Berührungen",
         "experiment.procedure help": "Was auf die Registrierung folgt: nichts, oder eine Prozedur, "
         "in der nach ihr ein Instrument gesetzt wird. Der Probelauf hat keine.",

@@ -369,7 +369,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "assignments.summary": "{reached} de {count} alcanzados",
         "assignments.reached": "alcanzado",
         "assignments.locked": "bloqueado",
-        "assignments.count": "{done} de {needed} seguidos",
+        "assignments.count": "{done} / {needed}",
         "assignments.percent": "{done} %",
         "assignments.one trial": "Se alcanza cuando un ensayo tiene {mark:g} puntos o más, dentro "
         "de todos los límites.",

@@ -28,6 +28,8 @@ export interface SeatNews {
   score: number | null;
   holder: string;
   slicer: boolean;
+  /** Where the trainee stands in a curriculum; "" without one. */
+  assignments: string;
   phase: Phase;
   touched: number;
   rejected: number;
@@ -137,6 +139,7 @@ function factsOf(seat: SeatNews): [string, string][] {
   if (seat.task !== "") {
     facts.push([say("points"), `${seat.touched} / ${seat.count}`], [say("refused"), String(seat.rejected)]);
   }
+  if (seat.assignments !== "") facts.push([say("assignments"), seat.assignments]);
   facts.push(
     [say("score"), seat.score === null ? say("none") : `${figure(seat.score, 1)} / 100`],
     [say("driven"), seat.holder || say("none")],

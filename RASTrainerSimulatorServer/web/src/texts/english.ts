@@ -92,6 +92,7 @@ export const BOARD = {
   remove: "Remove",
   repair: "Pair again",
   nobody: "Nobody",
+  assignments: "Assignments",
   score: "Last score",
   time: "Time",
   points: "Points",

@@ -93,6 +93,7 @@ export const BOARD: BoardTexts = french({
   remove: "Enlever",
   repair: "Appairer à nouveau",
   nobody: "Personne",
+  assignments: "Objectifs",
   score: "Dernier score",
   time: "Temps",
   points: "Points",

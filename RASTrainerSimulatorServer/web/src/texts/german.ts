@@ -92,6 +92,7 @@ export const BOARD: BoardTexts = {
   remove: "Entfernen",
   repair: "Neu koppeln",
   nobody: "Niemand",
+  assignments: "Aufträge",
   score: "Letzte Punktzahl",
   time: "Zeit",
   points: "Punkte",

@@ -92,6 +92,7 @@ export const BOARD: BoardTexts = {
   remove: "Quitar",
   repair: "Emparejar de nuevo",
   nobody: "Nadie",
+  assignments: "Objetivos",
   score: "Última puntuación",
   time: "Tiempo",
   points: "Puntos",
