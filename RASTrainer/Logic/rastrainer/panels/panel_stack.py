@@ -7,6 +7,7 @@ from typing import Any
 
 import slicer
 
+from rastrainer.panels.curriculum_panel import CurriculumPanel
 from rastrainer.panels.landmarks_panel import LandmarksPanel
 from rastrainer.panels.methods_panel import MethodsPanel
 from rastrainer.panels.new_scenario_panel import NewScenarioPanel
@@ -34,6 +35,7 @@ SECTIONS = (
     NewScenarioPanel,
     ProcedurePlanPanel,
     StudyPanel,
+    CurriculumPanel,
     TrainingPanel,
     RegistrationPanel,
     PlanPanel,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Mapping
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -33,6 +34,7 @@ class CurriculumLogic:
         self._trainees = trainees
         self._link = link
         self._told: dict[str, ToldCurriculum] = {}
+        self._standings: dict[str, CurriculumStanding] = {}
         self._stamps: dict[str, tuple[int | None, ...]] = {}
         self._followed: Study | None = None
         trainees.changed.connect(self._followTrainees)
@@ -44,14 +46,12 @@ class CurriculumLogic:
         self._link.opened.disconnect(self._tellAll)
 
     def standing(self) -> CurriculumStanding | None:
-        """Return where the chosen trainee stands; None without a curriculum, or a trainee.
+        """Return where the chosen trainee stands; None without a curriculum, or a trainee."""
+        return self._standings.get(self._trainees.chosen)
 
-        Raises:
-            InputError: the study cannot be read.
-        """
-        if self._trainees.chosenTrainee() is None:
-            return None
-        return CurriculumStore(self._trainees.study).standing(self._trainees.chosen)
+    def standings(self) -> Mapping[str, CurriculumStanding]:
+        """Return where each active trainee with a curriculum stands, by pseudonym."""
+        return dict(sorted(self._standings.items()))
 
     def choose(self, path: Path, isForEverybody: bool) -> Curriculum:
         """Have the chosen trainee, or everybody, follow a file's curriculum from now on.
@@ -102,6 +102,9 @@ class CurriculumLogic:
 
     def _tell(self, name: str, standing: CurriculumStanding | None) -> None:
         told = ToldCurriculum.of(name, standing)
+        self._standings.pop(name, None)
+        if standing is not None:
+            self._standings[name] = standing
         if self._told.get(name, ToldCurriculum(name)) == told:
             return
         self._told[name] = told

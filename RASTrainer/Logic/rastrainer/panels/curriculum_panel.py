@@ -1,0 +1,110 @@
+"""The section Curriculum: what trainees are to reach, and where each of them stands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import slicer
+
+from rastrainer.number_text import fixed
+from rastrainer.panels.plain_text import toolTip
+from rastrainer.panels.widgets import fillTable, setText, setUsable
+from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.translation import _
+from rastrainer.study.curriculum.standing import AssignmentStanding
+from rastrainer.study.curriculum.wording import (
+    advice_of,
+    progress_of_assignment,
+    state_of,
+    title_of,
+)
+
+
+class CurriculumPanel:
+    """Wires the section's widgets to the session."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        self._ui = ui
+        self._session = session
+        self._logic = session.curriculum
+        ui.setCurriculumButton.connect("clicked()", self.setCurriculum)
+        ui.endCurriculumButton.connect("clicked()", self.endCurriculum)
+        ui.curriculumPathLineEdit.connect("currentPathChanged(QString)", self._showButtons)
+        ui.everybodyCheckBox.connect("toggled(bool)", self._showButtons)
+        self._logic.changed.connect(self._show)
+        self._show()
+
+    def close(self) -> None:
+        """Stop listening to the session."""
+        self._logic.changed.disconnect(self._show)
+
+    def setCurriculum(self) -> None:
+        """Have the chosen trainee, or everybody, follow the chosen file's curriculum."""
+        with slicer.util.tryWithErrorDisplay(_("The curriculum was not set.")):
+            path = Path(self._ui.curriculumPathLineEdit.currentPath)
+            self._logic.choose(path, self._ui.everybodyCheckBox.checked)
+
+    def endCurriculum(self) -> None:
+        """Have the chosen trainee, or everybody, follow no curriculum, after asking."""
+        with slicer.util.tryWithErrorDisplay(_("The curriculum was not ended.")):
+            isForEverybody = self._ui.everybodyCheckBox.checked
+            who = _("everybody") if isForEverybody else self._session.trainees.chosen
+            question = _(
+                "End the curriculum of {who}? Trials stay, and count again if it is set again."
+            ).format(who=who)
+            if slicer.util.confirmYesNoDisplay(toolTip(question), _("End the curriculum")):
+                self._logic.end(isForEverybody)
+
+    def _show(self) -> None:
+        ui, standing = self._ui, self._logic.standing()
+        if standing is None:
+            setText(ui.curriculumText, _("No curriculum: trainees choose what they practice."))
+        else:
+            text = _("{title}: {reached} of {count} reached. {advice}")
+            values = {"reached": standing.reached, "count": len(standing.standings)}
+            title, advice = standing.curriculum.title, advice_of(standing)
+            setText(ui.curriculumText, text.format(title=title, advice=advice, **values))
+        rows = () if standing is None else standing.standings
+        names = [each.assignment.name for each in rows]
+        fillTable(ui.assignmentsTable, map(_row, rows), names)
+        ui.assignmentsTable.visible = standing is not None
+        everybody = self._logic.standings()
+        fillTable(
+            ui.classTable,
+            (
+                (name, f"{each.reached} / {len(each.standings)}", advice_of(each))
+                for name, each in everybody.items()
+            ),
+        )
+        ui.classTable.visible = bool(everybody)
+        self._showButtons()
+
+    def _showButtons(self, *_arguments: Any) -> None:
+        ui = self._ui
+        isSomebody = ui.everybodyCheckBox.checked or bool(self._session.trainees.chosen)
+        nobody = _("Choose a trainee in the section Trainees first.")
+        setUsable(
+            ui.setCurriculumButton,
+            isSomebody and bool(ui.curriculumPathLineEdit.currentPath),
+            _("Follow this curriculum from now on."),
+            _("Choose the file of a curriculum first.") if isSomebody else nobody,
+        )
+        hasOne = bool(self._logic.standings()) and isSomebody
+        if not ui.everybodyCheckBox.checked:
+            hasOne = self._logic.standing() is not None
+        setUsable(
+            ui.endCurriculumButton,
+            hasOne,
+            _("Follow no curriculum from now on."),
+            _("There is no curriculum to end.") if isSomebody else nobody,
+        )
+
+
+def _row(standing: AssignmentStanding) -> tuple[str, str, str, str]:
+    return (
+        title_of(standing.assignment),
+        state_of(standing),
+        progress_of_assignment(standing),
+        "–" if standing.mean is None else fixed(standing.mean, 0),
+    )

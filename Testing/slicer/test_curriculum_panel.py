@@ -1,0 +1,71 @@
+"""The section Curriculum by its buttons alone: set for one or all, shown, ended."""
+
+import uuid
+from pathlib import Path
+
+import pytest
+
+from rastrainer.study.database.study import Study
+from Testing.domain.trial.trial_records import gentle_score, make_record
+
+SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "example-curriculum.json"
+
+
+@pytest.fixture
+def panel(host):
+    """The module with the sections Trainees and Curriculum open, and the trainees T001 and T002."""
+    host.open()
+    for section in ("trainees", "curriculum"):
+        host.find(f"{section}CollapsibleButton").collapsed = False
+    host.process_events()
+    host.press("createTraineeButton")
+    host.press("createTraineeButton")
+    return host
+
+
+def cells(host, name):
+    table = host.find(name)
+    columns = range(table.columnCount)
+    return [[table.item(row, column).text() for column in columns] for row in range(table.rowCount)]
+
+
+def test_a_curriculum_is_set_for_a_trainee_shown_and_ended(panel):
+    assert panel.text("curriculumText") == "No curriculum: trainees choose what they practice."
+    with pytest.raises(AssertionError, match="Choose the file of a curriculum first"):
+        panel.press("setCurriculumButton")
+    panel.type("curriculumPathLineEdit", str(SHIPPED.with_name("published-protocol.json")))
+    panel.press("setCurriculumButton")
+    assert "must be left out; a curriculum has" in panel.messages[-1].text
+    panel.type("curriculumPathLineEdit", str(SHIPPED))
+    panel.press("setCurriculumButton")
+    assert panel.text("curriculumText") == (
+        "First steps: 0 of 6 reached. Next: Task 1, which was not played yet."
+    )
+    rows = cells(panel, "assignmentsTable")
+    assert rows[0] == ["Task 1", "open", "0 of 2 trials in a row at 70 or more", "–"]
+    assert rows[1][1] == "locked until first-points is reached"
+    assert [row[:2] for row in cells(panel, "classTable")] == [["T002", "0 / 6"]]
+    panel.answer("End the curriculum of T002?", "Yes")
+    panel.press("endCurriculumButton")
+    assert panel.text("curriculumText").startswith("No curriculum")
+    with pytest.raises(AssertionError, match="There is no curriculum to end"):
+        panel.press("endCurriculumButton")
+
+
+def test_a_curriculum_for_everybody_shows_the_class_and_follows_what_arrives(panel):
+    panel.type("curriculumPathLineEdit", str(SHIPPED))
+    panel.choose("traineeComboBox", "Choose a trainee")
+    with pytest.raises(AssertionError, match="Choose a trainee in the section"):
+        panel.press("setCurriculumButton")
+    panel.press("everybodyCheckBox")
+    panel.press("setCurriculumButton")
+    assert [row[0] for row in cells(panel, "classTable")] == ["T001", "T002"]
+    panel.choose("traineeComboBox", "T001")
+    with Study.open(panel.find("studyPathLineEdit").currentPath) as study:
+        for _ in range(2):
+            record = make_record(trialId=str(uuid.uuid4()), trainee="T001")
+            study.add_trial(record, score=gentle_score(60.0, 0.2))
+    panel.widget.logic.session.trainees.changed.emit()
+    panel.process_events()
+    assert cells(panel, "assignmentsTable")[0][:2] == ["Task 1", "reached"]
+    assert cells(panel, "classTable")[0][1] == "1 / 6"
