@@ -10,7 +10,7 @@ from rastrainer.registration.registration import register
 from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
 from rastrainer.trial.scoring import score_trial
 from rastrainer.trial.trueness import common_bias
-from Testing.error_rates import played
+from Testing.error_rates import curricula, played
 from Testing.error_rates.biased_aim import scored
 from Testing.error_rates.hands import TASKS, scenario_of
 from Testing.error_rates.page import PAGE, SETS, TABLES, printed, with_table
@@ -18,6 +18,8 @@ from Testing.error_rates.played import COLIN27, WAYS, all_keys, play, seeds, sto
 from Testing.error_rates.registered import common_biases, errors_along_skin, registered_errors
 
 FEW = {
+    "goals": 60,
+    "next task": 40,
     "agreement": 40,
     "biased aim": 5,
     "methods": 2,
@@ -83,6 +85,15 @@ def test_a_table_is_replaced_and_nothing_else_changes():
     assert with_table("groups", once, "| new |") == once
     with pytest.raises(ValueError, match="one place for the table 'studies'"):
         with_table("studies", text, "| new |")
+
+
+def test_practicing_the_weakest_task_takes_no_more_trials_than_taking_turns():
+    further = [
+        curricula.course(curricula.next_best, seed).trials
+        - curricula.course(curricula.by_turns, seed).trials
+        for seed in range(40)
+    ]
+    assert np.mean(further) <= 3.3 * np.std(further, ddof=1) / np.sqrt(len(further))
 
 
 @pytest.mark.soak

@@ -21,6 +21,7 @@ from rastrainer.procedure.plan import read_procedure
 from rastrainer.scenario.package import checked_scenario, unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import read_setup
+from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.study_notes import read_notes
@@ -86,6 +87,9 @@ JSON_FAMILIES = {
     "markups": Family(read_markups, lambda _: TASK.read_bytes()),
     "study protocol": Family(
         read_study_protocol, lambda _: (STUDIES / "published-protocol.json").read_bytes()
+    ),
+    "curriculum": Family(
+        read_curriculum, lambda _: (STUDIES / "example-curriculum.json").read_bytes()
     ),
     "study notes": Family(read_notes, lambda _: (STUDIES / "published.json").read_bytes()),
     "bindings": Family(read_bindings, _saved(lambda path: write_bindings(path, DEFAULT_BINDINGS))),

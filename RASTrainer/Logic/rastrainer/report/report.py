@@ -17,6 +17,7 @@ from rastrainer.report.elements.comparisons import ModeComparison, compare_modes
 from rastrainer.report.elements.markup import bullets, page, paragraph, section
 from rastrainer.report.elements.scores import versions_note, with_ctps, with_one_score_version
 from rastrainer.report.sections.calibration import calibration
+from rastrainer.report.sections.curricula import curricula
 from rastrainer.report.sections.learning import learning
 from rastrainer.report.sections.method_comparison import method_comparison
 from rastrainer.report.sections.methods import limits, methods
@@ -96,6 +97,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         learning(data),
         variation(data),
         passing(data),
+        curricula(data),
         calibration(data),
         compared_methods,
         skin,

@@ -115,6 +115,7 @@ def chance_of_successes(count: int, trials: int, adequate: float, inadequate: fl
     return signal_probability(inadequate, trials, adequate, inadequate, count * success)
 
 
+@functools.lru_cache(maxsize=256)
 def signal_probability(
     failure_rate: float, trials: int, adequate: float, inadequate: float, limit: float
 ) -> float:

@@ -11,6 +11,8 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
+from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.study import Study
@@ -76,6 +78,7 @@ class StudyData:
         has_order: Whether the order of the trials is known.
         gap: What is missing of an incomplete virtual cohort, as a sentence; else "".
         aborted: Aborted trials, including trial runs, by trainee in order.
+        standings: Where active trainees stand in their curricula, by pseudonym.
         ratings: Forms that raters have filled in for replays of the trials.
     """
 
@@ -93,6 +96,7 @@ class StudyData:
     gap: str = ""
     aborted: tuple[StoredAborted, ...] = ()
     ratings: tuple[Rating, ...] = ()
+    standings: Mapping[str, CurriculumStanding] = field(default_factory=dict)
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -212,6 +216,11 @@ def _from_database(path: Path) -> StudyData:
             aborted=tuple(
                 stored for name in sorted(consenting) for stored in AbortedTrials(study).of(name)
             ),
+            standings={
+                name: standing
+                for name, standing in CurriculumStore(study).standings().items()
+                if name in consenting
+            },
             ratings=tuple(
                 rating for rating in RatingStore(study).ratings() if rating.trial_id in rateable
             ),

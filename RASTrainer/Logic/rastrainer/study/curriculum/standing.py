@@ -23,9 +23,7 @@ from rastrainer.trial.trainee_progress import competence_of
 PassMarkOf = Callable[[str], "float | None"]
 """From a version of the score to the mark that passes; None where there is none."""
 RECENT = 3
-"""Of the latest trials of an assignment, by which it is compared with others."""
-PRIOR_TRIALS, PRIOR_SCORE = 1.0, 50.0
-"""A score of a trial at both references, and as how many trials it counts where there are few."""
+"""How many of the latest trials of an assignment it is compared with others by."""
 WHOLE_WAY = 100
 
 
@@ -57,15 +55,12 @@ class AssignmentStanding:
 
     @property
     def shortfall(self) -> float:
-        """Points from the expected score up to the mark; infinite before the first trial.
+        """Points from the latest mean up to the mark; infinite before the first trial.
 
-        With few trials, the expected score is drawn toward `PRIOR_SCORE`.
+        Drawing the mean of few trials toward that of all improved nothing in simulated courses
+        (`Testing/error_rates/curricula.py`).
         """
-        if self.mean is None or self.mark is None:
-            return math.inf
-        known = min(self.played, RECENT)
-        expected = (known * self.mean + PRIOR_TRIALS * PRIOR_SCORE) / (known + PRIOR_TRIALS)
-        return self.mark - expected
+        return math.inf if self.mean is None or self.mark is None else self.mark - self.mean
 
 
 @dataclass(frozen=True)
@@ -84,7 +79,7 @@ class CurriculumStanding:
     def next_best(self) -> AssignmentStanding | None:
         """The assignment to practice next; None when no open one is left.
 
-        It is the weakest of the open ones: the one whose expected score is farthest below its mark;
+        It is the weakest of the open ones: the one whose latest mean is farthest below its mark;
         one that was never played comes first, and of equal ones the first of the curriculum.
         """
         is_open = [each for each in self.standings if each.state is AssignmentState.OPEN]
@@ -137,16 +132,16 @@ def _standing(
     comparable = of_version(present)
     recent = comparable[-RECENT:]
     needed = assignment.trials if assignment.goal is GoalKind.SCORE else WHOLE_WAY
-    locked = AssignmentState.LOCKED if missing else AssignmentState.OPEN
+    unlocked = AssignmentState.REACHED if is_reached else AssignmentState.OPEN
     return AssignmentStanding(
         assignment,
-        AssignmentState.REACHED if is_reached else locked,
+        AssignmentState.LOCKED if missing else unlocked,
         needed if is_reached else done,
         needed,
         mark_of(present),
         len(comparable),
         fmean(trial.score for trial in recent) if recent else None,
-        () if is_reached else missing,
+        missing,
         _weakest([trial for trial in comparable if not trial.is_aborted][-RECENT:]),
     )
 

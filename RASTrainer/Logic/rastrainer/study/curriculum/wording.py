@@ -30,13 +30,21 @@ def title_of(assignment: Assignment) -> str:
 
 def progress_of_assignment(standing: AssignmentStanding) -> str:
     """Return how far a trainee is, such as "1 of 3 trials in a row at 70 or more"."""
+    if standing.mark is not None and standing.assignment.goal is GoalKind.COMPETENT:
+        return f"{standing.done} % of the way to {goal_of(standing)}"
+    done = "" if standing.mark is None else f"{standing.done} of "
+    return f"{done}{goal_of(standing)}"
+
+
+def goal_of(standing: AssignmentStanding) -> str:
+    """Return the goal, such as "3 trials in a row at 70 or more"."""
     if standing.mark is None:
         return "no pass mark for the present score"
     mark = f"{standing.mark:g} or more"
     if standing.assignment.goal is GoalKind.COMPETENT:
-        return f"{standing.done} % of the way to competence (LC-CUSUM), a trial passes at {mark}"
+        return f"competence (LC-CUSUM), a trial passes at {mark}"
     trials = "trial" if standing.needed == 1 else "trials in a row"
-    return f"{standing.done} of {standing.needed} {trials} at {mark}"
+    return f"{standing.needed} {trials} at {mark}"
 
 
 def state_of(standing: AssignmentStanding) -> str:

@@ -1,0 +1,204 @@
+"""How often a curriculum calls a goal reached, and how well it says what to practice next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+import numpy as np
+
+from rastrainer.number_text import fixed
+from rastrainer.protocol import AssignmentState, GoalKind
+from rastrainer.study.curriculum.counted_trials import CountedTrial
+from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
+from rastrainer.study.curriculum.standing import (
+    AssignmentStanding,
+    CurriculumStanding,
+    standing_in,
+)
+from rastrainer.trial.scoring import PASS_MARK, SCORE_VERSION
+from Testing.error_rates.measured import Measured, share_of
+
+GOALS_HEADER = ("goal, and trainee", "called reached")
+WEAKEST_HEADER = (
+    "known so far",
+    "the weakest task is named",
+    "farther from it, points, mean",
+    "any task",
+)
+CHOICES_HEADER = (
+    "what is practiced next",
+    "all reached within 40 trials",
+    "trials until all are reached, mean",
+    "weakest task after 20 trials, points",
+)
+TASKS = 5
+MOST_TRIALS = 120
+START, TASK_SD, TRAINEE_SD, TRIAL_SD, CEILING = 52.0, 12.0, 6.0, 8.0, 88.0
+LEARNING, TRANSFER = 0.12, 0.03
+"""Share of what is left up to the ceiling that a trial adds to its task, and to each other one."""
+CURRICULUM = Curriculum(
+    "c",
+    "C",
+    tuple(Assignment(str(task), f"task-{task}", trials=3) for task in range(1, TASKS + 1)),
+)
+
+
+def goals(sets: int) -> list[Measured]:
+    """Return how often trainees who fail as often, and learn nothing, reach each goal."""
+    row = {count: Assignment("one", "task-1", trials=count) for count in (1, 2, 3, 5)}
+    competent = Assignment("one", "task-1", goal=GoalKind.COMPETENT, trials=0)
+    found = []
+    for number, (assignment, what) in enumerate(
+        (
+            *(
+                (each, f"{count} in a row" if count > 1 else "1 trial")
+                for count, each in row.items()
+            ),
+            (competent, "LC-CUSUM"),
+        )
+    ):
+        for failing in (0.4, 0.05):
+            for trials in (10, 30, 60):
+                random = np.random.default_rng((5, number, trials, round(100 * failing)))
+                reached = [_is_reached(assignment, failing, trials, random) for _ in range(sets)]
+                case = f"{what}, fails in {100 * failing:.0f} of 100, {trials} trials"
+                is_asked = assignment is competent and trials == 30
+                limits = {"at_most": 0.06} if failing > 0.1 else {"at_least": 0.8}
+                found.append(
+                    Measured(case, share_of(reached), sets, **(limits if is_asked else {}))
+                )
+    return found
+
+
+def _is_reached(
+    assignment: Assignment, failing: float, trials: int, random: np.random.Generator
+) -> bool:
+    passed = random.random(trials) >= failing
+    played = [_trial("task-1", 80.0 if each else 40.0) for each in passed]
+    return _stand(Curriculum("c", "C", (assignment,)), played).reached == 1
+
+
+def _trial(task: str, score: float) -> CountedTrial:
+    return CountedTrial(task, "desktop", score=score, acceptable=True, version=SCORE_VERSION)
+
+
+def _stand(curriculum: Curriculum, trials: Sequence[CountedTrial]) -> CurriculumStanding:
+    return standing_in(curriculum, trials, lambda _version: PASS_MARK)
+
+
+Choice = Callable[[CurriculumStanding, np.random.Generator], AssignmentStanding]
+
+
+def _open(standing: CurriculumStanding) -> list[AssignmentStanding]:
+    return [each for each in standing.standings if each.state is AssignmentState.OPEN]
+
+
+def next_best(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
+    """Choose as the product does."""
+    found = standing.next_best
+    assert found is not None
+    return found
+
+
+def by_turns(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
+    """Choose the one that was played least."""
+    return min(_open(standing), key=lambda each: each.played)
+
+
+def at_random(standing: CurriculumStanding, random: np.random.Generator) -> AssignmentStanding:
+    """Choose any."""
+    is_open = _open(standing)
+    return is_open[random.integers(len(is_open))]
+
+
+def in_order(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
+    """Choose the first until it is reached."""
+    return _open(standing)[0]
+
+
+CHOICES: dict[str, Choice] = {
+    "next best task": next_best,
+    "by turns": by_turns,
+    "at random": at_random,
+    "in order, each until it is reached": in_order,
+}
+
+
+def weakest(sets: int) -> list[Measured]:
+    """Return how often the truly weakest task is named after as many trials of each."""
+    found = []
+    for count in (1, 2, 3, 5):
+        random = np.random.default_rng((7, count))
+        hits, missed, by_chance = [], [], []
+        for _ in range(sets):
+            skill = _skill(random)
+            played = [_play(task, skill, random) for task in range(TASKS) for _ in range(count)]
+            best = next_best(_stand(CURRICULUM, played), random)
+            chosen = int(best.assignment.name) - 1
+            hits.append(chosen == int(np.argmin(skill)))
+            missed.append(skill[chosen] - skill.min())
+            by_chance.append(skill.mean() - skill.min())
+        case = f"{count} trial{'' if count == 1 else 's'} of each of {TASKS} tasks"
+        beside = (fixed(fmean(missed), 1), fixed(fmean(by_chance), 1))
+        found.append(Measured(case, share_of(hits), sets, at_least=0.5, beside=beside))
+    return found
+
+
+@dataclass(frozen=True)
+class Course:
+    """What became of a simulated learner.
+
+    Attributes:
+        trials: Until all goals were reached, or `MOST_TRIALS`.
+        weakest: True mean score of the weakest task after 20 trials.
+    """
+
+    trials: int
+    weakest: float
+
+
+def course(choose: Choice, seed: int) -> Course:
+    """Return the course of a learner with weak tasks of their own."""
+    random = np.random.default_rng((6, seed))
+    skill = _skill(random)
+    played: list[CountedTrial] = []
+    after_some = float(skill.min())
+    while len(played) < MOST_TRIALS:
+        standing = _stand(CURRICULUM, played)
+        if standing.reached == TASKS:
+            break
+        chosen = int(choose(standing, random).assignment.name) - 1
+        played.append(_play(chosen, skill, random))
+        gain = np.full(TASKS, TRANSFER)
+        gain[chosen] = LEARNING
+        skill = skill + gain * (CEILING - skill)
+        if len(played) <= 20:
+            after_some = float(skill.min())
+    return Course(len(played), after_some)
+
+
+def choices(sets: int) -> list[Measured]:
+    """Return how each way of choosing does with the same learners."""
+    found = []
+    for name, choose in CHOICES.items():
+        courses = [course(choose, seed) for seed in range(sets)]
+        within = share_of([each.trials <= 40 for each in courses])
+        beside = (
+            fixed(fmean(each.trials for each in courses), 1),
+            fixed(fmean(each.weakest for each in courses), 1),
+        )
+        asked = 0.8 if choose is next_best else None
+        found.append(Measured(name, within, sets, at_least=asked, beside=beside))
+    return found
+
+
+def _skill(random: np.random.Generator) -> np.ndarray:
+    """Return a learner's true mean score in each task."""
+    return START + random.normal(0, TRAINEE_SD) + random.normal(0, TASK_SD, TASKS)
+
+
+def _play(task: int, skill: np.ndarray, random: np.random.Generator) -> CountedTrial:
+    score = float(np.clip(random.normal(skill[task], TRIAL_SD), 1.0, 100.0))
+    return _trial(f"task-{task + 1}", score)
