@@ -6,7 +6,12 @@ import secrets
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.study.curriculum.counted_trials import CountedTrial
+from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
+from rastrainer.study.curriculum.standing import standing_in
+from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.trial.scoring import SCORE_VERSION
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.simulator.net.views.served import ViewClient
 
@@ -30,7 +35,26 @@ def enabled(screen):
     return [item["name"] for item in items if "task" in item["name"] and item["is_enabled"]]
 
 
-def test_the_trainees_menu_offers_what_slicer_sends_of_a_study(loop_thread, tmp_path):
+TWO = Curriculum(
+    "c",
+    "C",
+    (Assignment("one", "task-1"), Assignment("two", "task-2", after=("one",))),
+)
+PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True, version=SCORE_VERSION)
+
+
+def told(*trials):
+    standing = standing_in(TWO, trials, lambda _version: 70.0)
+    return ToldCurriculum.of("P08", standing).arguments()
+
+
+def states(screen):
+    return [item["value"] for item in screen["menu"]["items"] if item["value"]]
+
+
+def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curriculum(
+    loop_thread, tmp_path
+):
     key = secrets.token_hex(32)
     hello = {"protocolVersion": PROTOCOL_VERSION, "client": "Slicer"}
     step = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
@@ -55,3 +79,14 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study(loop_thread, tmp_
         assert "All steps of the study are done" in screen["menu"]["paragraphs"][0]
         refused = slicer.send_command("StudyStep", {"trainee": "P07", "kind": "dance"}, timeout=60)
         assert "kind must be one of questionnaire, trial-run" in refused.error
+        assert slicer.send_command("Curriculum", told(), timeout=60).ok
+        view.send({"type": "text", "name": "trainee", "value": "P08"})
+        screen_where(view, lambda screen: "0 of 2 reached" in states(screen))
+        assert states(go_to(view, "assignments", "assignments")) == ["0 / 1", "locked"]
+        assert slicer.send_command("Curriculum", told(PASSED), timeout=60).ok
+        screen = screen_where(view, lambda screen: "reached" in states(screen))
+        assert states(screen) == ["reached", "0 / 1"]
+        refused = slicer.send_command(
+            "Curriculum", {"trainee": "P08", "assignments": [{}]}, timeout=60
+        )
+        assert 'An assignment needs the key "name"' in refused.error

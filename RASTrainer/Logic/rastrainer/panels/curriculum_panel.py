@@ -12,10 +12,11 @@ from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import fillTable, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
-from rastrainer.study.curriculum.standing import AssignmentStanding
+from rastrainer.study.curriculum.standing import AssignmentStanding, CurriculumStanding
 from rastrainer.study.curriculum.wording import (
     advice_of,
     progress_of_assignment,
+    short_progress_of,
     state_of,
     title_of,
 )
@@ -66,18 +67,16 @@ class CurriculumPanel:
             title, advice = standing.curriculum.title, advice_of(standing)
             setText(ui.curriculumText, text.format(title=title, advice=advice, **values))
         rows = () if standing is None else standing.standings
-        names = [each.assignment.name for each in rows]
-        fillTable(ui.assignmentsTable, map(_row, rows), names)
-        ui.assignmentsTable.visible = standing is not None
         everybody = self._logic.standings()
+        ui.assignmentsTable.visible, ui.classTable.visible = bool(rows), bool(everybody)
+        fillTable(ui.assignmentsTable, map(_row, rows), list(map(_tip, rows)))
         fillTable(
             ui.classTable,
             (
-                (name, f"{each.reached} / {len(each.standings)}", advice_of(each))
+                (name, f"{each.reached} / {len(each.standings)}", _next(each))
                 for name, each in everybody.items()
             ),
         )
-        ui.classTable.visible = bool(everybody)
         self._showButtons()
 
     def _showButtons(self, *_arguments: Any) -> None:
@@ -101,10 +100,19 @@ class CurriculumPanel:
         )
 
 
-def _row(standing: AssignmentStanding) -> tuple[str, str, str, str]:
+def _row(standing: AssignmentStanding) -> tuple[str, str, str]:
     return (
         title_of(standing.assignment),
-        state_of(standing),
-        progress_of_assignment(standing),
+        short_progress_of(standing),
         "–" if standing.mean is None else fixed(standing.mean, 0),
     )
+
+
+def _tip(standing: AssignmentStanding) -> str:
+    name, state = standing.assignment.name, state_of(standing)
+    return f"{name}: {state}, {progress_of_assignment(standing)}"
+
+
+def _next(standing: CurriculumStanding) -> str:
+    best = standing.next_best
+    return "–" if best is None else title_of(best.assignment)

@@ -92,6 +92,7 @@ export const BOARD: BoardTexts = chinese({
   remove: "移除",
   repair: "重新配对",
   nobody: "无人",
+  assignments: "训练目标",
   score: "上次得分",
   time: "时间",
   points: "点",

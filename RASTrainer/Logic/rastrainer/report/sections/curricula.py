@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rastrainer.protocol import AssignmentState, GoalKind
 from rastrainer.report.elements.markup import bullets, heading, paragraph, section, table
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import AssignmentStanding, CurriculumStanding
-from rastrainer.study.curriculum.wording import goal_of, title_of
+from rastrainer.study.curriculum.wording import goal_of, short_progress_of, title_of
 from rastrainer.study.study_data import StudyData
 
 _NOTE = (
@@ -37,20 +36,12 @@ def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStandin
             name,
             str(sum(each.played for each in standing.standings)),
             f"{standing.reached} of {len(standing.standings)}",
-            *map(_cell, standing.standings),
+            *map(short_progress_of, standing.standings),
         ]
         for name, standing in found.items()
     ]
     goals = [f"{each.assignment.name}: {_goal(each)}" for each in first.standings]
     return heading(curriculum.title) + table([header], rows) + bullets(goals)
-
-
-def _cell(standing: AssignmentStanding) -> str:
-    if standing.state is not AssignmentState.OPEN:
-        return standing.state.value
-    if standing.assignment.goal is GoalKind.COMPETENT:
-        return f"{standing.done} %"
-    return f"{standing.done} of {standing.needed}"
 
 
 def _goal(standing: AssignmentStanding) -> str:

@@ -65,7 +65,7 @@ def counted_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[Coun
     """
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
-        "SELECT started_utc, task, mode, "
+        "SELECT started_utc, trials.stored_utc, task, mode, "
         "(SELECT score_json FROM scores WHERE scores.trial_id = trials.trial_id "
         "ORDER BY scores.id DESC LIMIT 1), "
         "(SELECT outcome_json FROM procedure_outcomes "
@@ -75,16 +75,16 @@ def counted_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[Coun
         (pseudonym, TRIAL_RUN),
     )
     timed = [
-        (moment(started), _scored(task, mode, score, outcome))
-        for started, task, mode, score, outcome in rows
+        (moment(started), stored, _scored(task, mode, score, outcome))
+        for started, stored, task, mode, score, outcome in rows
         if score is not None
     ]
     timed += [
-        (moment(stored.record.started_utc), _aborted(stored.record))
+        (moment(stored.record.started_utc), "", _aborted(stored.record))
         for stored in stored_of(connection, pseudonym)
         if stored.record.counts_as_failed
     ]
-    return tuple(trial for _when, trial in sorted(timed, key=lambda each: each[0]))
+    return tuple(trial for *_when, trial in sorted(timed, key=lambda each: each[:2]))
 
 
 def _scored(task: str, mode: str, score_json: str, outcome_json: str | None) -> CountedTrial:

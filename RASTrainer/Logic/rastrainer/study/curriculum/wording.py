@@ -47,6 +47,15 @@ def goal_of(standing: AssignmentStanding) -> str:
     return f"{standing.needed} {trials} at {mark}"
 
 
+def short_progress_of(standing: AssignmentStanding) -> str:
+    """Return the state for a narrow column, of an open assignment how far a trainee is."""
+    if standing.state is not AssignmentState.OPEN:
+        return standing.state.value
+    if standing.assignment.goal is GoalKind.COMPETENT:
+        return f"{standing.done} %"
+    return f"{standing.done} of {standing.needed}"
+
+
 def state_of(standing: AssignmentStanding) -> str:
     """Return the state, and what a locked assignment waits for, by name."""
     if standing.state is not AssignmentState.LOCKED:
