@@ -89,7 +89,7 @@ class AssignmentWords:
     def gate(self, told: ToldCurriculum, each: ToldAssignment) -> str:
         """Return what a locked assignment waits for."""
         missing = [found for name in each.missing if (found := told.find(name)) is not None]
-        names = ", ".join(self.title(one) for one in missing) or "–"
+        names = self._texts.listed(self.title(one) for one in missing) or "–"
         return self._say("assignments.gate", assignments=names)
 
     def summary(self, told: ToldCurriculum) -> str:
