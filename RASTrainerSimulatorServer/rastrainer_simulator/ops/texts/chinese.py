@@ -7,7 +7,7 @@ Guide: 导向器. Instrument: 器械. Planned line: 计划路径. Entry point: �
 Checkpoint: 验证点. Seat: 工位. Replay: 回放. Headset: 头显.
 
 Punctuation is full-width. A space stands between Chinese characters and numbers or Latin
-letters, and none before a percent sign.
+letters, and before units and percent signs.
 """
 
 from __future__ import annotations
@@ -78,9 +78,9 @@ _FEEDBACK: Mapping[str, str] = {
     "一点之前请先抬起工具。",
     "feedback.pressing": "在各点处压入头部 {depth:.1f} mm：尖端一碰到皮肤就请停下。",
     "feedback.worst touch": "请更仔细地触碰点 {points}：没有这一误差，配准精度可提高约 "
-    "{share:.0f}%。",
+    "{share:.0f} %。",
     "feedback.worst touches": "请更仔细地触碰点 {points}：没有这些误差，配准精度可提高约 "
-    "{share:.0f}%。",
+    "{share:.0f} %。",
     "feedback.depth": "误差主要在深度方向：请让尖端完全接触皮肤，触碰前再从侧面观察。",
     "feedback.common bias": "各次触碰平均{direction}偏移 {bias:.1f} mm，配准误差无法反映这一"
     "点：触碰前请从另一侧面观察尖端。",
@@ -112,9 +112,9 @@ _FEEDBACK: Mapping[str, str] = {
     "feedback.not passed": "尚未通过：距及格线 {mark:.0f} 分还差 {points:.0f} 分。",
     "feedback.no mark": "无法判定是否通过：本研究的及格线适用于另一版本的评分。",
     "feedback.competent": "自第 {number} 次起，您的试验显示已达到胜任水平：在仍有 "
-    "{failing:.0f}% 试验不合格的人中，有 {risk:.0f}% 会在 {trials} 次试验内偶然达到这一水平 "
+    "{failing:.0f} % 试验不合格的人中，有 {risk:.0f} % 会在 {trials} 次试验内偶然达到这一水平 "
     "(LC-CUSUM)。",
-    "feedback.not competent": "距证实胜任的进度为 {share:.0f}%（LC-CUSUM；迄今试验次数："
+    "feedback.not competent": "距证实胜任的进度为 {share:.0f} %（LC-CUSUM；迄今试验次数："
     "{trials}）。",
 }
 
@@ -426,7 +426,7 @@ _TABLE: Mapping[str, str] = {
     "离。残差小并不表示误差小。接受之后，各点不能再更改。",
     "match.residual": "残差",
     "match.counts": "计入的点",
-    "match.interval": "该误差的 95% 区间",
+    "match.interval": "该误差的 95 % 区间",
     "match.interval value": "{low:.2f}–{high:.2f} mm",
     "match.slides": "匹配可能滑移：无论残差多小，靶点都可能偏差达 {slide:.1f} mm。请描迹朝向"
     "不同的部位，如鼻、眉、颞部和面颊。",
