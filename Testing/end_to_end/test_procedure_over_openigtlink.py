@@ -22,6 +22,9 @@ from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.test_trial_over_openigtlink import SPEED, Player, play
 from Testing.simulator.planned_procedures import write_scenario
 
+# Slicer and the journal are tested so in each phase, too, which takes less.
+pytestmark = pytest.mark.soak
+
 STAND_OFF_MM = 25.0
 DRILLED_MM = 60.0
 PLACED_MM = 70.0

@@ -348,7 +348,7 @@ def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, revie
 def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_reported(lab, make_record):
     lab.logic.trialKept.connect(lambda _record: kept.append(True))
     kept = []
-    for number in range(10 * MAX_WAITING):
+    for number in range(3 * MAX_WAITING):
         lab.link.trialCompleted.emit(make_record(str(uuid.UUID(int=100 + number))))
     assert lab.problems == [
         "Trials arrive faster than they can be scored; they are offered again later."

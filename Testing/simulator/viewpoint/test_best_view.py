@@ -14,7 +14,7 @@ from rastrainer_simulator.viewpoint.best_view import BESIDE_DEG
 from rastrainer_simulator.viewpoint.touch_views import TouchViews
 from Testing.simulator.authoring.planned_heads import HEADS, setup_of
 
-SEEDS = (None, 11, pytest.param(12, marks=pytest.mark.soak))
+SEEDS = (None, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (11, 12)))
 """Of the poses of the head: the nominal one, and two of trials."""
 TASKS = ("trial-run", *(f"task-{number}" for number in range(1, 6)))
 

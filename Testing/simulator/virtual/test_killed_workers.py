@@ -160,7 +160,7 @@ def test_a_cohort_whose_workers_are_killed_is_the_same_to_the_last_bit(
     assert journals(folder) == journals(played)
 
 
-@pytest.mark.parametrize("missing", [1, 3])
+@pytest.mark.parametrize("missing", [1, pytest.param(3, marks=pytest.mark.soak)])
 def test_a_resumed_cohort_is_the_uninterrupted_one_to_the_last_bit(
     missing, played, copied, protocol, population
 ):

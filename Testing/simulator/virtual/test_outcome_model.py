@@ -70,6 +70,7 @@ def test_without_an_effect_every_test_rejects_about_5_percent(trainees):
         assert rates.coverage is None or rates.coverage == pytest.approx(0.95, abs=0.018)
 
 
+@pytest.mark.soak
 def test_with_an_effect_intervals_cover_and_power_is_as_computed():
     truth = model(mode_time={"hmd": 1.05})
     rates = {r.outcome: r for r in rejection_rates(truth, 16, MODES, 800, seed=2)}
@@ -85,9 +86,9 @@ def test_with_an_effect_intervals_cover_and_power_is_as_computed():
 def test_the_quick_rates_are_those_of_the_report(alternating):
     truth = model(mode_time={"hmd": 1.05}, carries_practice=True)
     orders = [MODES[:: -1 if place % 2 and alternating else 1] for place in range(9)]
-    quick = rejection_rates(truth, 9, MODES, 60, seed=9, orders=orders)
+    quick = rejection_rates(truth, 9, MODES, 30, seed=9, orders=orders)
     random = np.random.default_rng(9)
-    studies = [draw_study(truth, 9, MODES, random, orders) for _ in range(60)]
+    studies = [draw_study(truth, 9, MODES, random, orders) for _ in range(30)]
     reports = [compare_modes(study, MAIN_OUTCOMES, *MODES) for study in studies]
     for index, rates in enumerate(quick):
         found = [report[index] for report in reports]
@@ -108,6 +109,7 @@ def test_orders_that_no_rank_test_can_compare_are_never_rejected_by_one():
         assert rates.ranks == 0.0
 
 
+@pytest.mark.soak
 def test_practice_that_continues_over_the_modes_biases_a_fixed_order_and_not_a_balanced_one():
     truth = model(mode_time={"hmd": 1.05}, learning=0.2, carries_practice=True)
     fixed = rejection_rates(truth, 16, MODES, 300, seed=4)[0]
