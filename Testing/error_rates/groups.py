@@ -56,7 +56,7 @@ def several_populations(sets: int, seed: int = 4) -> list[Measured]:
         member = np.arange(trainees) * groups // trainees
         drawn += member[:, None] * distance / np.sqrt(METRICS)
         parted = [_is_parted(values) for values in drawn]
-        told = share_of([_is_told(values) for values in drawn[: sets // 20]])
+        told = share_of([_is_told(values) for values in drawn[: max(1, sets // 20)]])
         apart = f"{distance} SD apart" if groups == 2 else f"{distance} SD between neighbors"
         words = f"{groups} groups of {trainees // groups}, {apart}"
         found.append(
