@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rastrainer.protocol import DEFAULT_PORT, DEFAULT_VIEW_PORT
-from rastrainer_simulator.cli.simulator import DEFAULT_RECORDS
+from rastrainer_simulator.cli.records_option import add_records
 
 if TYPE_CHECKING:
     from rastrainer_simulator.cli.doctor.check_result import CheckResult
@@ -25,9 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("--port", type=int, default=DEFAULT_PORT, help="of OpenIGTLink")
     parser.add_argument("--view-port", type=int, default=DEFAULT_VIEW_PORT, help="of the views")
-    parser.add_argument(
-        "--records", type=Path, metavar="DIR", default=DEFAULT_RECORDS, help="of the journals"
-    )
+    add_records(parser)
     parser.add_argument("--config", type=Path, metavar="DIR", help="of your settings")
     parser.add_argument("--json", action="store_true", help="print the findings as JSON")
     parser.set_defaults(run=run)

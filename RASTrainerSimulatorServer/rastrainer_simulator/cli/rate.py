@@ -11,7 +11,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.rating.forms import FORMS, find_form
 from rastrainer.study.rating.rating_store import RatingStore
 from rastrainer.study.rating.rating_work import RatingWork
-from rastrainer_simulator.cli.simulator import DEFAULT_RECORDS
+from rastrainer_simulator.cli.records_option import add_records
 
 REPLAYS = 20
 
@@ -33,13 +33,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--rater", required=True, metavar="NAME", help="a pseudonym of who rates, such as R1"
     )
-    parser.add_argument(
-        "--records",
-        type=Path,
-        metavar="DIR",
-        default=DEFAULT_RECORDS,
-        help="folder of the trials' journals (default: %(default)s)",
-    )
+    add_records(parser)
     parser.add_argument(
         "--replays",
         type=int,

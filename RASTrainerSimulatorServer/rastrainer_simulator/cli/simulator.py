@@ -8,11 +8,11 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
+from rastrainer_simulator.cli.records_option import add_records
 from rastrainer_simulator.ops.desktop_process import has_display
 
 FASTEST = 1000.0
 LARGEST_SEED = 2**63 - 1
-DEFAULT_RECORDS = Path.home() / "RASTrainer" / "trials"
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -55,13 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--seed", type=int, help="of the heads' poses (default: an unpredictable one)"
     )
-    parser.add_argument(
-        "--records",
-        type=Path,
-        metavar="DIR",
-        default=DEFAULT_RECORDS,
-        help="folder of the trials' journals (default: %(default)s)",
-    )
+    add_records(parser)
     parser.add_argument(
         "--scenario", type=Path, metavar="DIR", help="a scenario of your own (default: Colin27)"
     )
