@@ -1,4 +1,4 @@
-"""The section Curriculum by its buttons alone: set for one or all, shown, ended."""
+"""The part Curriculum by its buttons alone: set for one or all, shown, ended."""
 
 import uuid
 from pathlib import Path
@@ -13,9 +13,9 @@ SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "example-curriculum
 
 @pytest.fixture
 def panel(host):
-    """The module with the sections Trainees and Curriculum open, and the trainees T001 and T002."""
+    """The module with Trainees, Study and Curriculum open, and the trainees T001 and T002."""
     host.open()
-    for section in ("trainees", "curriculum"):
+    for section in ("trainees", "study", "curriculum"):
         host.find(f"{section}CollapsibleButton").collapsed = False
     host.process_events()
     host.press("createTraineeButton")

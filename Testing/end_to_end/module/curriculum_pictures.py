@@ -54,7 +54,7 @@ def keep_panel(folder: Path) -> ToldCurriculum:
     path = Path(host.find("studyPathLineEdit").currentPath)
     play(path)
     host.widget.logic.session.trainees.changed.emit()
-    for name in ("trainees", "curriculum"):
+    for name in ("trainees", "study", "curriculum"):
         host.find(f"{name}CollapsibleButton").collapsed = False
     host.process_events()
     host.type("curriculumPathLineEdit", str(asset_path("studies", "example-curriculum.json")))

@@ -10,6 +10,25 @@ from tour_stage import Tour
 from tour_trial import STUDY, TRAINEE
 
 
+def curriculum(tour: Tour) -> str:
+    """Set a curriculum for everybody in a new study, and end it."""
+    tour.choose_study(tour.fresh("practiced.db"))
+    hands = tour.hands
+    hands.open("studyCollapsibleButton", "curriculumCollapsibleButton")
+    path = tour.session.places.assets / "studies" / "example-curriculum.json"
+    hands.find("curriculumPathLineEdit").currentPath = str(path)
+    hands.click("createTraineeButton")
+    hands.click("everybodyCheckBox")
+    hands.click("setCurriculumButton")
+    table = hands.find("assignmentsTable")
+    hands.wait_until(lambda: table.rowCount, "the assignments are listed")
+    told = hands.text("curriculumText")
+    tour.dialogs.answer("End the curriculum", "Yes")
+    hands.click("endCurriculumButton")
+    hands.wait_until(lambda: not table.rowCount, "there is none any more")
+    return told
+
+
 def study(tour: Tour) -> str:
     hands = tour.hands
     tour.choose_study(tour.fresh("led.db"))

@@ -44,6 +44,7 @@ STEPS: tuple[tuple[str, Callable[[Tour], str | None]], ...] = (
     ("Compare the methods of registration", tour_scenarios.compare_methods),
     ("Preview and check a head", tour_scenarios.preview_and_check),
     ("Make a scenario from a volume", tour_scenarios.scenario_from_volume),
+    ("Set a curriculum", tour_end.curriculum),
     ("Lead through a study", tour_end.study),
     ("Delete every node", tour_end.delete_every_node),
     ("Delete the trainee and stop", tour_end.delete_trainee_and_stop),

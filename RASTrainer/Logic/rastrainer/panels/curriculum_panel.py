@@ -1,4 +1,4 @@
-"""The section Curriculum: what trainees are to reach, and where each of them stands."""
+"""The part Curriculum of the section Study: what trainees are to reach, and where each stands."""
 
 from __future__ import annotations
 

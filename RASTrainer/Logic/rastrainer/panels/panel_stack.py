@@ -35,7 +35,6 @@ SECTIONS = (
     NewScenarioPanel,
     ProcedurePlanPanel,
     StudyPanel,
-    CurriculumPanel,
     TrainingPanel,
     RegistrationPanel,
     PlanPanel,
@@ -43,7 +42,7 @@ SECTIONS = (
     ScorePanel,
 )
 """In the order of the work."""
-NESTED = (LandmarksPanel, MethodsPanel)
+NESTED = (CurriculumPanel, LandmarksPanel, MethodsPanel)
 """Whose widgets are in the files of other sections."""
 PANELS = (
     NextStepPanel,

@@ -37,6 +37,7 @@ ARGUMENTS = {
     "TrialScored": {"trialId": TRIAL, "score": 80},
     "PlanTarget": {"positionMm": [0, 0, 0]},
     "StudyStep": {"trainee": "P07", "kind": "trial", "task": "task-2", "mode": "hmd"},
+    "Curriculum": {"trainee": "P07"},
     "GetTrial": {"trialId": TRIAL},
     "AcknowledgeTrial": {"trialId": TRIAL},
 }
