@@ -313,15 +313,15 @@ _TABLE: Mapping[str, str] = {
     "experiment.assignments": "您的训练目标",
     "assignments.title": "您的训练目标",
     "assignments.back": "返回",
-    "assignments.with procedure": "{trial}，然后{procedure}",
+    "assignments.with procedure": "{trial}，然后 {procedure}",
     "assignments.summary": "已达成 {reached}，共 {count}",
     "assignments.reached": "已达成",
     "assignments.locked": "未解锁",
     "assignments.count": "{done} / {needed}",
-    "assignments.percent": "{done}%",
+    "assignments.percent": "{done} %",
     "assignments.one trial": "一次试验得 {mark:g} 分或以上且不超出任何限值，即达成。",
     "assignments.trials": "连续 {needed} 次试验得 {mark:g} 分或以上且不超出任何限值，即达成。",
-    "assignments.competent": "您的试验显示出胜任能力（LC-CUSUM）时达成；"
+    "assignments.competent": "您的试验显示出胜任能力 (LC-CUSUM) 时达成；"
     "一次试验得 {mark:g} 分或以上为及格。",
     "assignments.no mark": "当前得分没有及格线：请询问指导教师。",
     "assignments.gate": "未解锁。请先达成：{assignments}。",

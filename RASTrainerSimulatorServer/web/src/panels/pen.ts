@@ -108,18 +108,26 @@ export class Pen {
     this.line(text, right - this.width(text, style), y, style);
   }
 
-  /** Return a text's lines, each within a width. */
+  /** Return a text's lines, each within a width; a piece that is wider is broken within. */
   wrapped(text: string, style: TextStyle, room: number): string[] {
     this.use(style);
+    const fits = (line: string) => this.context.measureText(line).width <= room;
     const lines: string[] = [];
     let line = "";
     for (const piece of pieces(text)) {
       const longer = line === "" ? piece.text : line + piece.between + piece.text;
-      if (line !== "" && this.context.measureText(longer).width > room) {
-        lines.push(line);
-        line = piece.text;
-      } else {
+      if (fits(longer)) {
         line = longer;
+        continue;
+      }
+      if (line !== "") lines.push(line);
+      line = "";
+      for (const letter of piece.text) {
+        if (line !== "" && !fits(line + letter)) {
+          lines.push(line);
+          line = "";
+        }
+        line += letter;
       }
     }
     return [...lines, line];
