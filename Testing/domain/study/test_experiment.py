@@ -47,8 +47,8 @@ def trial_of(step, number, trainee="T001"):
 
 
 @pytest.fixture
-def study(tmp_path):
-    with Study.open(tmp_path / "study.db") as study:
+def study(study_place):
+    with Study.open(study_place) as study:
         study.create_trainee()
         study.create_trainee()
         yield study
@@ -99,9 +99,8 @@ def test_balanced_orders_are_balanced_over_trainees():
     assert {mode_order(balanced, place) for place in range(0, 20, 2)} == {("hmd", "desktop")}
 
 
-def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(tmp_path):
-    path = tmp_path / "study.db"
-    with Study.open(path) as study:
+def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(study_place):
+    with Study.open(study_place) as study:
         study.create_trainee()
         progress = StudyProgress(study)
         progress.set_protocol(read_study_protocol(SHIPPED))
@@ -109,12 +108,12 @@ def test_a_trainee_follows_the_steps_and_resumes_after_an_interruption(tmp_path)
         assert progress.progress("T001").sentence == ("Step 1 of 19: Answer the questionnaire SSQ.")
         progress.finish("T001", "hmd/before/ssq", {"answers": [0] * 16})
         progress.practice("T001", "hmd/trial-run", 200.0)
-    with Study.open(path) as study:
+    with Study.open(study_place) as study:
         progress = StudyProgress(study)
         progress.practice("T001", "hmd/trial-run", 100.5)
         assert progress.progress("T001").practiced_s == 300.5
         progress.finish("T001", "hmd/trial-run", {"minutes": 300.5 / 60})
-    with Study.open(path) as study:
+    with Study.open(study_place) as study:
         progress = StudyProgress(study)
         progress.set_protocol(read_study_protocol(SHIPPED))
         state = progress.progress("T001")

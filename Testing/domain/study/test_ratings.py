@@ -1,13 +1,14 @@
 """Ratings are stored once, kept, corrected by further rows, and the same trials for all raters."""
 
+import itertools
 import random
+import sqlite3
 import uuid
 
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.database import StudyDatabase
-from rastrainer.study.database.schema import MIGRATIONS
+from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 from rastrainer.study.database.study import Study
 from rastrainer.study.rating.forms import FORMS, GEARS, OSATS, find_form
 from rastrainer.study.rating.rating_store import RatingStore
@@ -18,8 +19,8 @@ TRIALS = [str(uuid.UUID(int=number)) for number in range(1, 9)]
 
 
 @pytest.fixture
-def study(tmp_path):
-    with Study.open(tmp_path / "study.db") as opened:
+def study(study_place):
+    with Study.open(study_place) as opened:
         for number, trial_id in enumerate(TRIALS):
             trainee = f"T{number % 3}"
             opened.add_trial(make_record(trialId=trial_id, trainee=trainee))
@@ -159,14 +160,16 @@ def test_ratings_go_with_their_trainee(study, store):
     assert rows(study, "rated_replays") == len(left)
 
 
-def test_a_study_of_an_earlier_format_gets_the_tables(tmp_path, monkeypatch):
+def test_a_study_of_an_earlier_format_gets_the_tables(tmp_path):
     path = tmp_path / "old.db"
-    monkeypatch.setattr("rastrainer.study.database.database.MIGRATIONS", MIGRATIONS[:7])
-    with Study.open(path) as old:
-        old.add_trial(make_record(trialId=TRIALS[0]))
-    monkeypatch.undo()
-    StudyDatabase(path).close()
+    connection = sqlite3.connect(path)
+    for statement in itertools.chain(*MIGRATIONS[:7]):
+        connection.execute(statement)
+    connection.execute("PRAGMA user_version = 7")
+    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+    connection.close()
     with Study.open(path) as study:
+        study.add_trial(make_record(trialId=TRIALS[0]))
         assert RatingStore(study).assign("R1", TRIALS[:1], 1, random.Random(1)) == (TRIALS[0],)
 
 

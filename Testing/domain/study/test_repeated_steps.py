@@ -21,8 +21,8 @@ REASON = "a phone rang in the middle of it"
 
 
 @pytest.fixture
-def study(tmp_path):
-    with Study.open(tmp_path / "study.db") as study:
+def study(study_place):
+    with Study.open(study_place) as study:
         study.create_trainee("A")
         progress = StudyProgress(study)
         progress.set_protocol(

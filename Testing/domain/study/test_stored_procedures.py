@@ -18,8 +18,8 @@ DBS = outcome(ProcedureKind.DBS)
 
 
 @pytest.fixture
-def study(tmp_path):
-    with Study.open(tmp_path / "study.db") as opened:
+def study(study_place):
+    with Study.open(study_place) as opened:
         yield opened
 
 

@@ -2,7 +2,6 @@
 
 import csv
 import json
-import sqlite3
 import uuid
 from dataclasses import replace
 
@@ -18,19 +17,15 @@ from rastrainer.registration.target_error import target_error
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
 from rastrainer.study.database.study_trials import find
+from rastrainer.study.database.tables import study_tables
 from rastrainer.study.database.values import StoredRegistration
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import gentle_score, make_record
 
 
 @pytest.fixture
-def path(tmp_path):
-    return tmp_path / "study.db"
-
-
-@pytest.fixture
-def study(path):
-    with Study.open(path) as study:
+def study(study_place):
+    with Study.open(study_place) as study:
         yield study
 
 
@@ -93,7 +88,7 @@ def test_a_trial_is_checked_before_anything_is_computed_from_it(study):
         study.check_trial(trial)
 
 
-def test_only_changed_trials_are_read_again(study, path, monkeypatch):
+def test_only_changed_trials_are_read_again(study, study_place, monkeypatch):
     read = []
 
     def watched(connection, trial_id):
@@ -109,7 +104,7 @@ def test_only_changed_trials_are_read_again(study, path, monkeypatch):
     read.clear()
     study.history("T-001")
     assert read == []
-    with Study.open(path) as other:
+    with Study.open(study_place) as other:
         other.set_truth(trials[1], 1.5, [float(n) for n in range(16)])
         other.set_motion(trials[0], {"sparc": -1.9})
     stored = {trial.record.trial_id: trial for trial in study.history("T-001")}
@@ -193,7 +188,7 @@ def test_an_invalid_record_is_refused_and_not_stored(bad, words, study):
     assert study.trainees() == ()
 
 
-def test_the_latest_results_count_and_earlier_ones_remain(study, results, path):
+def test_the_latest_results_count_and_earlier_ones_remain(study, results):
     registrations, errors, score = results
     study.add_trial(record(), registrations, errors, score)
     fewer = registrations[0].without("3")
@@ -204,10 +199,9 @@ def test_the_latest_results_count_and_earlier_ones_remain(study, results, path):
     assert stored.registrations["rigid"].expected_tre_mm is None
     assert stored.registrations["affine"].fre_mm == registrations[2].fre_mm
     assert stored.score == better
-    connection = sqlite3.connect(path)
-    assert connection.execute("SELECT count(*) FROM registrations").fetchone() == (4,)
-    assert connection.execute("SELECT count(*) FROM scores").fetchone() == (2,)
-    connection.close()
+    with study.database.reading() as connection:
+        assert connection.execute("SELECT count(*) FROM registrations").fetchone() == (4,)
+        assert connection.execute("SELECT count(*) FROM scores").fetchone() == (2,)
 
 
 def test_the_truth_is_stored_once(study):
@@ -246,37 +240,49 @@ def test_the_cohort_is_every_registered_trial_but_the_trial_runs(study, results)
     assert {trial.mode for trial in study.cohort()} == {"desktop", "hmd"}
 
 
-def test_deleting_a_trainee_leaves_no_trace_in_the_file(study, path, results):
+def test_deleting_a_trainee_leaves_no_row_of_theirs(study, results):
     study.add_trial(record(1, trainee="Vanishing Heron"), *results)
     study.set_truth(record(1)["trialId"], 0.5, np.eye(4).ravel().tolist())
     study.add_trial(record(2, trainee="staying"), *results)
-    assert b"Vanishing Heron" in path.read_bytes()
     assert study.delete_trainee("Vanishing Heron") == 1
+    with study.database.reading() as connection:
+        for table in study_tables():
+            rows = str(connection.execute(f"SELECT * FROM {table.name}").fetchall())
+            assert "Vanishing Heron" not in rows
+            assert record(1)["trialId"] not in rows
+    assert [trial.subject for trial in study.cohort()] == ["staying"]
+    assert study.trial(record(2)["trialId"]).score == results[2]
+
+
+def test_deleting_a_trainee_leaves_no_trace_in_the_file(tmp_path, results):
+    path = tmp_path / "study.db"
+    with Study.open(path) as study:
+        study.add_trial(record(1, trainee="Vanishing Heron"), *results)
+        assert b"Vanishing Heron" in path.read_bytes()
+        study.delete_trainee("Vanishing Heron")
     content = path.read_bytes()
     assert b"Vanishing Heron" not in content
     assert record(1)["trialId"].encode() not in content
-    assert [trial.subject for trial in study.cohort()] == ["staying"]
-    assert study.trial(record(2)["trialId"]).score == results[2]
-    assert list(path.parent.iterdir()) == [path]
+    assert list(tmp_path.iterdir()) == [path]
 
 
-def test_everything_is_stored_across_reopening(path, results):
-    with Study.open(path) as study:
+def test_everything_is_stored_across_reopening(study_place, results):
+    with Study.open(study_place) as study:
         study.create_trainee("a", consent=True)
         study.add_trial(record(trainee="a"), *results)
-    with Study.open(path) as study:
+    with Study.open(study_place) as study:
         assert study.trainee("a").consent
         assert study.history("a")[0].score == results[2]
         assert study.trial(record()["trialId"])
 
 
-def test_a_deleted_trial_that_is_offered_again_is_refused(study, path):
+def test_a_deleted_trial_that_is_offered_again_is_refused(study, study_place):
     study.add_trial(record(1, trainee="gone"))
     study.delete_trainee("gone")
     with pytest.raises(DeletedTrialError, match="deleted from the study"):
         study.add_trial(record(1, trainee="gone"))
     assert study.trainees() == ()
-    with Study.open(path) as again, pytest.raises(DeletedTrialError):
+    with Study.open(study_place) as again, pytest.raises(DeletedTrialError):
         again.add_trial(record(1, trainee="gone"))
     assert study.add_trial(record(2, trainee="gone"))
 

@@ -1,5 +1,6 @@
 """The study's file with concurrent processes, kills, damage and foreign files."""
 
+import itertools
 import json
 import multiprocessing
 import os
@@ -330,3 +331,18 @@ def test_an_exception_in_a_transaction_stores_nothing(tmp_path):
             study.add_trial(make_record(), registrations=[None])
         assert study.trainees() == ()
         assert study.add_trial(make_record())
+
+
+def test_the_numbers_of_trainees_deleted_in_an_earlier_format_are_not_proposed_again(tmp_path):
+    path = tmp_path / "old.db"
+    connection = sqlite3.connect(path)
+    for statement in itertools.chain(*MIGRATIONS[:8]):
+        connection.execute(statement)
+    connection.execute("INSERT INTO trainees VALUES (3, 'T003', 1, 0, '2026-01-01T00:00:00Z')")
+    connection.execute("DELETE FROM trainees")
+    connection.execute("PRAGMA user_version = 8")
+    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+    connection.commit()
+    connection.close()
+    with Study.open(path) as study:
+        assert study.create_trainee().pseudonym == "T004"

@@ -24,8 +24,8 @@ SCENARIO = load_scenario(Path(__file__).parents[3] / "assets" / "scenarios" / "c
 
 
 @pytest.fixture
-def study(tmp_path):
-    with Study.open(tmp_path / "study.db") as study:
+def study(study_place):
+    with Study.open(study_place) as study:
         study.create_trainee("T-001")
         yield study
 

@@ -12,6 +12,7 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
+from rastrainer.study.database.tables import study_tables
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trainee_progress import competence_of, progress_of
@@ -19,8 +20,8 @@ from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_
 
 
 @pytest.fixture
-def study(tmp_path):
-    with Study.open(tmp_path / "study.db") as study:
+def study(study_place):
+    with Study.open(study_place) as study:
         yield study
 
 
@@ -114,9 +115,11 @@ def test_deleting_a_trainee_deletes_aborted_trials_for_good(study, tmp_path):
     assert erased.missing == (make_aborted()["trialId"],)
     with pytest.raises(DeletedTrialError):
         AbortedTrials(study).add(make_aborted())
-    left = (tmp_path / "study.db").read_bytes()
-    assert b"T-001" not in left
-    assert make_aborted()["trialId"].encode() not in left
+    with study.database.reading() as connection:
+        for table in study_tables():
+            rows = str(connection.execute(f"SELECT * FROM {table.name}").fetchall())
+            assert "T-001" not in rows
+            assert make_aborted()["trialId"] not in rows
 
 
 def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -10,6 +9,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
 from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES, decoded, json_text
@@ -92,7 +92,7 @@ class AbortedTrials:
             return tuple(trial for _when, trial in sorted(timed, key=lambda each: each[0]))
 
 
-def stored_of(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredAborted, ...]:
+def stored_of(connection: Connection, pseudonym: str) -> tuple[StoredAborted, ...]:
     """Return the aborted trials of a trainee in order of starting."""
     rows = connection.execute(
         "SELECT record_json, coalesce(step, ''), coalesce(reason, '') FROM aborted_trials "
@@ -108,7 +108,7 @@ def stored_of(connection: sqlite3.Connection, pseudonym: str) -> tuple[StoredAbo
 
 
 def unexplained(
-    connection: sqlite3.Connection, pseudonym: str, mode: str, task: str, since: datetime
+    connection: Connection, pseudonym: str, mode: str, task: str, since: datetime
 ) -> tuple[AbortedTrial, ...]:
     """Return the aborted trials of a task since a time, without a reason for their repeat."""
     return tuple(
@@ -120,14 +120,14 @@ def unexplained(
     )
 
 
-def explain(connection: sqlite3.Connection, trial_id: str, step: str, reason: str) -> None:
+def explain(connection: Connection, trial_id: str, step: str, reason: str) -> None:
     """Store why a step is repeated after an aborted trial."""
     connection.execute(
         "INSERT INTO repeats VALUES (?, ?, ?, ?)", (trial_id, step, reason, utc_now())
     )
 
 
-def _add(connection: sqlite3.Connection, record: AbortedTrial, text: str) -> bool:
+def _add(connection: Connection, record: AbortedTrial, text: str) -> bool:
     check_not_deleted(connection, record.trial_id)
     row = connection.execute(
         "SELECT record_json FROM aborted_trials WHERE trial_id = ?", (record.trial_id,)

@@ -6,7 +6,6 @@ is recognized whatever interrupted it.
 
 from __future__ import annotations
 
-import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +13,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
 from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError, check_not_deleted
 from rastrainer.study.database.study_trials import json_text
@@ -135,7 +135,9 @@ class CohortStore:
     def add_stuck(self, trial_id: str) -> None:
         """Note that a trial was played but not finished."""
         with self._database.writing() as connection:
-            connection.execute("INSERT OR IGNORE INTO stuck_trials VALUES (?)", (trial_id,))
+            connection.execute(
+                "INSERT INTO stuck_trials VALUES (?) ON CONFLICT DO NOTHING", (trial_id,)
+            )
 
     def finish(self) -> None:
         """Note that all trials were played."""
@@ -145,7 +147,7 @@ class CohortStore:
             )
 
 
-def _check_new(connection: sqlite3.Connection) -> None:
+def _check_new(connection: Connection) -> None:
     for table in ("trainees", "study_protocol"):
         if connection.execute(f"SELECT 1 FROM {table}").fetchone() is not None:
             raise InputError(

@@ -208,4 +208,17 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         """,
         "CREATE INDEX curriculum_choices_of_trainee ON curriculum_choices (trainee_id)",
     ),
+    (
+        # How many trainees there have been: the numbers of deleted ones are not proposed again.
+        """
+        CREATE TABLE trainee_numbers (
+            id INTEGER PRIMARY KEY CHECK (id = 1),
+            latest INTEGER NOT NULL
+        )
+        """,
+        """
+        INSERT INTO trainee_numbers
+        SELECT 1, coalesce(max(seq), 0) FROM sqlite_sequence WHERE name = 'trainees'
+        """,
+    ),
 )

@@ -1,14 +1,13 @@
-"""The study: trainees, their trials, registrations and scores, in one SQLite file.
+"""The study: trainees, their trials, registrations and scores, in SQLite or PostgreSQL.
 
 Trials are stored by UUID, so a trial delivered twice counts once. Results are added, never
-overwritten; the latest count. Several processes may use one file at the same time.
+overwritten; the latest count. Several processes may use one study at the same time.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -16,8 +15,11 @@ from rastrainer.files.writing import make_private_folder
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database.address import PostgresAddress, study_place
 from rastrainer.study.database.database import LockWait, StudyDatabase
-from rastrainer.study.database.reading import ReadOnlyStudyDatabase
+from rastrainer.study.database.postgres_database import PostgresDatabase
+from rastrainer.study.database.sqlite_database import SqliteDatabase
+from rastrainer.study.database.sqlite_reading import ReadOnlySqliteDatabase
 from rastrainer.study.database.values import StoredTrial, Trainee, TrialOutcome
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
@@ -30,10 +32,11 @@ STUDY_FILE = "study.db"
 
 
 class Study:
-    """A study's file; use it in a `with` statement, or call `close`.
+    """A study; use it in a `with` statement, or call `close`.
 
-    Every method raises `InputError` if the file cannot be read or written, and `StudyBusyError` if
-    another program has locked it for too long. For one thread.
+    Every method raises `InputError` if the study cannot be read or written, `StudyBusyError` if
+    another program has locked it for too long, and `StudyAwayError` if its server cannot be
+    reached. For one thread.
     """
 
     def __init__(self, database: StudyDatabase) -> None:
@@ -43,41 +46,55 @@ class Study:
     @classmethod
     def open(
         cls,
-        path: str | os.PathLike[str],
+        place: str | os.PathLike[str] | PostgresAddress,
         lock_wait: LockWait | None = None,
         make_folder: bool = False,
+        must_exist: bool = False,
     ) -> Study:
-        """Open the study in a file, or create one.
+        """Open the study in a file or a database of PostgreSQL, or create one.
 
         Args:
-            path: Of the file.
+            place: Path of the file, or the database's address.
             lock_wait: For locks of others; half a minute by default.
             make_folder: Create a missing folder of the file, private to its user.
+            must_exist: Refuse a place that holds no study yet.
 
         Raises:
-            InputError: the file is no study, damaged, or of a newer RASTrainer; or the folder is
+            InputError: the place is no study, damaged, or of a newer RASTrainer; or the folder is
                 missing or cannot be made.
             StudyBusyError: another program has locked it.
+            StudyAwayError: its server cannot be reached.
         """
+        place = study_place(place)
+        if isinstance(place, PostgresAddress):
+            return cls(PostgresDatabase(place, lock_wait, may_create=not must_exist))
+        if must_exist and not place.is_file():
+            raise InputError(f"There is no file {place}.")
         if make_folder:
-            folder = Path(path).parent
+            folder = place.parent
             try:
                 make_private_folder(folder)
             except OSError as error:
                 raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
-        return cls(StudyDatabase(path, lock_wait))
+        return cls(SqliteDatabase(place, lock_wait))
 
     @classmethod
     def open_for_reading(
-        cls, path: str | os.PathLike[str], lock_wait: LockWait | None = None
+        cls,
+        place: str | os.PathLike[str] | PostgresAddress,
+        lock_wait: LockWait | None = None,
     ) -> Study:
-        """Open the study in a file without changing it; changes are refused.
+        """Open a study without changing it; changes are refused.
 
         Raises:
-            InputError: as `open`, or there is no such file.
+            InputError: as `open`, or there is no such study.
             StudyBusyError: another program has locked it.
+            StudyAwayError: its server cannot be reached.
         """
-        return cls(ReadOnlyStudyDatabase(path, lock_wait))
+        place = study_place(place)
+        if isinstance(place, PostgresAddress):
+            return cls(PostgresDatabase(place, lock_wait, may_change=False))
+        return cls(ReadOnlySqliteDatabase(place, lock_wait))
 
     def __enter__(self) -> Study:
         return self
@@ -86,12 +103,12 @@ class Study:
         self.close()
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the study."""
         self._database.close()
 
     @property
     def database(self) -> StudyDatabase:
-        """The underlying file, for further tables of the study."""
+        """The underlying database, for further tables of the study."""
         return self._database
 
     def create_trainee(self, pseudonym: str | None = None, consent: bool = False) -> Trainee:

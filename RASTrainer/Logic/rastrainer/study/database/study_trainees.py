@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
-import sqlite3
 from collections.abc import Iterable
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.values import Trainee, utc_now
 
 
@@ -16,19 +16,19 @@ class DeletedTrialError(InputError):
     """The trial was deleted from the study together with its trainee."""
 
 
-def mark_deleted(connection: sqlite3.Connection, trial_ids: Iterable[str]) -> None:
+def mark_deleted(connection: Connection, trial_ids: Iterable[str]) -> None:
     """Remember that these trials are deleted.
 
     Only hashes of the random UUIDs are kept: without the record, nobody can learn that a trial
     existed.
     """
     connection.executemany(
-        "INSERT OR IGNORE INTO deleted_trials VALUES (?)",
+        "INSERT INTO deleted_trials VALUES (?) ON CONFLICT DO NOTHING",
         ((_sha256(trial_id),) for trial_id in trial_ids),
     )
 
 
-def check_not_deleted(connection: sqlite3.Connection, trial_id: str) -> None:
+def check_not_deleted(connection: Connection, trial_id: str) -> None:
     """Raise `DeletedTrialError` if the trial was deleted."""
     query = "SELECT 1 FROM deleted_trials WHERE trial_sha256 = ?"
     if connection.execute(query, (_sha256(trial_id),)).fetchone() is not None:
@@ -45,7 +45,7 @@ TRAINEE_ID = "SELECT id FROM trainees WHERE pseudonym = ?"
 _SELECT = "SELECT pseudonym, consent, archived, created_utc FROM trainees"
 
 
-def create(connection: sqlite3.Connection, pseudonym: str | None, consent: bool) -> Trainee:
+def create(connection: Connection, pseudonym: str | None, consent: bool) -> Trainee:
     """Add a trainee, by default with the next free pseudonym."""
     pseudonym = next_pseudonym(connection) if pseudonym is None else pseudonym
     check_pseudonym(pseudonym)
@@ -53,8 +53,9 @@ def create(connection: sqlite3.Connection, pseudonym: str | None, consent: bool)
         raise InputError(f"The pseudonym {json.dumps(pseudonym)} is taken; choose another.")
     connection.execute(
         "INSERT INTO trainees (pseudonym, consent, archived, created_utc) VALUES (?, ?, 0, ?)",
-        (pseudonym, bool(consent), utc_now()),
+        (pseudonym, int(consent), utc_now()),
     )
+    connection.execute("UPDATE trainee_numbers SET latest = latest + 1")
     return find(connection, pseudonym)
 
 
@@ -66,18 +67,18 @@ def check_pseudonym(pseudonym: str) -> None:
         raise InputError(f"A pseudonym must be {error}.") from None
 
 
-def create_where_missing(connection: sqlite3.Connection, pseudonym: str, consent: bool) -> None:
+def create_where_missing(connection: Connection, pseudonym: str, consent: bool) -> None:
     """Add the trainee of a record unless they exist."""
     if not exists(connection, pseudonym):
         create(connection, pseudonym, consent)
 
 
-def exists(connection: sqlite3.Connection, pseudonym: str) -> bool:
+def exists(connection: Connection, pseudonym: str) -> bool:
     """Return whether the study has a trainee."""
     return connection.execute(TRAINEE_ID, (pseudonym,)).fetchone() is not None
 
 
-def find(connection: sqlite3.Connection, pseudonym: str) -> Trainee:
+def find(connection: Connection, pseudonym: str) -> Trainee:
     """Return a trainee; raise `InputError` if unknown."""
     row = connection.execute(f"{_SELECT} WHERE pseudonym = ?", (pseudonym,)).fetchone()
     if row is None:
@@ -85,16 +86,16 @@ def find(connection: sqlite3.Connection, pseudonym: str) -> Trainee:
     return _trainee(row)
 
 
-def listed(connection: sqlite3.Connection, archived: bool) -> tuple[Trainee, ...]:
+def listed(connection: Connection, archived: bool) -> tuple[Trainee, ...]:
     """Return active or archived trainees by pseudonym."""
     rows = connection.execute(
-        f"{_SELECT} WHERE archived = ? ORDER BY pseudonym", (bool(archived),)
+        f"{_SELECT} WHERE archived = ? ORDER BY pseudonym", (int(archived),)
     ).fetchall()
     return tuple(_trainee(row) for row in rows)
 
 
 def change(
-    connection: sqlite3.Connection,
+    connection: Connection,
     pseudonym: str,
     consent: bool | None = None,
     archived: bool | None = None,
@@ -104,15 +105,15 @@ def change(
     connection.execute(
         "UPDATE trainees SET consent = ?, archived = ? WHERE pseudonym = ?",
         (
-            trainee.consent if consent is None else bool(consent),
-            trainee.archived if archived is None else bool(archived),
+            int(trainee.consent if consent is None else consent),
+            int(trainee.archived if archived is None else archived),
             pseudonym,
         ),
     )
     return find(connection, pseudonym)
 
 
-def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
+def delete(connection: Connection, pseudonym: str) -> int:
     """Delete a trainee with all trials; return the number of finished ones."""
     find(connection, pseudonym)
     finished, aborted = (
@@ -129,11 +130,10 @@ def delete(connection: sqlite3.Connection, pseudonym: str) -> int:
     return len(finished)
 
 
-def next_pseudonym(connection: sqlite3.Connection) -> str:
+def next_pseudonym(connection: Connection) -> str:
     """Return the next free pseudonym."""
     # Numbers of deleted trainees are not reused, to avoid confusion.
-    row = connection.execute("SELECT seq FROM sqlite_sequence WHERE name = 'trainees'").fetchone()
-    number = (row[0] if row else 0) + 1
+    number = connection.execute("SELECT latest FROM trainee_numbers").fetchone()[0] + 1
     while exists(connection, f"T{number:03d}"):
         number += 1
     return f"T{number:03d}"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sqlite3
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
@@ -15,6 +14,7 @@ from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
 from rastrainer.study.database.values import (
     StoredProcedure,
@@ -52,9 +52,7 @@ _STAMPED_TRIALS = f"""
 Value = TypeVar("Value")
 
 
-def add(
-    connection: sqlite3.Connection, record: TrialRecord, json_object: Mapping[str, Any]
-) -> bool:
+def add(connection: Connection, record: TrialRecord, json_object: Mapping[str, Any]) -> bool:
     """Store a trial with its trainee; return False if it is stored already."""
     text = json_text(json_object)
     if len(text) > RECORD_LIMIT_BYTES:
@@ -81,7 +79,7 @@ def add(
     return True
 
 
-def check(connection: sqlite3.Connection, record: TrialRecord) -> bool:
+def check(connection: Connection, record: TrialRecord) -> bool:
     """Return whether a trial would be new."""
     check_not_deleted(connection, record.trial_id)
     if exists(connection, record.trial_id):
@@ -93,7 +91,7 @@ def check(connection: sqlite3.Connection, record: TrialRecord) -> bool:
 
 
 def add_results(
-    connection: sqlite3.Connection,
+    connection: Connection,
     trial_id: str,
     registrations: Iterable[Registration],
     target_errors: Mapping[str, TargetError],
@@ -126,7 +124,7 @@ def add_results(
 
 
 def set_truth(
-    connection: sqlite3.Connection,
+    connection: Connection,
     trial_id: str,
     true_tre_mm: float,
     head_to_world: Sequence[float],
@@ -139,12 +137,12 @@ def set_truth(
     except ValueError as error:
         raise InputError(f"What the simulator reveals must be {error}.") from None
     connection.execute(
-        "INSERT OR IGNORE INTO truths VALUES (?, ?, ?, ?)",
+        "INSERT INTO truths VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING",
         (trial_id, true_tre_mm, json_text(head_to_world), utc_now()),
     )
 
 
-def set_motion(connection: sqlite3.Connection, trial_id: str, motion: Mapping[str, float]) -> None:
+def set_motion(connection: Connection, trial_id: str, motion: Mapping[str, float]) -> None:
     """Store the motion metrics of a trial; only the first ones count."""
     _check_exists(connection, trial_id)
     try:
@@ -155,23 +153,24 @@ def set_motion(connection: sqlite3.Connection, trial_id: str, motion: Mapping[st
     except ValueError as error:
         raise InputError(f"A motion metric must be {error}.") from None
     connection.execute(
-        "INSERT OR IGNORE INTO motions VALUES (?, ?, ?)", (trial_id, json_text(checked), utc_now())
+        "INSERT INTO motions VALUES (?, ?, ?) ON CONFLICT DO NOTHING",
+        (trial_id, json_text(checked), utc_now()),
     )
 
 
-def exists(connection: sqlite3.Connection, trial_id: str) -> bool:
+def exists(connection: Connection, trial_id: str) -> bool:
     """Return whether a trial is stored."""
     query = "SELECT 1 FROM trials WHERE trial_id = ?"
     return connection.execute(query, (trial_id,)).fetchone() is not None
 
 
-def is_revealed(connection: sqlite3.Connection, trial_id: str) -> bool:
+def is_revealed(connection: Connection, trial_id: str) -> bool:
     """Return whether the truth of a trial is stored."""
     query = "SELECT 1 FROM truths WHERE trial_id = ?"
     return connection.execute(query, (trial_id,)).fetchone() is not None
 
 
-def find_record(connection: sqlite3.Connection, trial_id: str) -> TrialRecord:
+def find_record(connection: Connection, trial_id: str) -> TrialRecord:
     """Return the record of a trial."""
     _check_exists(connection, trial_id)
     (text,) = connection.execute(
@@ -180,7 +179,7 @@ def find_record(connection: sqlite3.Connection, trial_id: str) -> TrialRecord:
     return decoded(text, TrialRecord.from_json)
 
 
-def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
+def find(connection: Connection, trial_id: str) -> StoredTrial:
     """Return a trial with its latest results."""
     record = find_record(connection, trial_id)
     registrations = connection.execute(
@@ -214,7 +213,7 @@ def find(connection: sqlite3.Connection, trial_id: str) -> StoredTrial:
 
 
 def history(
-    connection: sqlite3.Connection, pseudonym: str, known: dict[str, tuple[tuple, StoredTrial]]
+    connection: Connection, pseudonym: str, known: dict[str, tuple[tuple, StoredTrial]]
 ) -> tuple[StoredTrial, ...]:
     """Return a trainee's trials in order of starting.
 
@@ -233,14 +232,15 @@ def history(
     return tuple(trial for _stamp, trial in read.values())
 
 
-def past_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[PastTrial, ...]:
+def past_trials(connection: Connection, pseudonym: str) -> tuple[PastTrial, ...]:
     """Return a trainee's scored trials without trial runs, in order of starting."""
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
-        "SELECT trial_id, task, mode, completion_time_s, "
+        "SELECT trial_id, task, mode, completion_time_s, latest FROM ("
+        "SELECT trial_id, task, mode, completion_time_s, started_utc, trials.rowid AS stored, "
         f"({_LATEST_SCORE.format('score_json')}) AS latest "
-        f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND latest IS NOT NULL AND task != ? "
-        "ORDER BY started_utc, trials.rowid",
+        f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ?"
+        ") AS played WHERE latest IS NOT NULL ORDER BY started_utc, stored",
         (pseudonym, protocol.TRIAL_RUN),
     )
     # Row by row, so that not all records are in memory together.
@@ -254,7 +254,7 @@ def _past_trial(trial_id: str, task: str, mode: str, seconds: float, latest: str
     )
 
 
-def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:
+def unrevealed(connection: Connection) -> tuple[TrialRecord, ...]:
     """Return the records of trials without stored truth, oldest first."""
     rows = connection.execute(
         "SELECT record_json FROM trials "
@@ -263,7 +263,7 @@ def unrevealed(connection: sqlite3.Connection) -> tuple[TrialRecord, ...]:
     return tuple(decoded(text, TrialRecord.from_json) for (text,) in rows)
 
 
-def cohort(connection: sqlite3.Connection, mode: str | None) -> list[Trial]:
+def cohort(connection: Connection, mode: str | None) -> list[Trial]:
     """Return the registered trials without trial runs, for CTPS."""
     rows = connection.execute(
         """
@@ -274,15 +274,15 @@ def cohort(connection: sqlite3.Connection, mode: str | None) -> list[Trial]:
             SELECT max(id) FROM registrations AS latest
             WHERE latest.trial_id = trials.trial_id AND kind = ?
         )
-        WHERE task != ? AND (? IS NULL OR mode = ?)
+        WHERE task != ? AND mode = coalesce(?, mode)
         ORDER BY trials.rowid
         """,
-        (RIGID, protocol.TRIAL_RUN, mode, mode),
+        (RIGID, protocol.TRIAL_RUN, mode),
     ).fetchall()
     return [Trial(*row) for row in rows]
 
 
-def outcomes(connection: sqlite3.Connection, task: str, mode: str) -> tuple[TrialOutcome, ...]:
+def outcomes(connection: Connection, task: str, mode: str) -> tuple[TrialOutcome, ...]:
     """Return the outcomes of all trials of a task and mode, in order of storing."""
     rows = connection.execute(
         f"""
@@ -315,7 +315,7 @@ def decoded(text: str, read: Callable[[Any], Value]) -> Value:
         raise InputError("The study holds a value that RASTrainer did not write.") from None
 
 
-def _check_exists(connection: sqlite3.Connection, trial_id: str) -> None:
+def _check_exists(connection: Connection, trial_id: str) -> None:
     if not exists(connection, trial_id):
         raise InputError(f"The study has no trial {json.dumps(str(trial_id)[:64])}.")
 

@@ -6,23 +6,22 @@ last counted trial.
 
 from __future__ import annotations
 
-import sqlite3
 from dataclasses import replace
 from datetime import datetime
 from typing import Any
 
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.database.aborted_trials import unexplained
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID
+from rastrainer.study.database.study_trials import decoded
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.progress import DONE, Progress, StepEntry
 from rastrainer.study.protocol.steps import Step, StepKind
 from rastrainer.trial.aborted_trial import AbortedTrial
 
 
-def played_next(
-    connection: sqlite3.Connection, pseudonym: str, progress: Progress
-) -> list[StepEntry]:
+def played_next(connection: Connection, pseudonym: str, progress: Progress) -> list[StepEntry]:
     """Return the entries of next steps whose trials are stored but not counted yet."""
     entries = []
     while (step := progress.next_step) is not None:
@@ -39,7 +38,7 @@ def played_next(
 
 
 def _played_for(
-    connection: sqlite3.Connection, pseudonym: str, progress: Progress, step: Step
+    connection: Connection, pseudonym: str, progress: Progress, step: Step
 ) -> str | None:
     """Return the UUID of the next step's trial, or None; a repeat needs a reason to count."""
     counted = set(progress.counted_trials)
@@ -64,7 +63,7 @@ def _played_for(
     return None if is_repeat else found[1]
 
 
-def _trials_of(connection: sqlite3.Connection, pseudonym: str) -> list[tuple[Any, ...]]:
+def _trials_of(connection: Connection, pseudonym: str) -> list[tuple[Any, ...]]:
     """Return a trainee's finished trials, in order.
 
     Each is its start, UUID, mode, task, procedure and method, and how far its skin had shifted and
@@ -74,15 +73,23 @@ def _trials_of(connection: sqlite3.Connection, pseudonym: str) -> list[tuple[Any
         "SELECT started_utc, trial_id, mode, task, "
         "coalesce(json_extract(record_json, '$.procedure.procedure'), ''), "
         "coalesce(json_extract(record_json, '$.method'), ?), "
-        "coalesce(json_extract(record_json, '$.skin.shiftMm'), 0), "
-        "coalesce(json_extract(record_json, '$.skin.indentationMm'), 0) "
+        "coalesce(json_extract(record_json, '$.skin.shiftMm'), ''), "
+        "coalesce(json_extract(record_json, '$.skin.indentationMm'), '') "
         f"FROM trials WHERE trainee_id = ({TRAINEE_ID})",
         (RegistrationMethod.FIDUCIALS.value, pseudonym),
     ).fetchall()
-    return sorted((moment(started), *others) for started, *others in rows)
+    return sorted(
+        (moment(started), *others, _number(shift), _number(indentation))
+        for started, *others, shift, indentation in rows
+    )
 
 
-def _since(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -> datetime:
+def _number(extracted: object) -> float:
+    """Return a number of a record, 0 where it has none."""
+    return decoded(str(extracted or 0), float)
+
+
+def _since(connection: Connection, pseudonym: str, progress: Progress) -> datetime:
     """Return the earliest start of the next step's trial."""
     counted = set(progress.counted_trials)
     after = [when for when, trial, *_ in _trials_of(connection, pseudonym) if trial in counted]
@@ -90,7 +97,7 @@ def _since(connection: sqlite3.Connection, pseudonym: str, progress: Progress) -
 
 
 def aborted_before(
-    connection: sqlite3.Connection, pseudonym: str, progress: Progress
+    connection: Connection, pseudonym: str, progress: Progress
 ) -> tuple[AbortedTrial, ...]:
     """Return the aborted trials of the next step without a reason."""
     step = progress.next_step

@@ -7,7 +7,6 @@ ones. Everything is stored before it is reported, so it survives interruptions.
 from __future__ import annotations
 
 import json
-import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,6 +14,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.aborted_trials import explain
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text
@@ -155,7 +155,8 @@ class StudyProgress:
                 raise InputError(f"{step[:80]} is not a trial run that comes next.")
             connection.execute(
                 f"INSERT INTO practice VALUES (({TRAINEE_ID}), ?, ?) "
-                "ON CONFLICT DO UPDATE SET seconds = seconds + excluded.seconds",
+                "ON CONFLICT (trainee_id, step) "
+                "DO UPDATE SET seconds = practice.seconds + excluded.seconds",
                 (pseudonym, step, float(seconds)),
             )
 
@@ -216,7 +217,7 @@ def _answers(pseudonym: str, progress: Progress) -> list[QuestionnaireAnswers]:
     return found
 
 
-def _progress(connection: sqlite3.Connection, pseudonym: str) -> Progress:
+def _progress(connection: Connection, pseudonym: str) -> Progress:
     protocol = _require_protocol(connection)
     place = _place(connection, pseudonym)
     if place is None:
@@ -241,7 +242,7 @@ def _progress(connection: sqlite3.Connection, pseudonym: str) -> Progress:
     )
 
 
-def _practiced(connection: sqlite3.Connection, pseudonym: str, step: Step | None) -> float:
+def _practiced(connection: Connection, pseudonym: str, step: Step | None) -> float:
     row = connection.execute(
         f"SELECT seconds FROM practice WHERE trainee_id = ({TRAINEE_ID}) AND step = ?",
         (pseudonym, "" if step is None else step.name),
@@ -253,19 +254,19 @@ def _is_practice(step: Step) -> bool:
     return step.kind is StepKind.TRIAL_RUN
 
 
-def _protocol(connection: sqlite3.Connection) -> StudyProtocol | None:
+def _protocol(connection: Connection) -> StudyProtocol | None:
     row = connection.execute("SELECT protocol_json FROM study_protocol").fetchone()
     return None if row is None else decoded(row[0], study_protocol_from_json)
 
 
-def _require_protocol(connection: sqlite3.Connection) -> StudyProtocol:
+def _require_protocol(connection: Connection) -> StudyProtocol:
     protocol = _protocol(connection)
     if protocol is None:
         raise InputError("The study has no protocol yet; start it with a protocol file.")
     return protocol
 
 
-def _place(connection: sqlite3.Connection, pseudonym: str) -> int | None:
+def _place(connection: Connection, pseudonym: str) -> int | None:
     row = connection.execute(
         f"SELECT place FROM enrollments WHERE trainee_id = ({TRAINEE_ID})", (pseudonym,)
     ).fetchone()
@@ -273,7 +274,7 @@ def _place(connection: sqlite3.Connection, pseudonym: str) -> int | None:
 
 
 def _check_trial(
-    connection: sqlite3.Connection, pseudonym: str, progress: Progress, step: Step, trial_id: str
+    connection: Connection, pseudonym: str, progress: Progress, step: Step, trial_id: str
 ) -> None:
     record = study_trials.find_record(connection, trial_id)
     played = (record.trainee, record.mode, record.task, record.method.value)
@@ -293,7 +294,7 @@ def _check_trial(
 
 
 def _store(
-    connection: sqlite3.Connection, pseudonym: str, step: str, outcome: str, details: dict[str, Any]
+    connection: Connection, pseudonym: str, step: str, outcome: str, details: dict[str, Any]
 ) -> None:
     connection.execute(
         "INSERT INTO steps (trainee_id, step, outcome, details_json, stored_utc) "

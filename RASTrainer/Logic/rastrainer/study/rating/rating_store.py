@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import random
-import sqlite3
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
 from rastrainer.study.rating.forms import FORMS, MARKS, RatingForm, find_form
@@ -157,7 +157,7 @@ class RatingStore:
         return tuple(found)
 
 
-def _order(connection: sqlite3.Connection, rater: str) -> list[str]:
+def _order(connection: Connection, rater: str) -> list[str]:
     rows = connection.execute(
         "SELECT trial_id FROM rated_replays WHERE rater = ? ORDER BY number", (rater,)
     ).fetchall()

@@ -7,11 +7,11 @@ from pathlib import Path
 from urllib.parse import quote
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.database import StudyDatabase
 from rastrainer.study.database.schema import MIGRATIONS
+from rastrainer.study.database.sqlite_database import SqliteDatabase
 
 
-class ReadOnlyStudyDatabase(StudyDatabase):
+class ReadOnlySqliteDatabase(SqliteDatabase):
     """A connection that cannot change the file.
 
     A study of an earlier format is migrated in memory. An incomplete transaction left by a crash is

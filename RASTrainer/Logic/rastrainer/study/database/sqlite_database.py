@@ -1,0 +1,200 @@
+"""The SQLite file of a study: safe settings, transactions, errors as sentences.
+
+The rollback journal is used, not the write-ahead log, which needs memory shared by all computers:
+it would silently damage a study on a hospital's network drive. Writers wait for each other; a trial
+takes milliseconds and comes once in minutes.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.files.writing import keep_others_out, open_private
+from rastrainer.study.database.database import LockWait, StudyBusyError, StudyDatabase
+from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
+
+_COMMANDS = "SELECT count(*) FROM sqlite_master WHERE type NOT IN ('table', 'index')"
+
+
+class SqliteDatabase(StudyDatabase):
+    """A connection to one file; each process and thread may have one."""
+
+    def __init__(self, path: str | os.PathLike[str], lock_wait: LockWait | None = None) -> None:
+        """Open or create the file, and migrate its tables.
+
+        Args:
+            path: of the file.
+            lock_wait: for locks of others; half a minute by default.
+
+        Raises:
+            InputError: no such folder, not a database, another program's, damaged, or of a newer
+                RASTrainer.
+            StudyBusyError: another program has locked it.
+        """
+        self.path = Path(path)
+        self.name = self.path.stem
+        self._lock_wait = lock_wait or LockWait()
+        self._check_place()
+        with self._sentences():
+            self._connection = self._connect()
+        try:
+            with self._sentences():
+                self._prepare()
+        except BaseException:
+            self._connection.close()
+            raise
+
+    def close(self) -> None:
+        """Close the connection; nothing is pending outside a transaction."""
+        self._connection.close()
+
+    @contextmanager
+    def reading(self) -> Iterator[sqlite3.Connection]:
+        """Give the connection for several reads of one state."""
+        with self._transaction("BEGIN") as connection:
+            yield connection
+
+    @contextmanager
+    def writing(self) -> Iterator[sqlite3.Connection]:
+        """Give the connection for changes in one transaction.
+
+        Raises:
+            InputError: the file is read-only, or the disk is full.
+            StudyBusyError: another program has locked it.
+        """
+        with self._transaction("BEGIN IMMEDIATE") as connection:
+            yield connection
+
+    def version(self) -> int | None:
+        """Return a number that changes when another connection changes the file.
+
+        Never waits, and is cheap enough to call every second. None if unknown, as during a change.
+        """
+        try:
+            self._connection.execute("PRAGMA busy_timeout = 0")
+            return self._number("data_version")
+        except sqlite3.Error:
+            return None
+
+    def continue_numbers(self) -> None:
+        """Do nothing: SQLite numbers new rows after the last one."""
+
+    @contextmanager
+    def _transaction(self, begin: str) -> Iterator[sqlite3.Connection]:
+        with self._sentences():
+            timeout_ms = 1000 * self._lock_wait.timeout_s
+            self._connection.execute(f"PRAGMA busy_timeout = {timeout_ms:.0f}")
+            self._connection.execute(begin)
+            try:
+                yield self._connection
+                self._connection.execute("COMMIT")
+            finally:
+                if self._connection.in_transaction:
+                    self._connection.execute("ROLLBACK")
+
+    def _connect(self) -> sqlite3.Connection:
+        self._keep_private()
+        # Transactions are explicit: `isolation_level=None`.
+        return sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s, isolation_level=None)
+
+    def _check_place(self) -> None:
+        if "\0" in str(self.path):
+            raise InputError("The name of a study database must not hold a null character.")
+        if self.path.is_dir():
+            raise InputError(f"{self.path} is a folder; a study database is a file.")
+        if not self.path.parent.is_dir():
+            raise InputError(f"There is no folder {self.path.parent} for the study database.")
+
+    def _keep_private(self) -> None:
+        """Keep others out of the file and its temporary companions."""
+        # Only a new file is opened: closing an existing one would release our other locks on it.
+        with contextlib.suppress(OSError):
+            os.close(open_private(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL))
+        for suffix in ("", "-journal", "-wal", "-shm"):
+            keep_others_out(f"{self.path}{suffix}")
+
+    def _prepare(self) -> None:
+        for pragma in (
+            "foreign_keys = ON",
+            # Deleted trainees leave no bytes behind in the file.
+            "secure_delete = ON",
+            # Also sync the folder: what was committed stays after a power failure, since the
+            # simulator forgets a trial that we have acknowledged.
+            "synchronous = EXTRA",
+            "journal_mode = DELETE",
+            "trusted_schema = OFF",
+        ):
+            self._connection.execute(f"PRAGMA {pragma}")
+        # In one transaction: another process may be creating the tables.
+        with self.reading():
+            self._check_origin()
+            is_old = self._number("user_version") < len(MIGRATIONS)
+        if is_old:
+            self._migrate()
+        self._check_whole()
+
+    def _check_whole(self) -> None:
+        if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
+            raise sqlite3.DatabaseError("malformed")
+        if self._connection.execute("PRAGMA foreign_key_check").fetchone() is not None:
+            raise sqlite3.DatabaseError("malformed")
+
+    def _check_origin(self) -> None:
+        tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        # Triggers and views in a foreign file could run as ours.
+        if self._connection.execute(_COMMANDS).fetchone()[0]:
+            raise InputError(f"The study {self.path} holds triggers or views; ours has none.")
+        if self._number("application_id") != (APPLICATION_ID if tables else 0):
+            raise InputError(f"{self.path} is the database of another program.")
+        if self._number("user_version") > len(MIGRATIONS):
+            raise InputError(
+                f"The study {self.path} was made by a newer RASTrainer (format "
+                f"{self._number('user_version')}, this one knows {len(MIGRATIONS)}); update it."
+            )
+
+    def _migrate(self) -> None:
+        with self.writing() as connection:
+            # Another process may have migrated meanwhile.
+            for version in range(self._number("user_version"), len(MIGRATIONS)):
+                for statement in MIGRATIONS[version]:
+                    connection.execute(statement)
+                connection.execute(f"PRAGMA user_version = {version + 1}")
+            connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+
+    def _number(self, pragma: str) -> int:
+        return self._connection.execute(f"PRAGMA {pragma}").fetchone()[0]
+
+    @contextmanager
+    def _sentences(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.IntegrityError, sqlite3.ProgrammingError, sqlite3.InterfaceError):
+            raise
+        except sqlite3.Error as error:
+            text = str(error).lower()
+            if "locked" in text:
+                self._lock_wait.note_timeout()
+                raise StudyBusyError(
+                    f"Another program has the study {self.path} locked; try again when it has "
+                    "finished."
+                ) from error
+            raise InputError(self._sentence(text)) from error
+
+    def _sentence(self, text: str) -> str:
+        reasons = {
+            "not a database": f"{self.path} is not a study database.",
+            "readonly": f"The study {self.path} is read-only; allow writing to it and its folder.",
+            "unable to open": f"The study {self.path} cannot be opened; check its permissions.",
+            "full": f"The study {self.path} cannot be written: the disk is full.",
+            "disk i/o": f"The study {self.path} cannot be read or written: the disk fails.",
+        }
+        for words, sentence in reasons.items():
+            if words in text:
+                return sentence
+        return f"The study {self.path} is damaged; restore it from a backup."

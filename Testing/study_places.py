@@ -1,0 +1,25 @@
+"""Where the tests keep a study: in SQLite, and in the soak test in PostgreSQL, too."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rastrainer.study.database.address import PostgresAddress
+from Testing.postgres_server import PostgresServer
+
+
+@pytest.fixture(scope="session")
+def postgres_server():
+    """A server for all tests that only want databases of it."""
+    with PostgresServer() as server:
+        yield server
+
+
+@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.soak)])
+def study_place(request, tmp_path) -> Path | PostgresAddress:
+    """Where a test begins its study."""
+    if request.param == "sqlite":
+        return tmp_path / "study.db"
+    return request.getfixturevalue("postgres_server").new_study()
