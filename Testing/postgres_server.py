@@ -13,6 +13,8 @@ import tempfile
 import time
 from pathlib import Path
 
+import trustme
+
 from rastrainer.errors import InputError
 from rastrainer.study.database.address import PostgresAddress
 from rastrainer.study.database.study import Study
@@ -62,7 +64,7 @@ class PostgresServer:
     def start(self) -> None:
         """Start it, and wait until it answers, also after a crash."""
         settings = {
-            "listen_addresses": "127.0.0.1",
+            "listen_addresses": "127.0.0.1,127.0.0.2",
             "unix_socket_directories": str(self.socket_folder),
             "unix_socket_permissions": "0777",
             "port": str(self.port),
@@ -111,6 +113,29 @@ class PostgresServer:
         words = ("-h", "127.0.0.1", "-p", str(self.port), "-U", "tester", "-d", database)
         command = [str(self.programs / "psql"), *words, "-qAtX", "-v", "ON_ERROR_STOP=1", "-c", sql]
         return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+    def ask_for_passwords(self) -> None:
+        """Let nobody in without one from now on, but the administrator through the socket."""
+        rules = "local all tester trust\nhost all tester 127.0.0.1/32 trust\n"
+        (self._data / "pg_hba.conf").write_text(f"{rules}host all all 0.0.0.0/0 scram-sha-256\n")
+        self.execute("SELECT pg_reload_conf()")
+
+    def offer_tls(self, folder: Path, name: str) -> Path:
+        """Offer TLS with a certificate of its own for a number; return what clients trust."""
+        issuer = trustme.CA()
+        key = self._data / "server.key"
+        issued = issuer.issue_cert(name)
+        (self._data / "server.crt").write_bytes(issued.cert_chain_pems[0].bytes())
+        key.write_bytes(issued.private_key_pem.bytes())
+        key.chmod(0o600)
+        if os.geteuid() == 0:
+            os.chown(key, pwd.getpwnam(USER).pw_uid, pwd.getpwnam(USER).pw_gid)
+        self.execute("ALTER SYSTEM SET ssl = on")
+        self.kill()
+        self.start()
+        trusted = folder / f"issuer-of-{name}.pem"
+        issuer.cert_pem.write_to_path(str(trusted))
+        return trusted
 
     def _as_user(self, *command: str) -> list[str]:
         if os.geteuid() != 0:

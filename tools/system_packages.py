@@ -51,6 +51,8 @@ def missing_packages(target: str) -> list[str]:
         wanted += _for_tests()
     if target == "soak":
         wanted += [package for package, file in REAL_HEADS.items() if not file.exists()]
+        if not list(Path("/usr/lib/postgresql").glob("*/bin/initdb")):
+            wanted += ["postgresql"]
         if not _loads("libusb-1.0.so.0"):  # By Open3D, a peer.
             wanted += ["libusb-1.0-0"]
     return wanted

@@ -6,7 +6,7 @@ import slicer
 from rastrainer.scenario.package import pack
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer import settings
-from rastrainer.slicer.settings import PORT, Setting
+from rastrainer.slicer.settings import PORT, STUDY_ADDRESS, Setting
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.slicer.host.host import Host
 
@@ -68,7 +68,8 @@ def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):
     host.type("programPathLineEdit", str(tmp_path / "rastrainer"))
     host.type("indexLineEdit", "https://wheels.example.org/simple")
     kept = {each.key for each in vars(settings).values() if isinstance(each, Setting)}
-    assert kept <= set(slicer.app.settings().allKeys())
+    # An address needs a server: test_study_at_an_address.py has one.
+    assert kept - {STUDY_ADDRESS.key} <= set(slicer.app.settings().allKeys())
     host = start()
     assert host.text("hostLineEdit") == "10.0.0.7"
     assert host.find("portSpinBox").value == 18999
@@ -95,6 +96,9 @@ def test_settings_that_cannot_be_used_leave_what_is_usual(start):
     host = start()
     slicer.app.settings().setValue(PORT.key, "a lot")
     slicer.app.settings().setValue("RASTrainer/Mode", "telepathy")
+    slicer.app.settings().setValue(STUDY_ADDRESS.key, "postgresql://seat:secret@host/study")
     host = start()
     assert host.find("portSpinBox").value == PORT.usual
     assert host.find("modeComboBox").currentText == "Desktop screen"
+    assert host.text("studyAddressLineEdit") == ""
+    assert host.find("studyPathLineEdit").enabled

@@ -247,6 +247,16 @@ def test_another_study_file_is_used_when_chosen_and_an_invalid_one_is_reported(p
     assert panels.find("traineeComboBox").count == 2
 
 
+def test_an_address_that_cannot_be_used_is_refused_without_repeating_its_password(panels):
+    panels.type("studyAddressLineEdit", "postgresql://seat:secret@host/study")
+    assert "must not hold a password" in panels.messages[-1].text
+    assert "secret" not in panels.messages[-1].text
+    panels.type("studyAddressLineEdit", "study.db")
+    assert "An address looks like postgresql://" in panels.messages[-1].text
+    assert panels.text("studyAddressLineEdit") == ""
+    assert panels.find("studyPathLineEdit").enabled
+
+
 # Scenario
 
 

@@ -9,15 +9,10 @@ from rastrainer.study.database.study import Study
 
 
 @pytest.fixture
-def path(tmp_path):
-    return tmp_path / "study.db"
-
-
-@pytest.fixture
-def logic(path):
+def logic(study_place, tmp_path):
     """A logic whose time the test sets."""
     times = [0.0]
-    logic = TraineeLogic(lambda: Study.open(path), path.parent, clock=lambda: times[0])
+    logic = TraineeLogic(lambda: Study.open(study_place), tmp_path, clock=lambda: times[0])
     logic.wait = lambda: times.append(times.pop() + LOOK_EVERY_S)
     logic.study.trainees()
     logic.wait()
@@ -26,8 +21,8 @@ def logic(path):
     logic.close()
 
 
-def test_a_trainee_of_another_slicer_is_noticed_once(logic, path):
-    with Study.open(path) as other:
+def test_a_trainee_of_another_slicer_is_noticed_once(logic, study_place):
+    with Study.open(study_place) as other:
         other.create_trainee("Blue")
     assert not logic.hasChangedElsewhere()
     logic.wait()
@@ -42,8 +37,9 @@ def test_what_was_done_here_is_nobody_elses(logic):
     assert not logic.hasChangedElsewhere()
 
 
-def test_a_study_that_is_locked_is_looked_at_later(logic, path):
-    other = sqlite3.connect(path, isolation_level=None)
+@pytest.mark.parametrize("study_place", ["sqlite"], indirect=True)
+def test_a_study_that_is_locked_is_looked_at_later(logic, study_place):
+    other = sqlite3.connect(study_place, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
     logic.wait()
     assert not logic.hasChangedElsewhere()

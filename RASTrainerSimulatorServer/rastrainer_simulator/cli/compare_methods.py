@@ -19,6 +19,7 @@ from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.published_noise import PUBLISHED_NOISE
 from rastrainer.report.sections.mode_comparison import Series, grouped_bars
 from rastrainer.scenario.scenario import Scenario, load_scenario
+from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.method_comparison import (
@@ -29,7 +30,7 @@ from rastrainer.trial.method_comparison import (
     targets_of,
 )
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.shared import text_table
+from rastrainer_simulator.cli.shared import add_study, text_table
 
 Found = Mapping[RegistrationMethod, Sequence[tuple[str, MethodResult]]]
 """By method, the trials' names and their results."""
@@ -56,7 +57,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "method that their points allow."
         ),
     )
-    parser.add_argument("study", type=Path, nargs="?", metavar="STUDY", help="a study's database")
+    add_study(parser, nargs="?")
     parser.add_argument("--scenario", type=Path, metavar="DIR", help="default: Colin27")
     parser.add_argument("--task", help="of simulated trials; default: the scenario's last one")
     parser.add_argument("--trials", type=int, default=20, help="simulated; default: %(default)s")
@@ -134,11 +135,11 @@ def _simulated(arguments: argparse.Namespace, scenario: Scenario, notes: list[st
     return {m: [(str(seed), study.trial(m, seed)) for seed in seeds] for m in possible}
 
 
-def _played(path: Path, scenario: Scenario, notes: list[str]) -> Found:
+def _played(place: StudyPlace, scenario: Scenario, notes: list[str]) -> Found:
     mesh, targets = read_head_mesh(scenario.head_mesh), targets_of(scenario)
     found: dict[RegistrationMethod, list[tuple[str, MethodResult]]] = {}
     others = 0
-    with Study.open_for_reading(path) as study:
+    with Study.open_for_reading(place) as study:
         names = [one.pseudonym for kept in (False, True) for one in study.trainees(archived=kept)]
         trials = [trial for name in names for trial in study.history(name)]
     for trial in trials:

@@ -8,6 +8,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.export.trainee_data import erase_trainee
 from rastrainer.study.database.study import Study
+from rastrainer_simulator.cli.shared import add_study
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -21,7 +22,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "is deleted, 1 journals may be left, 2 nothing was deleted."
         ),
     )
-    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    add_study(parser)
     parser.add_argument("pseudonym", metavar="PSEUDONYM")
     parser.add_argument(
         "--records", type=Path, metavar="DIR", help="the folder of the simulator's journals"
@@ -37,9 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
         InputError: there is no such study or trainee, a journal cannot be deleted, or --yes or
             --records lacks.
     """
-    if not arguments.study.is_file():
-        raise InputError(f"There is no file {arguments.study}.")
-    with Study.open(arguments.study) as study:
+    with Study.open(arguments.study, must_exist=True) as study:
         count = len(study.history(arguments.pseudonym))
         if not arguments.yes:
             raise InputError(

@@ -24,6 +24,7 @@ from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.folder import read_trajectory
 from rastrainer.json_checks import accepted
 from rastrainer.report.elements.scores import with_ctps
+from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow
@@ -31,7 +32,7 @@ from rastrainer_simulator.cli.record_store_settings import (
     home_page_url,
     read_record_store_settings,
 )
-from rastrainer_simulator.cli.shared import add_incomplete, read_known_study
+from rastrainer_simulator.cli.shared import add_incomplete, add_study, read_known_study
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 
@@ -46,7 +47,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "pseudonyms, and only those who agreed to research."
         ),
     )
-    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    add_study(parser)
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
     parser.add_argument(
         "--format", action="append", choices=FORMATS, help="may be repeated; default: all"
@@ -116,11 +117,11 @@ def _home_page(arguments: argparse.Namespace) -> str:
     return read_record_store_settings(arguments.config).home_page or HOME_PAGE
 
 
-def _stored(data: StudyData, path: Path) -> Iterator[tuple[TrialRow, StoredTrial]]:
+def _stored(data: StudyData, place: StudyPlace) -> Iterator[tuple[TrialRow, StoredTrial]]:
     """Yield the stored trials of a database; a CSV file has none."""
     known = [trial for trial in data.trials if trial.trial_id]
     if not known:
         return
-    with Study.open_for_reading(path) as study:
+    with Study.open_for_reading(place) as study:
         for trial in known:
             yield trial, study.trial(trial.trial_id)

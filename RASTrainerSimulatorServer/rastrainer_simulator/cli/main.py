@@ -21,6 +21,7 @@ SUBCOMMANDS = {
     "report": "rastrainer_simulator.cli.report",
     "export": "rastrainer_simulator.cli.export",
     "send-statements": "rastrainer_simulator.cli.send_statements",
+    "copy-study": "rastrainer_simulator.cli.copy_study",
     "delete-trainee": "rastrainer_simulator.cli.delete",
     "scenario": "rastrainer_simulator.cli.scenario",
     "simulator": "rastrainer_simulator.cli.simulator",

@@ -17,6 +17,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer_simulator.cli.shared import add_study
 
 LAST_TRIALS = 3
 
@@ -32,7 +33,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "runs are left out. Scores of different versions cannot be combined."
         ),
     )
-    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    add_study(parser)
     for group in ("novices", "experts"):
         parser.add_argument(
             f"--{group}", nargs="+", required=True, metavar="PSEUDONYM", help="five or more"
@@ -53,8 +54,6 @@ def run(arguments: argparse.Namespace) -> int:
         InputError: there is no such study, trainee or protocol, someone has too few scored trials
             or is in both groups, or the groups give no mark.
     """
-    if not arguments.study.is_file():
-        raise InputError(f"There is no file {arguments.study}.")
     both = sorted({*arguments.novices} & {*arguments.experts})
     if both:
         raise InputError(f"{both[0]} is named in both groups; name each person once, in one group.")

@@ -12,6 +12,7 @@ from rastrainer.study.rating.forms import FORMS, find_form
 from rastrainer.study.rating.rating_store import RatingStore
 from rastrainer.study.rating.rating_work import RatingWork
 from rastrainer_simulator.cli.records_option import add_records
+from rastrainer_simulator.cli.shared import add_study
 
 REPLAYS = 20
 
@@ -29,7 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "agree."
         ),
     )
-    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    add_study(parser)
     parser.add_argument(
         "--rater", required=True, metavar="NAME", help="a pseudonym of who rates, such as R1"
     )
@@ -69,13 +70,11 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("--view-port must be a number from 0 to 65535.")
     if arguments.replays < 1:
         raise InputError("--replays must be at least 1.")
-    if not arguments.study.is_file():
-        raise InputError(f"There is no file {arguments.study}.")
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.server.rating_server import serve_rating, trials_to_show
 
     forms = [find_form(name) for name in dict.fromkeys(arguments.form or FORMS)]
-    with Study.open(arguments.study) as study:
+    with Study.open(arguments.study, must_exist=True) as study:
         store = RatingStore(study)
         trials = trials_to_show(study, arguments.records)
         order = store.assign(arguments.rater, trials, arguments.replays, random.SystemRandom())

@@ -7,7 +7,14 @@ from pathlib import Path
 
 from rastrainer.report.report import write_report
 from rastrainer_simulator.cli.score import mean_times
-from rastrainer_simulator.cli.shared import add_incomplete, read_known_study
+from rastrainer_simulator.cli.shared import (
+    STUDY_HELP,
+    add_incomplete,
+    add_study,
+    read_known_study,
+)
+
+CSV_HEADER = "mode,subject,task,ct,rmse"
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -20,12 +27,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "Trainees who did not agree to research are left out."
         ),
     )
-    parser.add_argument(
-        "study",
-        type=Path,
-        metavar="STUDY",
-        help="a study's database, or a CSV file with the header mode,subject,task,ct,rmse",
-    )
+    add_study(parser, help_text=f"{STUDY_HELP}; or a CSV file with the header {CSV_HEADER}")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
     parser.add_argument(
         "--mean-ct",

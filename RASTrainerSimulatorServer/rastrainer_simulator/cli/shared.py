@@ -1,10 +1,12 @@
-"""What several commands share: tables for people, and reading studies that may be incomplete."""
+"""What several commands share: tables for people, where a study is, and reading studies."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
 
+from rastrainer.errors import InputError
+from rastrainer.study.database.address import EXAMPLE, StudyPlace, study_place
 from rastrainer.study.database.cohort_store import IncompleteStudyError
 from rastrainer.study.study_data import StudyData, read_study_data
 
@@ -21,6 +23,28 @@ def text_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
         for line in lines
     ]
     return "\n".join([aligned[0], "-" * (sum(widths) + 2 * len(widths) - 2), *aligned[1:]])
+
+
+STUDY_HELP = f"a study's file, or its address in PostgreSQL, such as {EXAMPLE}"
+
+
+def add_study(
+    parser: argparse.ArgumentParser,
+    name: str = "study",
+    metavar: str = "STUDY",
+    help_text: str = STUDY_HELP,
+    nargs: str | None = None,
+) -> None:
+    """Add where a study is to a command's parser: a `StudyPlace`."""
+    parser.add_argument(name, type=_place, metavar=metavar, help=help_text, nargs=nargs)
+
+
+def _place(text: str) -> StudyPlace:
+    try:
+        return study_place(text)
+    except InputError as error:
+        # In place of argparse's own sentence, which would repeat what was entered.
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def add_incomplete(parser: argparse.ArgumentParser) -> None:

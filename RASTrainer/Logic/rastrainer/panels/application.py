@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -9,13 +10,15 @@ from typing import Any
 import qt
 import slicer
 
+from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.scenario.library import user_library
 from rastrainer.slicer.logic.module_session import ModulePaths
 from rastrainer.slicer.program.simulator_package import SimulatorPackage, pythonSlicer
 from rastrainer.slicer.scene.views import WITH_PLOT, WITH_TABLE, BorrowedLayout
-from rastrainer.slicer.settings import STUDY, Settings
+from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Settings
 from rastrainer.slicer.translation import _
+from rastrainer.study.database.address import PostgresAddress, study_place
 
 
 def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:
@@ -32,7 +35,16 @@ def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:
         records=Path.home() / "RASTrainer" / "trials",
         library=user_library(),
         package=SimulatorPackage.of(moduleFile.parent),
+        studyAddress=_studyAddress(settings),
     )
+
+
+def _studyAddress(settings: Settings) -> PostgresAddress | None:
+    """Return the address that was chosen; None without one, or where it cannot be used."""
+    with contextlib.suppress(InputError):
+        place = study_place(settings.get(STUDY_ADDRESS))
+        return None if isinstance(place, Path) else place
+    return None
 
 
 def assetsFolder(moduleFile: Path) -> Path:

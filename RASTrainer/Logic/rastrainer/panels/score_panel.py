@@ -35,6 +35,7 @@ from rastrainer.slicer.scene.score_board import (
     standings,
 )
 from rastrainer.slicer.translation import _
+from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.analysis import TrialAnalysis
@@ -109,7 +110,7 @@ class ScorePanel:
         folder = qt.QFileDialog.getExistingDirectory(slicer.util.mainWindow(), caption)
         if folder:
             with slicer.util.tryWithErrorDisplay(_("The report was not written.")):
-                study = self._session.studyPath
+                study = self._session.studyPlace
                 page = self._work.run(
                     lambda report: inBackground(
                         lambda _report: _reportOn(study, Path(folder)), report
@@ -282,7 +283,7 @@ class ScorePanel:
         return standings(self._trainees.study, trial, self._session.cohort)
 
 
-def _reportOn(study: Path, folder: Path) -> Path:
+def _reportOn(study: StudyPlace, folder: Path) -> Path:
     """Write the report on a study into a folder and return its page."""
     return write_report(read_study_data(study), folder).page
 

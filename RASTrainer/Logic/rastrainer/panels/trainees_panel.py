@@ -25,9 +25,10 @@ from rastrainer.panels.widgets import (
 from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.study_plots import showCalibration, showLearningCurve
-from rastrainer.slicer.settings import STUDY
+from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import StoredAborted
+from rastrainer.study.database.address import EXAMPLE, study_place
 from rastrainer.study.database.values import StoredTrial, Trainee
 
 
@@ -45,8 +46,9 @@ class TraineesPanel:
             self._noteErasing,
             self._showDeleting,
         )
-        ui.studyPathLineEdit.currentPath = str(session.studyPath)
+        self._showPlace()
         ui.studyPathLineEdit.connect("currentPathChanged(QString)", self.chooseStudy)
+        ui.studyAddressLineEdit.connect("editingFinished()", self.chooseStudyAddress)
         ui.traineeComboBox.connect("activated(int)", self.chooseTrainee)
         ui.archivedCheckBox.connect("toggled(bool)", self._show)
         ui.consentCheckBox.connect("toggled(bool)", self.setConsent)
@@ -69,14 +71,38 @@ class TraineesPanel:
 
     def chooseStudy(self, path: str) -> None:
         """Continue with the study of another file, once its whole name is there."""
-        if not path.endswith(".db") or Path(path) == self._session.studyPath:
+        isFile = isinstance(self._session.studyPlace, Path)
+        if not isFile or not path.endswith(".db") or Path(path) == self._session.studyFile:
             return
         with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
             try:
                 self._session.chooseStudy(Path(path))
             finally:
-                self._ui.studyPathLineEdit.currentPath = str(self._session.studyPath)
+                self._showPlace()
             self._session.settings.set(STUDY, path)
+
+    def chooseStudyAddress(self) -> None:
+        """Continue with the study of another address; without one with that of the file."""
+        session, text = self._session, self._ui.studyAddressLineEdit.text.strip()
+        with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
+            try:
+                place = study_place(text or session.studyFile)
+                if text and isinstance(place, Path):
+                    raise InputError(_("An address looks like {text}.").format(text=EXAMPLE))
+                if place == session.studyPlace:
+                    return
+                session.chooseStudy(place)
+            finally:
+                self._showPlace()
+            session.settings.set(STUDY_ADDRESS, text)
+
+    def _showPlace(self) -> None:
+        """Show where the study is; a file is chosen only where no address is."""
+        ui, place = self._ui, self._session.studyPlace
+        isFile = isinstance(place, Path)
+        ui.studyAddressLineEdit.text = "" if isFile else str(place)
+        ui.studyPathLineEdit.enabled = isFile
+        ui.studyPathLineEdit.currentPath = str(self._session.studyFile)
 
     def chooseTrainee(self, _index: int = 0) -> None:
         """Choose the trainee of the list."""
@@ -162,8 +188,10 @@ class TraineesPanel:
         ui, isAtWork = self._ui, self._deletion.isUnderWay
         self._isErasing = self._isErasing and isAtWork
         # What is deleted is what was chosen.
-        for widget in (ui.studyPathLineEdit, ui.traineeComboBox):
+        for widget in (ui.studyAddressLineEdit, ui.traineeComboBox):
             widget.enabled = not isAtWork
+        isFile = isinstance(self._session.studyPlace, Path)
+        ui.studyPathLineEdit.enabled = isFile and not isAtWork
         ui.deleteTraineeButton.text = _("Cancel") if isAtWork else _("Delete…")
         if isAtWork:
             begun = _("The deletion has begun, and cannot be canceled any more.")

@@ -14,6 +14,7 @@ from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
+from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure, StoredTrial
@@ -130,22 +131,25 @@ class StudyData:
         ]
 
 
-def read_study_data(path: Path, allow_incomplete: bool = False) -> StudyData:
+def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyData:
     """Read a study's database, or a CSV file with the header `mode,subject,task,ct,rmse`.
 
     Notes beside a CSV file `NAME.csv` are read from `NAME.json`.
 
     Args:
-        path: Of the file.
+        place: Path of the file, or the address of the database.
         allow_incomplete: Accept an incomplete virtual cohort.
 
     Raises:
         IncompleteStudyError: the cohort is incomplete.
         InputError: the file is unusable, or has no trials of consenting trainees.
     """
-    if not path.is_file():
-        raise InputError(f"There is no file {path}.")
-    data = _from_csv(path) if path.suffix.lower() == ".csv" else _from_database(path)
+    if isinstance(place, Path) and not place.is_file():
+        raise InputError(f"There is no file {place}.")
+    if isinstance(place, Path) and place.suffix.lower() == ".csv":
+        data = _from_csv(place)
+    else:
+        data = _from_database(place)
     if data.gap and not allow_incomplete:
         raise IncompleteStudyError(
             f"{data.gap} Simulate it again into the same folder with the same options: only what "
@@ -153,7 +157,7 @@ def read_study_data(path: Path, allow_incomplete: bool = False) -> StudyData:
         )
     if not data.trials:
         raise InputError(
-            f"The study {path} holds no trials of trainees who agreed to research "
+            f"The study {place} holds no trials of trainees who agreed to research "
             f"({data.without_consent} did not)."
         )
     return data
@@ -176,8 +180,8 @@ def _from_csv(path: Path) -> StudyData:
     )
 
 
-def _from_database(path: Path) -> StudyData:
-    with Study.open_for_reading(path) as study:
+def _from_database(place: StudyPlace) -> StudyData:
+    with Study.open_for_reading(place) as study:
         progress = StudyProgress(study)
         protocol = progress.protocol()
         cohort = CohortStore(study).state()
@@ -199,7 +203,7 @@ def _from_database(path: Path) -> StudyData:
                 for name, version in stored.record.versions.items():
                     versions[name].add(version)
         return StudyData(
-            title=protocol.title if protocol else path.stem,
+            title=protocol.title if protocol else study.database.name,
             trials=tuple(trials),
             protocol=protocol,
             answers=tuple(a for a in progress.answers() if a.trainee in consenting),

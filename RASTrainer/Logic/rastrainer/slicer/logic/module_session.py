@@ -42,7 +42,9 @@ from rastrainer.slicer.scene.scenario_volume import VolumeLoader
 from rastrainer.slicer.scene.views import BorrowedLayout
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
+from rastrainer.study.database.address import PostgresAddress, StudyPlace
 from rastrainer.study.database.database import LockWait
+from rastrainer.study.database.postgres_driver import search_driver_in
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import TrialAnalysis
@@ -63,6 +65,7 @@ class ModulePaths:
         records: folder of the journals of the simulator that is started from here.
         library: folder of the user's own scenarios, which the simulator knows too.
         package: the simulator as it comes with the module.
+        studyAddress: of the study in PostgreSQL; None for that of the file.
     """
 
     assets: Path
@@ -72,6 +75,7 @@ class ModulePaths:
     records: Path
     library: Path
     package: SimulatorPackage
+    studyAddress: PostgresAddress | None = None
 
 
 class ModuleSession:
@@ -101,7 +105,8 @@ class ModuleSession:
         methodComparison: has trials simulated and registered by every method.
         procedurePlan: of a procedure, in the scene and in scenarios.
         cohort: trials of the published study, with which CTPS compares.
-        studyPath: file of the present study.
+        studyFile: file of the study that is not kept at an address.
+        studyPlace: where the present study is: that file, or an address.
         task: name of the chosen task.
         taskTitle: what people read.
         procedures: names and titles of the procedures of the chosen scenario.
@@ -134,9 +139,11 @@ class ModuleSession:
         self.places = places
         self.settings = settings or Settings()
         self.layout = BorrowedLayout(scene)
-        self.studyPath = places.study
+        self.studyFile = places.study
+        self.studyPlace: StudyPlace = places.studyAddress or places.study
         self._scene = scene
         self._lockWait = LockWait.interactive()
+        search_driver_in(places.simulator)
         cache = ScenarioCache.below(places.assets / "scenarios", places.library)
         self.procedures: tuple[tuple[str, str], ...] = ()
         self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
@@ -206,21 +213,23 @@ class ModuleSession:
             InputError: the file is no study, or cannot be used.
             StudyBusyError: another program has it locked.
         """
-        return Study.open(self.studyPath, self._lockWait, make_folder=True)
+        return Study.open(self.studyPlace, self._lockWait, make_folder=True)
 
     def openStudyPatiently(self) -> Study:
         """Open the present study in a thread that may wait for a lock; otherwise as `openStudy`."""
-        return Study.open(self.studyPath, make_folder=True)
+        return Study.open(self.studyPlace, make_folder=True)
 
-    def chooseStudy(self, path: Path) -> None:
-        """Continue with the study of another file, which is created if missing.
+    def chooseStudy(self, place: StudyPlace) -> None:
+        """Continue with another study, which is created if missing.
 
         Raises:
-            InputError: the file is no study, or cannot be used; the present one stays.
+            InputError: the place is no study, or cannot be used; the present one stays.
         """
-        Study.open(path, self._lockWait, make_folder=True).close()
+        Study.open(place, self._lockWait, make_folder=True).close()
         self.study.leaveStudy()
-        self.studyPath = path
+        self.studyPlace = place
+        if isinstance(place, Path):
+            self.studyFile = place
         self.trials.forgetWaiting()
         self.aborted.forgetWaiting()
         self.trainees.reopen()

@@ -72,7 +72,11 @@ class PostgresAddress:
         return self.host in _HERE or self.host.startswith("/")
 
 
-def study_place(place: str | os.PathLike[str] | PostgresAddress) -> Path | PostgresAddress:
+StudyPlace = Path | PostgresAddress
+"""Where a study is: the path of its file, or the address of its database."""
+
+
+def study_place(place: str | os.PathLike[str] | PostgresAddress) -> StudyPlace:
     """Return where a study is, from what a user has entered.
 
     Raises:

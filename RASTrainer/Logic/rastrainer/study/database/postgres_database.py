@@ -40,7 +40,7 @@ _SESSION = """
     SET timezone = 'UTC';
     SET synchronous_commit = on;
     SET statement_timeout = '60s';
-    SET idle_in_transaction_session_timeout = '30s';
+    SET idle_in_transaction_session_timeout = '20s';
     SET tcp_keepalives_idle = 10;
     SET tcp_keepalives_interval = 5;
     SET tcp_keepalives_count = 3;
@@ -180,7 +180,7 @@ class PostgresDatabase(StudyDatabase):
         timeout_s = self._lock_wait.timeout_s
         if timeout_s == 0.0:
             # It has just failed: a window does not wait again so soon.
-            raise StudyAwayError(f"The study {self._address} cannot be reached; it is tried again.")
+            raise StudyAwayError(f"The study {self._address} cannot be reached now.")
         connection = self._driver.connect(
             **self._address.connection_words,
             **_NETWORK,
@@ -286,16 +286,16 @@ class _Statements:
 
     def execute(self, sql: str, parameters: Sequence[Any] = (), /) -> Rows:
         """Execute a statement with `?` for each parameter."""
-        return self._connection.execute(_statement(sql), parameters)
+        return self._connection.execute(portable_to_postgres(sql), parameters)
 
     def executemany(self, sql: str, parameters: Iterable[Sequence[Any]], /) -> None:
         """Execute a statement for each of several sequences of parameters."""
         with self._connection.cursor() as cursor:
-            cursor.executemany(_statement(sql), parameters)
+            cursor.executemany(portable_to_postgres(sql), parameters)
 
 
 @functools.cache
-def _statement(sql: str) -> str:
+def portable_to_postgres(sql: str) -> str:
     """Return a statement with PostgreSQL's marks of parameters and way into JSON."""
     sql = _JSON_EXTRACT.sub(
         lambda found: f"({found[1]}::json #>> '{{{found[2].replace('.', ',')}}}')", sql

@@ -71,6 +71,5 @@ def postgres_error(error: Any, address: PostgresAddress) -> InputError | None:
     if not is_about_the_link:
         return InputError(_BY_STATE["22"]) if "nul (0x00)" in text else None
     return StudyAwayError(
-        f"The study {address} cannot be reached; it is tried again. "
-        f"({' '.join(text.split())[:_MAX_WORDS]})"
+        f"The study {address} cannot be reached now. ({' '.join(text.split())[:_MAX_WORDS]})"
     )

@@ -1,0 +1,158 @@
+"""Where a study is: a path, or an address of PostgreSQL, without password and over TLS."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.study.database import postgres_driver
+from rastrainer.study.database.address import PostgresAddress, study_place
+from rastrainer.study.database.postgres_errors import postgres_error
+from rastrainer.study.database.study import Study
+from rastrainer_simulator.cli.main import main
+
+SECRET = "hunter2"
+
+
+@pytest.mark.parametrize(
+    ("text", "address"),
+    [
+        ("postgresql://seat@db.lab/study", PostgresAddress("db.lab", "study", "seat")),
+        ("postgres://db.lab/study", PostgresAddress("db.lab", "study")),
+        ("postgresql://[::1]:5433/study", PostgresAddress("::1", "study", port=5433)),
+        (
+            "postgresql://s%40t@db.lab/a%20study?sslmode=verify-ca&sslrootcert=/etc/lab%20ca.crt",
+            PostgresAddress(
+                *("db.lab", "a study", "s@t", None),
+                {"sslmode": "verify-ca", "sslrootcert": "/etc/lab ca.crt"},
+            ),
+        ),
+        (
+            "postgresql:///study?host=/run/postgresql&port=5433",
+            PostgresAddress("/run/postgresql", "study", port=5433),
+        ),
+    ],
+    ids=["usual", "short-scheme", "ipv6", "quoted", "socket"],
+)
+def test_an_address_is_read_and_written(text, address):
+    assert study_place(text) == address
+    assert study_place(str(address)) == address
+    assert study_place(address) is address
+
+
+def test_what_is_no_address_is_a_path():
+    assert study_place("study.db") == Path("study.db")
+    assert study_place(Path("a", "study.db")) == Path("a", "study.db")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (f"postgresql://seat:{SECRET}@host/study", "must not hold a password"),
+        (f"postgresql://host/study?password={SECRET}", "must not hold a password"),
+        (f"postgresql://host/study?sslpassword={SECRET}", "may have each of"),
+        ("postgresql://host/study?options=-csearch_path%3Devil", "may have each of"),
+        ("postgresql://host/study?port=1&port=2", "may have each of"),
+        ("postgresql://host", "names a host and a database"),
+        ("postgresql:///study", "names a host and a database"),
+        ("postgresql://a,b/study", "names a host and a database"),
+        ("postgresql://host:99999/study", "looks like"),
+        ("postgresql://host/study?port=0x1", "number from 1 to 65535"),
+        ("postgresql://host/study\n", "printable text"),
+        (f"postgresql://host/{'x' * 1000}", "printable text"),
+        ("postgresql://host/study?sslmode=disable", "over TLS"),
+        ("postgresql://host/study?sslmode=require", "over TLS"),
+        ("postgresql://localhost.evil.org/study?sslmode=prefer", "over TLS"),
+    ],
+)
+def test_an_unusable_address_is_refused_and_not_repeated(text, words):
+    with pytest.raises(InputError, match=words) as caught:
+        study_place(text)
+    assert SECRET not in str(caught.value)
+    assert text not in str(caught.value)
+
+
+def test_another_computer_is_reached_over_tls_with_a_certificate_that_is_checked():
+    assert study_place("postgresql://db.lab/study").connection_words["sslmode"] == "verify-full"
+    assert "sslmode" not in study_place("postgresql://localhost/study").connection_words
+
+
+def test_a_command_with_a_password_in_its_address_shows_it_nowhere(capsys):
+    with pytest.raises(SystemExit):
+        main(["report", f"postgresql://seat:{SECRET}@host/study", "-o", "out"])
+    told = "".join(capsys.readouterr())
+    assert "must not hold a password" in told
+    assert SECRET not in told
+
+
+def test_a_study_at_an_address_says_what_is_missing_where_the_driver_is(monkeypatch):
+    def missing(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(postgres_driver.importlib, "import_module", missing)
+    with pytest.raises(InputError, match="needs the package psycopg, which comes with the sim"):
+        Study.open("postgresql://localhost/study")
+
+
+def test_the_driver_is_found_in_the_simulators_folder_and_nothing_else_of_it(tmp_path, monkeypatch):
+    folder = tmp_path / "simulator"
+    folder.mkdir()
+    (folder / "psycopg.py").write_text("ORIGIN = 'simulator'")
+    (folder / "other_of_simulator.py").write_text("")
+    monkeypatch.setattr(postgres_driver, "_folders", [])
+    for name in [name for name in postgres_driver.sys.modules if name.startswith("psycopg")]:
+        monkeypatch.delitem(postgres_driver.sys.modules, name)
+    elsewhere = [entry for entry in postgres_driver.sys.path if "site-packages" not in entry]
+    monkeypatch.setattr(postgres_driver.sys, "path", elsewhere)
+    postgres_driver.search_driver_in(folder)
+    assert postgres_driver.postgres_driver().ORIGIN == "simulator"
+    assert postgres_driver.sys.path == elsewhere
+    with pytest.raises(ImportError):
+        __import__("other_of_simulator")
+    del postgres_driver.sys.modules["psycopg"]
+
+
+class RefusalError(Exception):
+    """Stands for an error of psycopg."""
+
+    def __init__(self, text, sqlstate=None):
+        super().__init__(text)
+        self.sqlstate = sqlstate
+
+
+class OperationalError(RefusalError):
+    """Of the same name as psycopg's."""
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (RefusalError("canceling statement", "55P03"), "Another program has the study"),
+        (RefusalError("disk", "53100"), "the disk of its server is full"),
+        (RefusalError("no", "42501"), "make it the owner"),
+        (RefusalError("read", "25006"), "is read-only"),
+        (RefusalError("x", "22P02"), "did not write"),
+        (RefusalError("text fields cannot contain NUL (0x00) bytes"), "did not write"),
+        (RefusalError("relation does not exist", "42P01"), "is damaged"),
+        (OperationalError('FATAL: password authentication failed for user "s"'), "refuses"),
+        (OperationalError("fe_sendauth: no password supplied"), "asks for a password"),
+        (OperationalError("SSL error: certificate verify failed"), "somebody else may be"),
+        (OperationalError('certificate for "b" does not match host name "a"'), "another computer"),
+        (OperationalError('root certificate file "/r" does not exist'), "sslrootcert"),
+        (OperationalError("server does not support SSL, but SSL was required"), "not offer TLS"),
+        (OperationalError('FATAL:  database "x" does not exist'), "no such database"),
+        (OperationalError("connection refused"), "cannot be reached now"),
+    ],
+)
+def test_what_the_server_reports_becomes_a_sentence(error, words):
+    assert words in str(postgres_error(error, PostgresAddress("host", "study")))
+
+
+def test_a_mistake_of_ours_is_no_sentence():
+    assert postgres_error(RefusalError("syntax error", "42601"), PostgresAddress("h", "s")) is None
+    assert (
+        postgres_error(RefusalError("the query has 1 placeholder"), PostgresAddress("h", "s"))
+        is None
+    )

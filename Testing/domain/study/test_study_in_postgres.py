@@ -1,0 +1,438 @@
+"""A study in PostgreSQL with concurrent seats, kills, locks, hostile rows, and copies of it."""
+
+from __future__ import annotations
+
+import json
+import random
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.study.database.copying import copy_study
+from rastrainer.study.database.database import LockWait, StudyAwayError, StudyBusyError
+from rastrainer.study.database.schema import MIGRATIONS
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.tables import study_tables
+from rastrainer_simulator.cli.main import main
+from Testing.domain.study.played_study import study_with_trials
+from Testing.domain.study.test_study_database import KilledWriter, stored_numbers, writer
+from Testing.domain.trial.trial_records import make_record
+from Testing.postgres_server import PostgresServer, opened_when_there
+
+pytestmark = pytest.mark.soak
+
+
+@pytest.fixture
+def place(postgres_server):
+    return postgres_server.new_study()
+
+
+@pytest.fixture
+def own_server():
+    """A server that the test may kill."""
+    with PostgresServer() as server:
+        yield server
+
+
+def test_concurrent_seats_lose_and_duplicate_nothing(place):
+    Study.open(place).close()
+    writers = [writer(place, 0, 60), writer(place, 30, 90)]
+    for process in writers:
+        process.communicate(timeout=600)
+        assert process.returncode == 0
+    assert stored_numbers(place) == list(range(90))
+
+
+def test_seats_that_begin_a_study_at_once_make_it_once(place):
+    writers = [writer(place, number, number + 1) for number in range(4)]
+    for process in writers:
+        process.communicate(timeout=600)
+        assert process.returncode == 0
+    assert stored_numbers(place) == [0, 1, 2, 3]
+
+
+def test_killed_seats_lose_and_duplicate_nothing(place):
+    rng = random.Random(5)
+    Study.open(place).close()
+    acknowledged, kills = set(), 0
+    writers = [KilledWriter(place, 0), KilledWriter(place, 0)]
+    while kills < 100:
+        time.sleep(rng.uniform(0.0, 0.2))
+        victim = rng.randrange(2)
+        acknowledged |= writers[victim].kill()
+        kills += 1
+        first = max(0, max(acknowledged, default=0) - rng.randrange(4))
+        writers[victim] = KilledWriter(place, first)
+    for process in writers:
+        acknowledged |= process.kill()
+    stored = stored_numbers(place)
+    assert acknowledged <= set(stored)
+    assert len(stored) == len(set(stored))
+
+
+def test_a_server_killed_while_trials_are_stored_loses_none_that_was_acknowledged(own_server):
+    place, rng = own_server.new_study(), random.Random(6)
+    acknowledged, away, number = [], 0, 0
+    study, is_over = opened_when_there(place), threading.Event()
+
+    def kill_now_and_then():
+        for _ in range(10):
+            time.sleep(rng.uniform(0.1, 0.4))
+            own_server.kill()
+            own_server.start()
+        is_over.set()
+
+    killer = threading.Thread(target=kill_now_and_then)
+    killer.start()
+    while not is_over.is_set() or number < 10:
+        record = make_record(trialId=f"00000000-0000-0000-0000-{number:012d}")
+        try:
+            study.add_trial(record)
+        except StudyAwayError:
+            away += 1
+            continue
+        acknowledged.append(number)
+        number += 1
+    killer.join()
+    study.close()
+    assert away
+    assert stored_numbers(place) == acknowledged
+
+
+def test_a_connection_is_made_anew_after_the_server_was_away(own_server):
+    place = own_server.new_study()
+    with Study.open(place) as study:
+        study.create_trainee("a")
+        own_server.kill()
+        with pytest.raises(StudyAwayError, match="cannot be reached now"):
+            study.trainees()
+        assert study.database.version() is None
+        own_server.start()
+        assert [trainee.pseudonym for trainee in study.trainees()] == ["a"]
+        assert study.create_trainee().pseudonym == "T002"
+
+
+def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place):
+    with Study.open(place) as holder:
+        lock_wait = LockWait(0.05, rest_s=1.0, clock=lambda: 0.0)
+        with Study.open(place, lock_wait) as study:
+            with holder.database.writing():
+                with pytest.raises(StudyBusyError, match="Another program has the study"):
+                    study.create_trainee("a")
+                assert lock_wait.timeout_s == 0.0
+                # Readers wait for nobody.
+                assert study.trainees() == ()
+            study.create_trainee("a")
+
+
+STOPPED = """
+import os, signal, sys
+from rastrainer.study.database.study import Study
+study = Study.open(sys.argv[1])
+with study.database.writing() as connection:
+    print("locked", flush=True)
+    os.kill(os.getpid(), signal.SIGSTOP)
+"""
+
+
+def test_a_seat_that_has_stopped_in_a_change_blocks_nobody_for_ever(place):
+    Study.open(place).close()
+    command = [sys.executable, "-c", STOPPED, str(place)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as stopped:
+        assert stopped.stdout.readline() == "locked\n"
+        with Study.open(place, LockWait(600.0)) as study:
+            assert study.create_trainee("a")
+        stopped.kill()
+
+
+def test_a_reader_sees_one_state_and_a_writer_the_latest(place):
+    with Study.open(place) as seat, Study.open(place) as other:
+        seat.create_trainee("a")
+        with other.database.reading() as connection:
+            query = "SELECT count(*) FROM trainees"
+            assert connection.execute(query).fetchone() == (1,)
+            seat.create_trainee("b")
+            assert connection.execute(query).fetchone() == (1,)
+        assert len(other.trainees()) == 2
+
+
+def test_a_study_that_is_only_read_is_never_changed(place, postgres_server):
+    with pytest.raises(InputError, match="holds no study"):
+        Study.open_for_reading(place)
+    with pytest.raises(InputError, match="holds no study"):
+        Study.open(place, must_exist=True)
+    assert (
+        postgres_server.execute(
+            "SELECT count(*) FROM pg_tables WHERE schemaname = 'public'", place.database
+        )
+        == "0"
+    )
+    study_with_trials(place)
+    with Study.open_for_reading(place) as study:
+        assert study.history("A")
+        with pytest.raises(InputError, match="read-only"):
+            study.create_trainee("C")
+
+
+def test_a_role_that_may_only_read_reads_and_its_writing_is_refused(place, postgres_server):
+    study_with_trials(place)
+    postgres_server.execute(
+        "CREATE ROLE reader LOGIN; GRANT SELECT ON ALL TABLES IN SCHEMA public TO reader",
+        place.database,
+    )
+    with Study.open_for_reading(postgres_server.address(place.database, "reader")) as study:
+        assert study.history("A")
+    with Study.open(postgres_server.address(place.database, "reader")) as study:
+        with pytest.raises(InputError, match="may not do this"):
+            study.create_trainee("C")
+        assert study.history("A")
+
+
+@pytest.mark.parametrize(
+    ("sql", "words"),
+    [
+        ("CREATE TABLE recipes (name TEXT)", "database of another program"),
+        ("CREATE TABLE rastrainer_study (application_id INT, user_version INT, changes INT)",
+         "database of another program"),
+        ("CREATE VIEW trials AS SELECT 1", "holds triggers, views"),
+    ],
+    ids=["other", "empty-header", "view"],
+)  # fmt: skip
+def test_another_programs_database_is_refused_and_left_as_it_is(sql, words, place, postgres_server):
+    postgres_server.execute(sql, place.database)
+    dump = "SELECT string_agg(relname, ',' ORDER BY relname) FROM pg_class WHERE relkind IN ('r', 'v') AND relnamespace = 'public'::regnamespace"  # noqa: E501
+    before = postgres_server.execute(dump, place.database)
+    with pytest.raises(InputError, match=words):
+        Study.open(place)
+    assert postgres_server.execute(dump, place.database) == before
+
+
+@pytest.mark.parametrize(
+    ("sql", "words"),
+    [
+        ("CREATE RULE r AS ON DELETE TO trials DO INSTEAD NOTHING", "holds triggers"),
+        ("ALTER TABLE trials ENABLE ROW LEVEL SECURITY; CREATE POLICY p ON trials USING (false)",
+         "holds triggers"),
+        ("CREATE FUNCTION f() RETURNS trigger AS 'BEGIN RETURN NULL; END' LANGUAGE plpgsql; "
+         "CREATE TRIGGER t BEFORE INSERT ON trials FOR EACH ROW EXECUTE FUNCTION f()",
+         "holds triggers"),
+        ("UPDATE rastrainer_study SET user_version = 99",
+         f"newer RASTrainer .*99, this one knows {len(MIGRATIONS)}"),
+    ],
+    ids=["rule", "policy", "trigger", "newer"],
+)  # fmt: skip
+def test_a_study_that_somebody_has_changed_is_refused(sql, words, place, postgres_server):
+    Study.open(place).close()
+    postgres_server.execute(sql, place.database)
+    with pytest.raises(InputError, match=words):
+        Study.open(place)
+
+
+@pytest.mark.parametrize(
+    "sql",
+    [
+        "UPDATE trials SET record_json = '[1]'",
+        "UPDATE trials SET record_json = 'x'",
+        """UPDATE trials SET record_json = replace(record_json, '{', '{"a": NaN, ')""",
+        "UPDATE trials SET completion_time_s = 'NaN'",
+        "UPDATE scores SET score = 'Infinity'",
+        "UPDATE scores SET score_json = '{}'",
+    ],
+)
+def test_a_foreign_value_is_reported(sql, place, postgres_server, tmp_path, capsys):
+    study_with_trials(place)
+    postgres_server.execute(sql, place.database)
+    told = []
+    with Study.open(place) as study:
+        for ask in (study.past_trials, study.history):
+            try:
+                ask("A")
+            except InputError as error:
+                told.append(str(error))
+        if "Infinity" in sql or "NaN'" in sql:
+            with pytest.raises(InputError, match="did not write"):
+                study.outcomes("task-1", "desktop")
+            return
+    assert any("did not write" in each for each in told)
+    assert main(["report", str(place), "-o", str(tmp_path / "report")]) == 2
+    assert "did not write" in capsys.readouterr().err
+
+
+def rows_of(place):
+    with Study.open_for_reading(place) as study, study.database.reading() as connection:
+        return {
+            table.name: connection.execute(
+                f"SELECT {', '.join(table.columns)} FROM {table.name} ORDER BY {table.order}"
+            ).fetchall()
+            for table in study_tables()
+        }
+
+
+def written(place, folder):
+    """Return all files of report and exports, by name."""
+    assert main(["report", str(place), "-o", str(folder / "report")]) == 0
+    assert main(["export", str(place), "-o", str(folder / "export")]) == 0
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+def test_a_study_is_copied_there_and_back_to_the_last_bit(place, tmp_path, capsys):
+    file, back = tmp_path / "study.db", tmp_path / "back.db"
+    study_with_trials(file)
+    with Study.open(file) as study:
+        study.create_trainee("gone")
+        study.delete_trainee("gone")
+    assert main(["copy-study", str(file), str(place)]) == 0
+    assert "2 trainees, " in capsys.readouterr().out
+    assert main(["copy-study", str(place), str(back)]) == 0
+    assert rows_of(file) == rows_of(place) == rows_of(back)
+    reports = [written(each, tmp_path / name) for name, each in
+               (("a", file), ("b", place), ("c", back))]  # fmt: skip
+    assert reports[0] == reports[1] == reports[2]
+    assert len(reports[0]) > 10
+    for each in (place, back):
+        with Study.open(each) as study:
+            assert study.create_trainee().pseudonym == "T004"
+            assert study.add_trial(make_record(trainee="A"))
+            study.add_results(make_record()["trialId"], [])
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "told"),
+    [
+        (("pass-mark", "--novices", "A", "--experts", "B"), 2, "scored trials, and 3 are needed"),
+        (("compare-methods",), 2, "can be registered on"),
+        (("rate", "--rater", "R1", "--no-window", "--records", "."), 2, "replay"),
+        (("delete-trainee", "A", "--records", ".", "--yes"), 1, "3 trials and 0 journals deleted"),
+    ],
+    ids=lambda value: value[0] if isinstance(value, tuple) else "",
+)
+def test_every_command_that_takes_a_study_takes_an_address(
+    words, status, told, place, tmp_path, monkeypatch, capsys
+):
+    study_with_trials(place)
+    monkeypatch.chdir(tmp_path)
+    assert main([words[0], str(place), *words[1:]]) == status
+    assert told in "".join(capsys.readouterr())
+
+
+def test_a_study_is_copied_into_an_empty_one_only(place, tmp_path, capsys):
+    file = tmp_path / "study.db"
+    study_with_trials(file)
+    study_with_trials(place)
+    before = rows_of(place)
+    assert main(["copy-study", str(file), str(place)]) == 2
+    assert "holds something; choose an empty one" in capsys.readouterr().err
+    assert rows_of(place) == before
+
+
+def test_a_copy_that_is_broken_off_leaves_nothing(place, tmp_path, monkeypatch):
+    file = tmp_path / "study.db"
+    study_with_trials(file)
+    with Study.open_for_reading(file) as source, Study.open(place) as target:
+        monkeypatch.setattr(type(target.database), "continue_numbers", lambda _self: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            copy_study(source, target)
+        assert target.trainees() == ()
+
+
+def test_a_server_that_could_lose_what_it_acknowledged_is_refused(own_server):
+    place = own_server.new_study()
+    own_server.execute("ALTER SYSTEM SET fsync = off")
+    own_server.kill()
+    own_server.start()
+    with pytest.raises(InputError, match="fsync = off"):
+        Study.open(place)
+
+
+def test_a_password_is_found_in_its_file_and_shown_nowhere(own_server, tmp_path):
+    place = own_server.new_study()
+    own_server.execute("CREATE ROLE seat LOGIN PASSWORD 'hunter2'")
+    own_server.execute(
+        f"GRANT ALL ON SCHEMA public TO seat; ALTER DATABASE {place.database} OWNER TO seat",
+        place.database,
+    )
+    own_server.ask_for_passwords()
+    script = "import sys; from rastrainer_simulator.cli.main import main; sys.exit(main())"
+    words = [sys.executable, "-c", script, "copy-study", str(tmp_path / "study.db")]
+    words.append(str(own_server.address(place.database, "seat")))
+    study_with_trials(tmp_path / "study.db")
+    passwords = tmp_path / "pgpass"
+    environment = {"PGPASSFILE": str(passwords), "PATH": "/usr/bin", "HOME": str(tmp_path)}
+
+    def told():
+        done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
+        assert "hunter" not in done.stdout + done.stderr
+        return done.stdout + done.stderr
+
+    assert "asks for a password; put it into ~/.pgpass" in told()
+    passwords.write_text(f"127.0.0.1:{own_server.port}:*:seat:hunter3\n")
+    passwords.chmod(0o600)
+    assert "refuses this user" in told()
+    passwords.write_text(f"127.0.0.1:{own_server.port}:*:seat:hunter2\n")
+    assert "each compared with its original" in told()
+
+
+def test_another_computer_is_reached_over_tls_alone(own_server, tmp_path):
+    place = own_server.new_study()
+    # To libpq, a number of the loop that is not in our list is another computer.
+    far = f"postgresql://tester@127.0.0.2:{own_server.port}/{place.database}"
+    with pytest.raises(InputError, match=r"does not offer TLS|sslrootcert"):
+        Study.open(far)
+    certificate = own_server.offer_tls(tmp_path, "127.0.0.2")
+    with Study.open(f"{far}?sslrootcert={certificate}") as study:
+        assert study.create_trainee("a")
+    other = own_server.offer_tls(tmp_path, "127.0.0.3")
+    with pytest.raises(InputError, match="another computer's: somebody else"):
+        Study.open(f"{far}?sslrootcert={other}")
+    with pytest.raises(InputError, match="not the one of its issuer"):
+        Study.open(f"{far}?sslrootcert={certificate}")
+
+
+def test_a_backup_by_postgresqls_own_programs_is_restored(own_server, tmp_path):
+    place, empty = own_server.new_study(), own_server.new_study()
+    study_with_trials(place)
+    backup = tmp_path / "study.dump"
+    where = ["-h", "127.0.0.1", "-p", str(own_server.port), "-U", "tester"]
+    programs = own_server.programs
+    subprocess.run([programs / "pg_dump", *where, "-Fc", "-f", backup, place.database], check=True)
+    subprocess.run(
+        [programs / "pg_restore", *where, "--exit-on-error", "-1", "-d", empty.database, backup],
+        check=True,
+    )
+    assert rows_of(empty) == rows_of(place)
+    with Study.open(empty) as study:
+        assert study.add_trial(make_record())
+
+
+def test_the_same_numbers_come_back_bit_by_bit(place):
+    values = [0.1, 1e-300, 5e-324, 1.7976931348623157e308, -0.0, 2 / 3]
+    rng = random.Random(7)
+    values += [rng.uniform(-1, 1) * 10.0 ** rng.randrange(-12, 12) for _ in range(500)]
+    with Study.open(place) as study:
+        study.add_trial(make_record())
+        trial = make_record()["trialId"]
+        with study.database.writing() as connection:
+            connection.executemany(
+                "INSERT INTO scores (trial_id, score, version, score_json, stored_utc) "
+                "VALUES (?, ?, '3', '{}', '')",
+                [(trial, value) for value in values],
+            )
+        with study.database.reading() as connection:
+            found = [row[0] for row in connection.execute("SELECT score FROM scores ORDER BY id")]
+    assert json.dumps(found) == json.dumps(values)
+
+
+def test_pseudonyms_are_in_the_order_of_sqlite(place, tmp_path):
+    names = ["b", "B", "a", "é", "Z", "z", "_", "10", "9", "ß", "Ä", "日本"]
+    orders = []
+    for where in (place, tmp_path / "study.db"):
+        with Study.open(where) as study:
+            for name in names:
+                study.create_trainee(name)
+            orders.append([trainee.pseudonym for trainee in study.trainees()])
+    assert orders[0] == orders[1]
