@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
@@ -17,6 +16,7 @@ from rastrainer.study.curriculum.wording import (
     title_of,
 )
 from rastrainer.study.database.study import Study
+from rastrainer_simulator.cli.shared import add_study
 
 HEADER = ("assignment", "trial", "state", "progress", "played", "latest mean")
 
@@ -32,7 +32,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "overwritten; trials count, also those from before."
         ),
     )
-    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database")
+    add_study(parser)
     choice = parser.add_mutually_exclusive_group()
     choice.add_argument("--set", type=Path, metavar="FILE", help="a curriculum to follow from now")
     choice.add_argument("--end", action="store_true", help="follow no curriculum from now")
@@ -46,12 +46,10 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         InputError: there is no such study, trainee or curriculum.
     """
-    if not arguments.study.is_file():
-        raise InputError(f"There is no file {arguments.study}.")
     curriculum = None if arguments.set is None else read_curriculum(arguments.set)
     who = arguments.trainee or ""
     if curriculum is not None or arguments.end:
-        with Study.open(arguments.study) as study:
+        with Study.open(arguments.study, must_exist=True) as study:
             CurriculumStore(study).choose(curriculum, who)
         what = "no curriculum" if curriculum is None else f"“{curriculum.title}”"
         print(f"{who or 'Everybody'} follows {what} from now.")

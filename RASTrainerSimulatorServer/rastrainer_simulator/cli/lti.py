@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.protocol import DEFAULT_HOST
+from rastrainer_simulator.cli.shared import add_study
 
 if TYPE_CHECKING:
     from rastrainer_simulator.lti.settings import LtiSettings
@@ -32,7 +33,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "settings."
         ),
     )
-    parser.add_argument("study", type=Path, metavar="STUDY", help="a study's database", nargs="?")
+    add_study(parser, nargs="?")
     parser.add_argument(
         "--show", action="store_true", help="print what the platform's administrator enters"
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
 import os
 import sys
 import time
@@ -14,10 +13,10 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.export.xapi import statements
 from rastrainer.files.reading import printable_name, read_json, read_text
-from rastrainer.files.writing import make_private_folder, write_json
+from rastrainer.files.writing import write_json
 from rastrainer.json_checks import accepted
 from rastrainer.number_text import counted
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.companions import beside_study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.record_store_settings import (
     RECORD_STORE_FILE,
@@ -26,7 +25,6 @@ from rastrainer_simulator.cli.record_store_settings import (
 )
 from rastrainer_simulator.cli.shared import add_study
 from rastrainer_simulator.net.record_store import BATCH, Delivery, RecordStore, StoreAwayError
-from rastrainer_simulator.ops.folders import config_folder
 
 CREDENTIALS_VARIABLE = "RASTRAINER_XAPI_CREDENTIALS"
 FIRST_RETRY_S, LAST_RETRY_S = 2.0, 300.0
@@ -185,7 +183,7 @@ def run(arguments: argparse.Namespace) -> int:
     def read() -> list[dict[str, Any]]:
         return statements(read_study_data(arguments.study, allow_incomplete=True), home_page)
 
-    sent = SentStatements(_beside(arguments.study), address, home_page)
+    sent = SentStatements(beside_study(arguments.study), address, home_page)
     sender = Sender(read, store, sent)
     if arguments.watch is not None:
         sender.watch(arguments.watch)
@@ -194,21 +192,6 @@ def run(arguments: argparse.Namespace) -> int:
     except StoreAwayError as error:
         print(f"rastrainer: {error} Nothing is lost: run the command again.", file=sys.stderr)
         return 1
-
-
-def _beside(place: StudyPlace) -> Path:
-    """Return the path by which files that go with a study are named.
-
-    Those of a study in PostgreSQL are kept in the user's settings, by its address.
-    """
-    if isinstance(place, Path):
-        return place
-    folder = config_folder() / "studies"
-    try:
-        make_private_folder(folder)
-    except OSError as error:
-        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
-    return folder / hashlib.sha256(str(place).encode()).hexdigest()[:16]
 
 
 def _tell(delivery: Delivery) -> None:

@@ -7,6 +7,8 @@ from datetime import timedelta
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.companions import beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import LinkedAssignment, PlatformLinks
@@ -49,16 +51,16 @@ class DueGrade:
 class CourseStudy:
     """A study and its links to platforms; for one thread."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, place: StudyPlace) -> None:
         """Open an existing study.
 
         Raises:
             InputError: there is none, or it cannot be used.
         """
-        if not path.is_file():
-            raise InputError(f"There is no study {path}; make it in 3D Slicer first.")
-        self._study = Study.open(path)
-        self._links = PlatformLinks(path)
+        if isinstance(place, Path) and not place.is_file():
+            raise InputError(f"There is no study {place}; make it in 3D Slicer first.")
+        self._study = Study.open(place, must_exist=True)
+        self._links = PlatformLinks(beside_study(place))
 
     def close(self) -> None:
         """Close it."""

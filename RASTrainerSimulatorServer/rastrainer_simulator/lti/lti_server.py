@@ -7,13 +7,13 @@ import contextlib
 import re
 import ssl
 from collections.abc import Mapping
-from pathlib import Path
 
 from aiohttp import hdrs, web
 from aiohttp.typedefs import Handler
 from yarl import URL
 
 from rastrainer.errors import InputError
+from rastrainer.study.database.address import StudyPlace
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.lti.course_study import CourseStudy
 from rastrainer_simulator.lti.grade_return import GradeReturn
@@ -50,7 +50,7 @@ class LtiServer:
 
     def __init__(
         self,
-        study: Path,
+        study: StudyPlace,
         settings: LtiSettings,
         key: ToolKey,
         client: PlatformClient,

@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import TypeVar
 
+from rastrainer.study.database.address import StudyPlace
 from rastrainer_simulator.lti.course_study import CourseStudy
 
 T = TypeVar("T")
@@ -16,8 +16,8 @@ T = TypeVar("T")
 class StudyThread:
     """Does one thing after the other with a study, which is opened by the first."""
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
+    def __init__(self, place: StudyPlace) -> None:
+        self._place = place
         self._study: CourseStudy | None = None
         self._executor = ThreadPoolExecutor(1, "study")
 
@@ -31,7 +31,7 @@ class StudyThread:
 
     def _run(self, work: Callable[[CourseStudy], T]) -> T:
         if self._study is None:
-            self._study = CourseStudy(self._path)
+            self._study = CourseStudy(self._place)
         return work(self._study)
 
     async def close(self) -> None:

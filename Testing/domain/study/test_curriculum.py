@@ -30,8 +30,8 @@ from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.schema import MIGRATIONS
 from rastrainer.study.database.study import Study
+from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
@@ -235,8 +235,8 @@ def test_a_further_trial_never_takes_back_what_was_reached(seed):
 
 
 @pytest.fixture
-def study(tmp_path):
-    with Study.open(tmp_path / "study.db") as opened:
+def study(study_place):
+    with Study.open(study_place) as opened:
         opened.create_trainee("A")
         opened.create_trainee("B")
         yield opened
@@ -298,12 +298,9 @@ def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(s
     assert store.standing("B").reached == 0
 
 
-def test_a_study_of_an_earlier_format_gets_the_table(tmp_path, monkeypatch):
+def test_a_study_of_an_earlier_format_gets_the_table(tmp_path):
     path = tmp_path / "old.db"
-    monkeypatch.setattr("rastrainer.study.database.database.MIGRATIONS", MIGRATIONS[:8])
-    with Study.open(path) as old:
-        old.create_trainee("A")
-    monkeypatch.undo()
+    write_old_study(path, 8, "INSERT INTO trainees VALUES (1, 'A', 1, 0, '2026-01-01T00:00:00Z')")
     with Study.open(path) as study:
         CurriculumStore(study).choose(read_curriculum(SHIPPED))
     with Study.open_for_reading(path) as study:

@@ -1,18 +1,16 @@
 """Ratings are stored once, kept, corrected by further rows, and the same trials for all raters."""
 
-import itertools
 import random
-import sqlite3
 import uuid
 
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 from rastrainer.study.database.study import Study
 from rastrainer.study.rating.forms import FORMS, GEARS, OSATS, find_form
 from rastrainer.study.rating.rating_store import RatingStore
 from rastrainer.study.rating.rating_work import RatingWork
+from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import make_record
 
 TRIALS = [str(uuid.UUID(int=number)) for number in range(1, 9)]
@@ -162,12 +160,7 @@ def test_ratings_go_with_their_trainee(study, store):
 
 def test_a_study_of_an_earlier_format_gets_the_tables(tmp_path):
     path = tmp_path / "old.db"
-    connection = sqlite3.connect(path)
-    for statement in itertools.chain(*MIGRATIONS[:7]):
-        connection.execute(statement)
-    connection.execute("PRAGMA user_version = 7")
-    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-    connection.close()
+    write_old_study(path, 7)
     with Study.open(path) as study:
         study.add_trial(make_record(trialId=TRIALS[0]))
         assert RatingStore(study).assign("R1", TRIALS[:1], 1, random.Random(1)) == (TRIALS[0],)

@@ -4,7 +4,6 @@ import argparse
 import os
 import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 from pathlib import Path
@@ -12,13 +11,13 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 from rastrainer.study.database.sqlite_reading import read_only_uri
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer_simulator.cli import export as export_command
 from rastrainer_simulator.cli import pass_mark as pass_mark_command
 from rastrainer_simulator.cli import report as report_command
+from Testing.domain.study.old_study import write_old_study
 from Testing.domain.study.played_study import play, study_with_trials
 from Testing.domain.trial.trial_records import gentle_score, make_record
 
@@ -102,14 +101,7 @@ def test_a_study_opened_for_reading_cannot_be_changed(path):
 
 def test_reading_a_study_of_an_earlier_format_does_not_migrate_it(tmp_path):
     path = tmp_path / "study.db"
-    connection = sqlite3.connect(path)
-    for statement in MIGRATIONS[0]:
-        connection.execute(statement)
-    connection.execute("INSERT INTO trainees VALUES (1, 'A', 1, 0, '2024-05-17T09:30:00Z')")
-    connection.execute("PRAGMA user_version = 1")
-    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-    connection.commit()
-    connection.close()
+    write_old_study(path, 1, "INSERT INTO trainees VALUES (1, 'A', 1, 0, '2024-05-17T09:30:00Z')")
     before = seen(path)
     with Study.open_for_reading(path) as study:
         assert [trainee.pseudonym for trainee in study.trainees()] == ["A"]

@@ -1,6 +1,5 @@
 """The study's file with concurrent processes, kills, damage and foreign files."""
 
-import itertools
 import json
 import multiprocessing
 import os
@@ -20,6 +19,7 @@ from rastrainer.errors import InputError
 from rastrainer.study.database.database import LockWait, StudyBusyError
 from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 from rastrainer.study.database.study import Study
+from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import make_record
 from Testing.forked_child import in_child
 
@@ -335,14 +335,7 @@ def test_an_exception_in_a_transaction_stores_nothing(tmp_path):
 
 def test_the_numbers_of_trainees_deleted_in_an_earlier_format_are_not_proposed_again(tmp_path):
     path = tmp_path / "old.db"
-    connection = sqlite3.connect(path)
-    for statement in itertools.chain(*MIGRATIONS[:8]):
-        connection.execute(statement)
-    connection.execute("INSERT INTO trainees VALUES (3, 'T003', 1, 0, '2026-01-01T00:00:00Z')")
-    connection.execute("DELETE FROM trainees")
-    connection.execute("PRAGMA user_version = 8")
-    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-    connection.commit()
-    connection.close()
+    third = "INSERT INTO trainees VALUES (3, 'T003', 1, 0, '2026-01-01T00:00:00Z')"
+    write_old_study(path, 9, third, "DELETE FROM trainees")
     with Study.open(path) as study:
         assert study.create_trainee().pseudonym == "T004"

@@ -1,7 +1,6 @@
 """An aborted trial is stored as delivered, counts as an attempt, and can be deleted."""
 
 import json
-import sqlite3
 
 import pytest
 
@@ -9,13 +8,13 @@ from rastrainer.errors import InputError
 from rastrainer.export.trainee_data import erase_trainee, export_trainee
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
 from rastrainer.study.database.tables import study_tables
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trainee_progress import competence_of, progress_of
+from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
 
@@ -133,14 +132,7 @@ def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):
 
 def test_a_migrated_study_stores_aborted_trials(tmp_path):
     path = tmp_path / "study.db"
-    connection = sqlite3.connect(path)
-    for version in MIGRATIONS[:5]:
-        for statement in version:
-            connection.execute(statement)
-    connection.execute("PRAGMA user_version = 5")
-    connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-    connection.commit()
-    connection.close()
+    write_old_study(path, 5)
     with Study.open(path) as study:
         assert AbortedTrials(study).add(make_aborted())
 

@@ -10,6 +10,7 @@ from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.aborted_trials import AbortedTrials
+from rastrainer.study.database.companions import beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.platform_links import PlatformLinks
@@ -128,5 +129,5 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     names = [path.name for path in erased if path.suffix == SUFFIX]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]
     trials = study.delete_trainee(pseudonym)
-    PlatformLinks(study.database.path).forget(pseudonym)
+    PlatformLinks(beside_study(study.database.place)).forget(pseudonym)
     return Erasure(trials, len(names), tuple(missing), tuple(unreadable))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sqlite3
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -11,6 +10,7 @@ from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.curriculum.curriculum import Assignment
 from rastrainer.study.database import study_trainees
 from rastrainer.study.database.aborted_trials import stored_of
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded
 from rastrainer.study.database.values import StoredProcedure, moment
@@ -57,7 +57,7 @@ class CountedTrial:
         return self.procedure == assignment.procedure
 
 
-def counted_trials(connection: sqlite3.Connection, pseudonym: str) -> tuple[CountedTrial, ...]:
+def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial, ...]:
     """Return a trainee's trials in order of starting; in the caller's transaction.
 
     Raises:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sqlite3
 from dataclasses import dataclass
 
 from rastrainer.study.curriculum.counted_trials import counted_trials
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
 from rastrainer.study.curriculum.standing import CurriculumStanding, standing_in
 from rastrainer.study.database import study_trainees
+from rastrainer.study.database.connection import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text
@@ -121,7 +121,7 @@ class CurriculumStore:
         return standing_in(curriculum, trials, lambda version: pass_mark_of(protocol, version))
 
 
-def _curriculum_of(connection: sqlite3.Connection, pseudonym: str) -> Curriculum | None:
+def _curriculum_of(connection: Connection, pseudonym: str) -> Curriculum | None:
     row = connection.execute(
         "SELECT curriculum_json FROM curriculum_choices "
         f"WHERE trainee_id = ({TRAINEE_ID}) OR trainee_id IS NULL ORDER BY id DESC LIMIT 1",

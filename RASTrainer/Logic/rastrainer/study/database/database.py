@@ -8,6 +8,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 
 from rastrainer.errors import InputError
+from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.connection import Connection
 
 BUSY_TIMEOUT_S = 30.0
@@ -73,9 +74,11 @@ class StudyDatabase(ABC):
 
     Attributes:
         name: of the study, for reports.
+        place: where it is.
     """
 
     name: str
+    place: StudyPlace
 
     @abstractmethod
     def close(self) -> None:

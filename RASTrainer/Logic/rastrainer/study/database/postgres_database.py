@@ -92,7 +92,7 @@ class PostgresDatabase(StudyDatabase):
                 RASTrainer, or holds no study.
             StudyAwayError: the server cannot be reached.
         """
-        self.name = address.database
+        self.name, self.place = address.database, address
         self._address = address
         self._lock_wait = lock_wait or LockWait()
         self._driver = postgres_driver()

@@ -38,7 +38,7 @@ class SqliteDatabase(StudyDatabase):
             StudyBusyError: another program has locked it.
         """
         self.path = Path(path)
-        self.name = self.path.stem
+        self.name, self.place = self.path.stem, self.path
         self._lock_wait = lock_wait or LockWait()
         self._check_place()
         with self._sentences():
