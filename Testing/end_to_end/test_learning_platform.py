@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -10,6 +12,7 @@ import time
 import urllib.request
 import uuid
 from pathlib import Path
+from urllib.parse import parse_qsl, urlsplit
 
 import pytest
 from playwright.sync_api import sync_playwright
@@ -136,6 +139,38 @@ def test_a_course_launches_in_a_browser_and_its_gradebook_gets_the_scores(browse
     assert page.locator(".trial").count() == 3
     course.until_graded({"u1": better, "u2": second})
     assert course.tool.stop() == 0
+
+
+def test_open_edx_s_own_launch_is_refused_when_it_is_repeated_or_altered(browser, course):
+    context = browser.new_context()
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    posted = []
+    page.on("request", lambda request: posted.append(request))
+    page.goto(f"{course.url}/open/u1/student")
+    page.wait_for_url(f"{course.tool_url}/launch")
+    (form,) = (
+        dict(parse_qsl(request.post_data))
+        for request in posted
+        if request.method == "POST" and request.url == f"{course.tool_url}/launch"
+    )
+
+    def post(**changes) -> int:
+        return context.request.post(f"{course.tool_url}/launch", form={**form, **changes}).status
+
+    assert post() == 400, "the same again"
+    place = f"{course.url}/open/u1/student"
+    for _step in ("to the tool", "to the platform"):
+        place = context.request.get(place, max_redirects=0).headers["location"]
+    asked = dict(parse_qsl(urlsplit(place).query))
+    assert post(state=asked["state"]) == 400, "of an earlier login"
+    answer = context.request.get(f"{course.url}/open/u2/student").text()
+    values = dict(re.findall(r'name="(state|id_token)" value="([^"]+)"', answer))
+    head, claims, signature = values["id_token"].split(".")
+    other = json.loads(base64.urlsafe_b64decode(claims + "=="))
+    other["sub"] = "u1"
+    forged = base64.urlsafe_b64encode(json.dumps(other).encode()).rstrip(b"=").decode()
+    assert post(state=values["state"], id_token=f"{head}.{forged}.{signature}") == 400
 
 
 def test_kills_of_the_platform_and_of_the_tool_lose_no_grade(browser, course):

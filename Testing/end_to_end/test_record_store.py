@@ -10,14 +10,18 @@ import subprocess
 import sys
 import time
 import urllib.request
+import uuid
 from pathlib import Path
 
 import pytest
 
 from rastrainer.export.xapi import statements
+from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.cli.record_store_settings import RECORD_STORE_FILE
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
 from rastrainer_simulator.net.record_store import RecordStore, StoreAwayError
+from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.free_port import free_port
 
 # Ralph has an environment of its own, which `make soak` makes.
@@ -141,3 +145,30 @@ def test_ralph_answers_200_to_every_statement_and_204_to_repeats(ralph, study):
     for statement in statements(read_study_data(study), HOME):
         assert ralph.post([statement]) == 200
         assert ralph.post([statement]) == 204
+
+
+def test_trials_are_pushed_as_they_are_stored_and_wait_while_ralph_is_away(ralph, tmp_path):
+    path = tmp_path / "small.db"
+    with Study.open(path) as study:
+        study.create_trainee("T001", consent=True)
+        study.add_trial(make_record(trainee="T001"), score=gentle_score(110.0, 0.5))
+    (tmp_path / "secret").write_text(CREDENTIALS)
+    (tmp_path / "secret").chmod(0o600)
+    settings = {"store": ralph.url, "homePage": HOME, "credentials": "secret"}
+    (tmp_path / RECORD_STORE_FILE).write_text(json.dumps(settings))
+    words = ["send-statements", str(path), "--watch", "1", "--config", str(tmp_path)]
+    command = [sys.executable, "-m", "rastrainer_simulator.cli.main", *words]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sending:
+        assert "stored" in sending.stdout.readline()
+        ralph.kill()
+        with Study.open(path) as study:
+            later = make_record(trainee="T001", trialId=str(uuid.uuid4()))
+            study.add_trial(later, score=gentle_score(90.0, 0.5))
+        assert "Nothing is lost" in sending.stdout.readline()
+        ralph.start()
+        while "stored" not in sending.stdout.readline():
+            pass
+        sending.terminate()
+    expected = {each["id"] for each in statements(read_study_data(path), HOME)}
+    kept = [each["id"] for each in ralph.kept()]
+    assert sorted(kept) == sorted(expected)

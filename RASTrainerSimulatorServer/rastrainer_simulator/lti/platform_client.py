@@ -24,10 +24,14 @@ class PlatformAwayError(InputError):
 class PlatformClient:
     """Asks platforms; use it in an `async with` statement."""
 
+    def __init__(self, timeout_s: float = TIMEOUT_S) -> None:
+        """Give up what has taken so long."""
+        self._timeout = aiohttp.ClientTimeout(total=timeout_s)
+
     async def __aenter__(self) -> PlatformClient:
         """Open it."""
         self._session = aiohttp.ClientSession(
-            timeout=aiohttp.ClientTimeout(total=TIMEOUT_S), cookie_jar=aiohttp.DummyCookieJar()
+            timeout=self._timeout, cookie_jar=aiohttp.DummyCookieJar()
         )
         return self
 

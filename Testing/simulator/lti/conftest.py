@@ -12,7 +12,7 @@ from rastrainer_simulator.lti.platform_client import PlatformClient
 from rastrainer_simulator.lti.settings import SETTINGS_FILE, read_lti_settings
 from rastrainer_simulator.lti.tool_key import KEY_FILE, ToolKey
 from Testing.simulator.lti.platform_double import Browser, PlatformDouble
-from Testing.simulator.net.igtl.servers import HOST
+from Testing.simulator.net.igtl.servers import HOST, PATIENCE_S
 
 ADDRESS = "https://rastrainer.example.org"
 
@@ -26,9 +26,9 @@ class ServedTool:
         server: it.
     """
 
-    def __init__(self, thread, study, config, port):
+    def __init__(self, thread, study, config, port, timeout_s):
         self.thread, self.study = thread, study
-        self._client = thread.run(PlatformClient().__aenter__())
+        self._client = thread.run(PlatformClient(timeout_s).__aenter__())
         self.server = thread.call(
             LtiServer, study, read_lti_settings(config), ToolKey(config), self._client
         )
@@ -71,9 +71,9 @@ class Lab:
         settings = {"address": self.address, "platforms": [self.platform.settings(**changes)]}
         (self.config / SETTINGS_FILE).write_text(json.dumps(settings))
 
-    def start(self) -> ServedTool:
+    def start(self, timeout_s: float = PATIENCE_S) -> ServedTool:
         """Start the tool, as after a crash of the one before."""
-        self.tool = ServedTool(self.thread, self.study, self.config, self._port)
+        self.tool = ServedTool(self.thread, self.study, self.config, self._port, timeout_s)
         self.platform.tool = self.tool.url
         self._started.append(self.tool)
         return self.tool

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 import uuid
 from urllib.parse import parse_qsl, urlsplit
@@ -13,7 +14,7 @@ from jwt.algorithms import RSAAlgorithm
 
 from rastrainer_simulator.lti.launch_message import SCORE_SCOPE
 from rastrainer_simulator.lti.lti_server import COOKIE
-from Testing.simulator.net.igtl.servers import HOST
+from Testing.simulator.net.igtl.servers import HOST, PATIENCE_S
 from Testing.simulator.net.views.served import answered
 
 CLAIM = "https://purl.imsglobal.org/spec/lti/claim/"
@@ -32,7 +33,7 @@ class PlatformDouble:
     """Serves what a platform does.
 
     Attributes:
-        keys: what its key set answers.
+        keys: what its key set answers; None for never.
         asked_for_keys: how often it was asked for them.
         scores: bodies of the scores that it was sent.
         planned: statuses with which the next scores are answered, instead of being heeded.
@@ -128,6 +129,8 @@ class PlatformDouble:
 
     async def _send_keys(self, _request):
         self.asked_for_keys += 1
+        if self.keys is None:
+            await asyncio.sleep(PATIENCE_S)
         if isinstance(self.keys, web.StreamResponse):
             return self.keys
         return web.json_response(self.keys)

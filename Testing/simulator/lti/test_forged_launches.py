@@ -11,7 +11,8 @@ import pytest
 from aiohttp import web
 from cryptography.hazmat.primitives import serialization
 
-from rastrainer_simulator.lti.launch_message import LARGEST_TOKEN
+from rastrainer_simulator.lti.launch_message import LARGEST_TOKEN, RefusedLaunchError
+from rastrainer_simulator.lti.open_logins import MOST_LOGINS, VALID_S, OpenLogins
 from Testing.simulator.lti.conftest import ADDRESS
 from Testing.simulator.lti.platform_double import (
     CLAIM,
@@ -214,6 +215,33 @@ def test_keys_that_are_unusable_or_huge_let_nobody_in(restarted, answer):
     restarted.platform.keys = answer
     assert restarted.new_browser().launch()[0] in (400, 503)
     assert restarted.trainees() == []
+
+
+def test_keys_that_never_come_are_not_waited_for_without_end(restarted):
+    restarted.platform.keys = None
+    restarted.start(timeout_s=0.2)
+    assert restarted.new_browser().launch()[0] == 503
+    assert restarted.trainees() == []
+
+
+def test_logins_that_are_begun_again_and_again_take_no_memory():
+    logins = OpenLogins(lambda: 0.0)
+    first, _nonce = logins.begin(None, "browser")
+    for _number in range(MOST_LOGINS):
+        last, _nonce = logins.begin(None, "browser")
+    assert len(logins._logins) == MOST_LOGINS
+    with pytest.raises(RefusedLaunchError):
+        logins.end(first, "browser")
+    assert logins.end(last, "browser").browser == "browser"
+
+
+def test_a_login_is_over_after_ten_minutes():
+    now = [0.0]
+    logins = OpenLogins(lambda: now[0])
+    state, _nonce = logins.begin(None, "browser")
+    now[0] = VALID_S + 1.0
+    with pytest.raises(RefusedLaunchError, match="too long"):
+        logins.end(state, "browser")
 
 
 def test_keys_that_are_elsewhere_are_not_followed(restarted):

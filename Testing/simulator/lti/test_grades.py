@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import uuid
 from datetime import timedelta
 
 import pytest
 
-from rastrainer.export.trainee_data import erase_trainee
+from rastrainer.export.trainee_data import erase_trainee, export_trainee
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import PlatformLinks
@@ -220,12 +221,15 @@ def test_a_course_that_nobody_has_opened_for_long_gets_no_more_grades(lab, brows
     assert lab.tool.send_due() == 1
 
 
-def test_deleting_a_trainee_deletes_who_they_were_at_the_platform(lab, browser):
+def test_deleting_a_trainee_deletes_who_they_were_at_the_platform(lab, browser, tmp_path):
     browser.launch("user-7654321")
     assert PlatformLinks(lab.study).pseudonyms() == {"T001"}
     with Study.open(lab.study) as study:
+        export_trainee(study, "T001", tmp_path / "data.json")
         erase_trainee(study, "T001", None)
     assert PlatformLinks(lab.study).pseudonyms() == set()
+    told = json.loads((tmp_path / "data.json").read_text())["learning_platforms"]
+    assert told == [{"issuer": lab.platform.address, "subject": "user-7654321"}]
     assert b"user-7654321" not in PlatformLinks(lab.study).path.read_bytes()
 
 

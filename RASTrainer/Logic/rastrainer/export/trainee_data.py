@@ -17,7 +17,7 @@ from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.rating.rating_store import RatingStore
 
-FORMAT = "RASTrainer trainee 3"
+FORMAT = "RASTrainer trainee 4"
 
 
 def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
@@ -27,6 +27,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         InputError: an unknown trainee, or the file cannot be written.
     """
     trainee, trials = study.trainee(pseudonym), study.history(pseudonym)
+    links = PlatformLinks(beside_study(study.database.place))
     document = {
         "format": FORMAT,
         "trainee": asdict(trainee),
@@ -53,6 +54,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
             for rating in RatingStore(study).ratings()
             if rating.trial_id in {trial.record.trial_id for trial in trials}
         ],
+        "learning_platforms": links.users(pseudonym),
     }
     write_json(path, document)
     return len(trials)

@@ -97,6 +97,15 @@ class PlatformLinks:
         with self._opened() as database:
             return {name for (name,) in database.execute("SELECT pseudonym FROM users")}
 
+    def users(self, pseudonym: str) -> list[dict[str, str]]:
+        """Return by which platforms a trainee is known, and as whom."""
+        if not self.path.exists():
+            return []
+        query = "SELECT issuer, subject FROM users WHERE pseudonym = ?"
+        with self._opened() as database:
+            rows = database.execute(query, (pseudonym,)).fetchall()
+        return [{"issuer": issuer, "subject": subject} for issuer, subject in rows]
+
     def link(self, issuer: str, subject: str, pseudonym: str) -> None:
         """Remember who a user is."""
         with self._opened() as database:
