@@ -1,0 +1,53 @@
+"""Who is which user of a learning platform: kept beside the study, and forgotten completely."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.study.platform_links import LinkedAssignment, PlatformLinks
+
+ISSUER = "https://courses.example.org"
+TASK = LinkedAssignment(
+    ISSUER, "tool-1", "u1", f"{ISSUER}/1", "task-1", "", "fiducials", "best", "2026-01-01T10:00:00Z"
+)
+
+
+@pytest.fixture
+def links(tmp_path):
+    return PlatformLinks(tmp_path / "study.db")
+
+
+def test_new_terms_of_a_link_keep_what_was_sent(links):
+    links.link(ISSUER, "u1", "T001")
+    links.put(TASK)
+    links.note_sent(TASK, 70.5, "2026-01-01T11:00:00Z")
+    changed = dataclasses.replace(TASK, task="task-2", rule="latest")
+    links.put(changed)
+    sent = dataclasses.replace(changed, sent_score=70.5, sent_utc="2026-01-01T11:00:00Z")
+    assert links.assignments() == [("T001", sent)]
+
+
+def test_who_is_forgotten_leaves_nothing(links):
+    links.link(ISSUER, "u1", "T001")
+    links.link(ISSUER, "u2", "T002")
+    links.put(TASK)
+    links.forget("T001")
+    assert links.assignments() == []
+    assert links.pseudonym(ISSUER, "u1") is None
+    assert links.users("T002") == [{"issuer": ISSUER, "subject": "u2"}]
+
+
+def test_where_nobody_is_linked_no_file_is_made(links):
+    links.forget("T001")
+    assert links.users("T001") == []
+    assert not links.path.exists()
+
+
+def test_a_damaged_file_is_named_and_left_as_it_is(links):
+    links.path.write_bytes(b"no database" * 100)
+    with pytest.raises(InputError, match=r"study\.db\.lti\.db cannot be used: file is not a"):
+        links.pseudonyms()
+    assert links.path.read_bytes() == b"no database" * 100
