@@ -264,6 +264,7 @@ def skin_amounts(value: Any) -> dict[str, float]:
 _ASSIGNMENT: Mapping[str, Argument] = {
     "name": Argument(text(40)),
     "task": Argument(text(40)),
+    "scenario": Argument(text(40, 0), ""),
     "mode": Argument(one_of("", *(mode.value for mode in Mode)), ""),
     "method": Argument(text(40, 0), ""),
     "procedure": Argument(text(40, 0), ""),

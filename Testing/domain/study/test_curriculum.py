@@ -87,6 +87,7 @@ def test_a_wrong_file_is_refused_with_the_field_and_what_would_be_right(changes,
     ("changes", "said"),
     [
         ({"task": "trial-run"}, "task must be a task that is scored"),
+        ({"scenario": "A b"}, "scenario must be lower-case letters"),
         ({"mode": "wall"}, "mode must be one of desktop, hmd"),
         ({"method": "magic"}, "method must be one of fiducials"),
         ({"goal": {"kind": "fun"}}, "goal.kind must be one of score, competent"),
@@ -98,7 +99,16 @@ def test_a_wrong_file_is_refused_with_the_field_and_what_would_be_right(changes,
         ({"until": 3}, "until must be left out; an assignment has name"),
     ],
     ids=[
-        *("trial run", "mode", "method", "kind", "no trials", "mark", "trials of competence"),
+        *(
+            "trial run",
+            "scenario",
+            "mode",
+            "method",
+            "kind",
+            "no trials",
+            "mark",
+            "trials of competence",
+        ),
         *("itself", "later", "unknown key"),
     ],
 )
@@ -129,6 +139,9 @@ def test_only_trials_as_the_assignment_asks_count():
     in_headset = replace(ONE, mode="hmd", trials=1)
     by_surface = replace(ONE, method="surface", trials=1)
     biopsy = replace(ONE, procedure="biopsy", trials=1)
+    on_egg = replace(ONE, scenario="egg", trials=1)
+    assert states([PASSED], on_egg) == [OPEN]
+    assert states([replace(PASSED, scenario="egg")], on_egg) == [REACHED]
     assert states([PASSED], in_headset) == [OPEN]
     assert states([replace(PASSED, mode="hmd")], in_headset) == [REACHED]
     assert states([PASSED], by_surface) == [OPEN]
@@ -320,7 +333,7 @@ def test_what_slicer_tells_the_simulator_arrives_as_it_was_and_fits_into_a_messa
     names = [f"{number:02d}{'x' * 38}" for number in range(MAX_ASSIGNMENTS)]
     largest = [
         Assignment(
-            *(name, name, "desktop", "landmarks-surface", name),
+            *(name, name, name, "desktop", "landmarks-surface", name),
             trials=50,
             after=tuple(names[max(0, place - MAX_GATES) : place]),
         )

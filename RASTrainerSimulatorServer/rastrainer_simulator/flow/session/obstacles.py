@@ -22,7 +22,8 @@ def obstacle(session: TrainingSession, task: str) -> str:
     told = session.curriculum
     played_as = (session.mode, session.method_of(task).value, session.procedure_of(task))
     assigned = () if told is None else told.assignments
-    own = [each for each in assigned if each.is_played_as(task, *played_as)]
+    head = session.scenario.name
+    own = [each for each in assigned if each.is_played_as(head, task, *played_as)]
     if told is not None and own and all(each.is_locked for each in own):
         return session.assignment_words.gate(told, own[0])
     return _missing_before(session, task, is_assigned=bool(own))
@@ -37,7 +38,8 @@ def assignment_obstacle(session: TrainingSession, each: ToldAssignment) -> str:
         return session.assignment_words.gate(told, each)
     scenario = session.scenario
     is_on_head = (
-        each.task in {task.name for task in scenario.tasks}
+        each.scenario in ("", scenario.name)
+        and each.task in {task.name for task in scenario.tasks}
         and each.procedure in {"", *(procedure.name for procedure in scenario.procedures)}
         and (not each.method or each.method in {m.value for m in playable_methods(scenario)})
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from rastrainer.procedure.score import ProcedureScore
 from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.curriculum.curriculum import Assignment
@@ -23,7 +24,7 @@ class CountedTrial:
     """A trial as a curriculum counts it.
 
     Attributes:
-        task, mode: As recorded.
+        task, mode, scenario: As recorded.
         method: By what it was registered, or would have been.
         procedure: That it continued with; "" for touches alone, and for aborted trials, which do
             not say which.
@@ -37,6 +38,7 @@ class CountedTrial:
 
     task: str
     mode: str
+    scenario: str = ""
     method: str = RegistrationMethod.FIDUCIALS.value
     procedure: str = ""
     score: float = 0.0
@@ -50,7 +52,7 @@ class CountedTrial:
         """Return whether it was played as an assignment asks."""
         if (self.task, self.method) != (assignment.task, assignment.method):
             return False
-        if assignment.mode and self.mode != assignment.mode:
+        if assignment.mode not in ("", self.mode) or assignment.scenario not in ("", self.scenario):
             return False
         if self.is_aborted:
             return bool(assignment.procedure) or not self.is_in_procedure
@@ -65,7 +67,7 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
     """
     study_trainees.find(connection, pseudonym)
     rows = connection.execute(
-        "SELECT started_utc, trials.stored_utc, task, mode, "
+        "SELECT started_utc, trials.stored_utc, task, mode, scenario, "
         "(SELECT score_json FROM scores WHERE scores.trial_id = trials.trial_id "
         "ORDER BY scores.id DESC LIMIT 1), "
         "(SELECT outcome_json FROM procedure_outcomes "
@@ -75,8 +77,8 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
         (pseudonym, TRIAL_RUN),
     )
     timed = [
-        (moment(started), stored, _scored(task, mode, score, outcome))
-        for started, stored, task, mode, score, outcome in rows
+        (moment(started), stored, _scored(task, mode, scenario, score, outcome))
+        for started, stored, task, mode, scenario, score, outcome in rows
         if score is not None
     ]
     timed += [
@@ -87,19 +89,27 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
     return tuple(trial for *_when, trial in sorted(timed, key=lambda each: each[:2]))
 
 
-def _scored(task: str, mode: str, score_json: str, outcome_json: str | None) -> CountedTrial:
+def _scored(
+    task: str, mode: str, scenario: str, score_json: str, outcome_json: str | None
+) -> CountedTrial:
     score = decoded(score_json, TrialScore.from_json)
     method = method_of_version(score.version)
-    if outcome_json is None:
-        return CountedTrial(
-            *(task, mode, method, "", score.score, score.acceptable, score.version),
-            parts=score.parts,
-        )
-    outcome = decoded(outcome_json, StoredProcedure.from_json)
-    done = outcome.score
+    found: TrialScore | ProcedureScore = score
+    parts: Mapping[str, float] = score.parts
+    procedure = ""
+    if outcome_json is not None:
+        outcome = decoded(outcome_json, StoredProcedure.from_json)
+        found, parts, procedure = outcome.score, outcome.score.desirabilities, outcome.name
     return CountedTrial(
-        *(task, mode, method, outcome.name, done.score, done.acceptable, done.version),
-        parts=done.desirabilities,
+        task,
+        mode,
+        scenario,
+        method,
+        procedure,
+        found.score,
+        found.acceptable,
+        found.version,
+        parts,
     )
 
 
@@ -107,6 +117,7 @@ def _aborted(record: AbortedTrial) -> CountedTrial:
     return CountedTrial(
         record.task,
         record.mode,
+        record.scenario,
         record.method.value,
         is_aborted=True,
         is_in_procedure=record.phase in {phase.value for phase in PROCEDURE_PHASES},

@@ -23,7 +23,7 @@ from rastrainer.scenario.method_task import PLAYED_METHODS
 FORMAT_VERSION = 1
 MAX_TITLE = 80
 _KEYS = ("formatVersion", "name", "title", "assignments")
-_ASSIGNMENT_KEYS = ("name", "task", "mode", "method", "procedure", "goal", "after")
+_ASSIGNMENT_KEYS = ("name", "task", "scenario", "mode", "method", "procedure", "goal", "after")
 _GOAL_KEYS = {
     GoalKind.SCORE.value: ("kind", "trials", "mark"),
     GoalKind.COMPETENT.value: ("kind", "mark"),
@@ -37,6 +37,7 @@ class Assignment:
     Attributes:
         name: Unique in its curriculum.
         task: Name of the task.
+        scenario: Name of the scenario whose task it is; "" for any that has it.
         mode: Display mode; "" for any.
         method: By what its trials are registered, a `PLAYED_METHODS`.
         procedure: That its trials continue with, and whose score counts; "" for touches alone.
@@ -48,6 +49,7 @@ class Assignment:
 
     name: str
     task: str
+    scenario: str = ""
     mode: str = ""
     method: str = RegistrationMethod.FIDUCIALS.value
     procedure: str = ""
@@ -63,7 +65,12 @@ class Assignment:
             goal["trials"] = self.trials
         if self.mark is not None:
             goal["mark"] = self.mark
-        chosen = {"mode": self.mode, "method": self.method, "procedure": self.procedure}
+        chosen = {
+            "scenario": self.scenario,
+            "mode": self.mode,
+            "method": self.method,
+            "procedure": self.procedure,
+        }
         return {
             "name": self.name,
             "task": self.task,
@@ -141,6 +148,7 @@ def _assignment(fields: Fields, earlier: list[str]) -> Assignment:
     return Assignment(
         name=name,
         task=task,
+        scenario=fields.identifier("scenario") if "scenario" in given else "",
         mode=fields.one_of("mode", modes) if "mode" in given else "",
         method=fields.one_of("method", methods) if "method" in given else fiducials,
         procedure=fields.identifier("procedure") if "procedure" in given else "",

@@ -25,6 +25,7 @@ class ToldAssignment:
     goal: str
     state: str
     needed: int
+    scenario: str = ""
     mode: str = ""
     method: str = ""
     procedure: str = ""
@@ -44,6 +45,7 @@ class ToldAssignment:
             goal=each.goal.value,
             state=standing.state.value,
             needed=standing.needed,
+            scenario=each.scenario,
             mode=each.mode,
             method="" if each.method == RegistrationMethod.FIDUCIALS.value else each.method,
             procedure=each.procedure,
@@ -69,11 +71,14 @@ class ToldAssignment:
         """Whether its goal is competence by LC-CUSUM; else, trials in a row that pass."""
         return self.goal == GoalKind.COMPETENT.value
 
-    def is_played_as(self, task: str, mode: str, method: str, procedure: str) -> bool:
+    def is_played_as(
+        self, scenario: str, task: str, mode: str, method: str, procedure: str
+    ) -> bool:
         """Return whether such a trial counts for it."""
-        is_in_mode = self.mode in ("", mode)
+        if self.scenario not in ("", scenario) or self.mode not in ("", mode):
+            return False
         own = self.method or RegistrationMethod.FIDUCIALS.value
-        return is_in_mode and (self.task, own, self.procedure) == (task, method, procedure)
+        return (self.task, own, self.procedure) == (task, method, procedure)
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,8 @@ PARTS = {
 def title_of(assignment: Assignment) -> str:
     """Return what people call an assignment, such as "Task 3 by a trace over the skin"."""
     each = assignment
-    return trial_title(each.task, each.mode, each.method, each.procedure)
+    head = f" on {each.scenario}" if each.scenario else ""
+    return trial_title(each.task, each.mode, each.method, each.procedure) + head
 
 
 def progress_of_assignment(standing: AssignmentStanding) -> str:
