@@ -304,10 +304,15 @@ def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(s
     assert [trial.is_aborted for trial in found] == [False, True, False]
     assert found[0].parts["common bias"] == 1.0
     store = CurriculumStore(study)
+    before = store.stamps()
     store.choose(Curriculum("c", "C", (ONE, TWO)))
+    chosen = store.stamps()
+    assert [before[name] == chosen[name] for name in ("A", "B")] == [False, False]
     assert (store.standing("A").standings[0].done, store.standing("A").reached) == (1, 0)
     study.add_trial(record(6), score=good)
     assert store.standing("A").reached == 1
+    assert store.stamps()["A"] != chosen["A"]
+    assert store.stamps()["B"] == chosen["B"]
     assert store.standing("B").reached == 0
 
 
