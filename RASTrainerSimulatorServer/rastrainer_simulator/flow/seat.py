@@ -37,8 +37,8 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
 
 
 def _assignments(session: TrainingSession) -> str:
-    told, words = session.curriculum, session.assignment_words
-    return "" if told is None else f"{words.summary(told)} · {words.advice(told)}"
+    told = session.curriculum
+    return "" if told is None else session.assignment_words.in_brief(told)
 
 
 def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text: str) -> str:

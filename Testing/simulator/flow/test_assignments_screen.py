@@ -62,7 +62,7 @@ def test_the_menu_says_how_far_the_trainee_is_and_what_comes_next(menu):
 
 
 def test_a_board_reads_where_the_trainee_stands(menu, outside):
-    told = "1 of 6 reached · Next: Task 2, your weakest. Most points are lost by time."
+    told = "1 of 6 reached · Next: Task 2 (1 / 3)"
     assert menu.presenter.seat().assignments == told
     outside.has_slicer = False
     assert menu.presenter.seat().assignments == ""
@@ -135,6 +135,7 @@ def test_what_slicer_tells_later_is_shown_at_once(page, outside):
     assert "show competence (LC-CUSUM)" in page.item("assignment three").help
     outside.services.curricula.take(replace(TOLD, next="", assignments=told[:2]))
     page.step(20)
+    assert page.presenter.seat().assignments == "2 of 2 reached"
     assert "All assignments are reached." in page.menu.paragraphs
 
 

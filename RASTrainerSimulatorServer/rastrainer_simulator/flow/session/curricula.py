@@ -96,6 +96,15 @@ class AssignmentWords:
         """Return how many assignments are reached."""
         return self._say("assignments.summary", reached=told.reached, count=len(told.assignments))
 
+    def in_brief(self, told: ToldCurriculum) -> str:
+        """Return what a teacher reads of it: how many are reached, and how far the next one is."""
+        best = told.find(told.next)
+        if best is None:
+            return self.summary(told)
+        label, progress = self.label(best), self.progress(best)
+        following = self._say("assignments.next in brief", assignment=label, progress=progress)
+        return f"{self.summary(told)} · {following}"
+
     def advice(self, told: ToldCurriculum) -> str:
         """Return what to practice next, and why."""
         best = told.find(told.next)

@@ -327,6 +327,7 @@ _TABLE: Mapping[str, str] = {
     "assignments.gate": "未解锁。请先达成：{assignments}。",
     "assignments.other head": "此头部没有这一目标：请选择另一个。",
     "assignments.all reached": "所有目标均已达成。",
+    "assignments.next in brief": "下一项：{assignment}（{progress}）",
     "assignments.next": "下一项：{assignment}，您最薄弱的一项。",
     "assignments.next unplayed": "下一项：{assignment}，您还没有练习过。",
     "assignments.weakest": "失分最多的是{part}。",

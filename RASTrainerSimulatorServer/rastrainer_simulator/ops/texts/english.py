@@ -272,6 +272,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "assignments.gate": "Locked. First reach: {assignments}.",
         "assignments.other head": "This head does not have it: choose another one.",
         "assignments.all reached": "All assignments are reached.",
+        "assignments.next in brief": "Next: {assignment} ({progress})",
         "assignments.next": "Next: {assignment}, your weakest.",
         "assignments.next unplayed": "Next: {assignment}, which you have not played yet.",
         "assignments.weakest": "Most points are lost by {part}.",

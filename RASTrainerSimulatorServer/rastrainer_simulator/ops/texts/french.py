@@ -387,6 +387,7 @@ _TABLE: Mapping[str, str] = {
     "assignments.gate": "Verrouillé. Atteignez d'abord : {assignments}.",
     "assignments.other head": "Cette tête n'a pas cet objectif : choisissez-en une autre.",
     "assignments.all reached": "Tous les objectifs sont atteints.",
+    "assignments.next in brief": "Ensuite : {assignment} ({progress})",
     "assignments.next": "Ensuite : {assignment}, votre point le plus faible.",
     "assignments.next unplayed": "Ensuite : {assignment}, pas encore essayé.",
     "assignments.weakest": "Ce qui coûte le plus de points : {part}.",

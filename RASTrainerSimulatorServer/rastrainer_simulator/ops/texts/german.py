@@ -388,6 +388,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "assignments.other head": "Diesen Auftrag gibt es an diesem Kopf nicht: Wähle einen "
         "anderen.",
         "assignments.all reached": "Alle Aufträge sind erreicht.",
+        "assignments.next in brief": "Als Nächstes: {assignment} ({progress})",
         "assignments.next": "Als Nächstes: {assignment}, dein schwächster Auftrag.",
         "assignments.next unplayed": "Als Nächstes: {assignment}, noch nicht gespielt.",
         "assignments.weakest": "Die meisten Punkte kostet {part}.",

@@ -382,6 +382,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "assignments.gate": "Bloqueado. Primero alcance: {assignments}.",
         "assignments.other head": "Esta cabeza no tiene este objetivo: elija otra.",
         "assignments.all reached": "Todos los objetivos están alcanzados.",
+        "assignments.next in brief": "Siguiente: {assignment} ({progress})",
         "assignments.next": "Siguiente: {assignment}, lo más flojo.",
         "assignments.next unplayed": "Siguiente: {assignment}, aún sin practicar.",
         "assignments.weakest": "Lo que más puntos cuesta: {part}.",
