@@ -11,14 +11,14 @@ from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.curriculum.wording import (
     advice_of,
-    progress_of_assignment,
-    state_of,
+    goal_of,
+    short_progress_of,
     title_of,
 )
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.cli.shared import add_study
 
-HEADER = ("assignment", "trial", "state", "progress", "played", "latest mean")
+HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -69,8 +69,9 @@ def _table(name: str, standing: CurriculumStanding) -> str:
         (
             each.assignment.name,
             title_of(each.assignment),
-            state_of(each),
-            progress_of_assignment(each),
+            short_progress_of(each),
+            goal_of(each),
+            ", ".join(each.assignment.after),
             str(each.played),
             "–" if each.mean is None else fixed(each.mean, 0),
         )

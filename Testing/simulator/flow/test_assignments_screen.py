@@ -10,6 +10,9 @@ from rastrainer.protocol import TRIAL_RUN, AssignmentState, GoalKind
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.session.curricula import MAX_TRAINEES, Curricula
+from rastrainer_simulator.flow.session.session import REACHED_S
+from rastrainer_simulator.net.views.screen import Tone
+from Testing.simulator.flow.trainee import STEP_S
 
 LOCKED, OPEN, REACHED = (state.value for state in AssignmentState)
 SCORE, COMPETENT = (kind.value for kind in GoalKind)
@@ -137,6 +140,29 @@ def test_what_slicer_tells_later_is_shown_at_once(page, outside):
     page.step(20)
     assert page.presenter.seat().assignments == "2 of 2 reached"
     assert "All assignments are reached." in page.menu.paragraphs
+
+
+def said(menu):
+    return [(each.text, each.tone) for each in menu.presenter.screen.warnings]
+
+
+def test_a_reached_assignment_is_said_once_and_none_of_another_trainee(menu, outside):
+    two = replace(TOLD.assignments[1], state=REACHED, done=3)
+    reached = replace(TOLD, assignments=(TOLD.assignments[0], two, *TOLD.assignments[2:]))
+    outside.services.curricula.take(replace(reached, trainee="P08"))
+    menu.presenter.on_text(1, "trainee", "P08")
+    menu.step(20)
+    menu.presenter.on_text(1, "trainee", "P07")
+    menu.step(20)
+    assert said(menu) == []
+    outside.services.curricula.take(reached)
+    menu.step(20)
+    assert said(menu) == [("Reached: Task 2.", Tone.GOOD)]
+    menu.step(round((REACHED_S + 1.0) / STEP_S))
+    assert said(menu) == []
+    outside.services.curricula.take(replace(reached, title="The same"))
+    menu.step(20)
+    assert said(menu) == []
 
 
 def test_of_too_many_trainees_the_oldest_is_forgotten():

@@ -73,6 +73,8 @@ from rastrainer_simulator.vectors import Vector, vector
 from rastrainer_simulator.viewpoint.orbit import Orbit
 
 NOTICE_S = 5.0
+REACHED_S = 20.0
+"""How long a reached assignment is shown: it comes while the result is read."""
 SET_UP_AFTER_S = 1.0
 """A simulation takes a second to make: who steps through the options shall not wait for each."""
 TUTORIAL_VIEW = Orbit(zoom=1.7)
@@ -192,6 +194,7 @@ class TrainingSession:
         self._setting_up: Future[Answer] | None = None
         self._time = 0.0
         self._notices: list[tuple[float, ScreenMessage]] = []
+        self._told: ToldCurriculum | None = None
         self.state: SimulationState = control_loop.latest
 
     @property
@@ -279,6 +282,7 @@ class TrainingSession:
             is_in_study = self.study.step_of(self.training.trainee) is not None
             self.own_score.advance(dt, self.training, self.scenario, is_in_study)
         self._commands.poll()
+        self._note_reached()
         self._set_up_in -= dt
         if self._setting_up is not None and self._setting_up.done():
             answer = self._setting_up.result()
@@ -473,6 +477,18 @@ class TrainingSession:
         """Return minutes and seconds, such as 03:21."""
         whole = int(seconds)
         return f"{whole // 60:02d}:{whole % 60:02d}"
+
+    def _note_reached(self) -> None:
+        """Say which assignment the trainee has reached since Slicer told of it before."""
+        before, self._told = self._told, self.curriculum
+        if before is None or self._told is None or before is self._told:
+            return
+        for each in self._told.assignments:
+            earlier = before.find(each.name) if before.trainee == self._told.trainee else None
+            if each.is_reached and earlier is not None and not earlier.is_reached:
+                title = self.assignment_words.title(each)
+                said = self.texts.say("assignments.just reached", assignment=title)
+                self.notice(said, Tone.GOOD, REACHED_S)
 
     def _save(self, write: Callable[[], None]) -> None:
         try:

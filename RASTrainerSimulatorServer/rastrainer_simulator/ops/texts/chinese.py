@@ -316,6 +316,7 @@ _TABLE: Mapping[str, str] = {
     "assignments.with procedure": "{trial}，然后 {procedure}",
     "assignments.summary": "已达成 {reached}，共 {count}",
     "assignments.reached": "已达成",
+    "assignments.just reached": "已达成：{assignment}。",
     "assignments.locked": "未解锁",
     "assignments.count": "{done} / {needed}",
     "assignments.percent": "{done} %",

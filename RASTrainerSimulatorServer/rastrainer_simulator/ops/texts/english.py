@@ -259,6 +259,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "assignments.with procedure": "{trial}, then {procedure}",
         "assignments.summary": "{reached} of {count} reached",
         "assignments.reached": "reached",
+        "assignments.just reached": "Reached: {assignment}.",
         "assignments.locked": "locked",
         "assignments.count": "{done} / {needed}",
         "assignments.percent": "{done} %",

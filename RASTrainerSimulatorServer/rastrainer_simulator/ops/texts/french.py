@@ -373,6 +373,7 @@ _TABLE: Mapping[str, str] = {
     "assignments.with procedure": "{trial}, puis {procedure}",
     "assignments.summary": "{reached} sur {count} atteints",
     "assignments.reached": "atteint",
+    "assignments.just reached": "Atteint : {assignment}.",
     "assignments.locked": "verrouillé",
     "assignments.count": "{done} / {needed}",
     "assignments.percent": "{done} %",

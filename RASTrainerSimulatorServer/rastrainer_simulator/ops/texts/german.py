@@ -373,6 +373,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "assignments.with procedure": "{trial}, dann {procedure}",
         "assignments.summary": "{reached} von {count} erreicht",
         "assignments.reached": "erreicht",
+        "assignments.just reached": "Erreicht: {assignment}.",
         "assignments.locked": "gesperrt",
         "assignments.count": "{done} / {needed}",
         "assignments.percent": "{done} %",

@@ -368,6 +368,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "assignments.with procedure": "{trial}, luego {procedure}",
         "assignments.summary": "{reached} de {count} alcanzados",
         "assignments.reached": "alcanzado",
+        "assignments.just reached": "Alcanzado: {assignment}.",
         "assignments.locked": "bloqueado",
         "assignments.count": "{done} / {needed}",
         "assignments.percent": "{done} %",
