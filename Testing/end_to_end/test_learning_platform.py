@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import re
 import signal
 import subprocess
@@ -17,6 +18,7 @@ from urllib.parse import parse_qsl, urlsplit
 import pytest
 from playwright.sync_api import sync_playwright
 
+from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
 from rastrainer_simulator.lti.settings import SETTINGS_FILE
@@ -36,12 +38,15 @@ WITHIN_S = 300.0
 class Started:
     """A program that is started again and again."""
 
-    def __init__(self, *command: object, ready: str):
+    def __init__(self, *command: object, ready: str, home: Path):
         self._command, self._ready = [str(word) for word in command], ready
+        self._environment = os.environ | {"HOME": str(home)}
         self.start()
 
     def start(self) -> None:
-        self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
+        self._process = subprocess.Popen(
+            self._command, stdout=subprocess.PIPE, text=True, env=self._environment
+        )
         line = self._process.stdout.readline()
         assert line.startswith(self._ready), line
 
@@ -59,19 +64,19 @@ class Started:
 class Course:
     """Platform, tool and study."""
 
-    def __init__(self, folder: Path):
-        self.study = folder / "study.db"
+    def __init__(self, folder: Path, study: StudyPlace):
+        self.study = study
         Study.open(self.study).close()
         port, platform_port = free_port(), free_port()
         self.tool_url = f"http://127.0.0.1:{port}"
         self.url = f"http://localhost:{platform_port}"
         self.platform = Started(
-            PYTHON, PLATFORM, platform_port, folder, self.tool_url, ready="ready"
+            PYTHON, PLATFORM, platform_port, folder, self.tool_url, ready="ready", home=folder
         )
         settings = {"address": self.tool_url, "platforms": [self.ask("/registration")]}
         (folder / SETTINGS_FILE).write_text(json.dumps(settings))
         words = [*COMMAND, self.study, "--port", port, "--config", folder]
-        self.tool = Started(*words, ready="RASTrainer LTI listens on")
+        self.tool = Started(*words, ready="RASTrainer LTI listens on", home=folder)
 
     def ask(self, path: str) -> dict:
         with urllib.request.urlopen(f"{self.url}{path}", timeout=WITHIN_S) as answer:
@@ -95,8 +100,8 @@ class Course:
 
 
 @pytest.fixture
-def course(tmp_path):
-    course = Course(tmp_path)
+def course(tmp_path, study_place):
+    course = Course(tmp_path, study_place)
     yield course
     course.tool.kill()
     course.platform.kill()
