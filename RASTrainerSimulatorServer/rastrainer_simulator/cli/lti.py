@@ -17,6 +17,7 @@ from rastrainer_simulator.cli.shared import add_study
 if TYPE_CHECKING:
     from rastrainer_simulator.lti.settings import LtiSettings
     from rastrainer_simulator.lti.tool_key import ToolKey
+    from rastrainer_simulator.net.limits import ViewLimits
 
 DEFAULT_LTI_PORT = 18965
 
@@ -72,6 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("--port must be a number from 0 to 65535.")
     from rastrainer_simulator.lti.settings import read_lti_settings
     from rastrainer_simulator.lti.tool_key import ToolKey
+    from rastrainer_simulator.net.limits import read_limits
     from rastrainer_simulator.ops.folders import config_folder
 
     config = arguments.config or config_folder()
@@ -83,12 +85,16 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.study is None:
         raise InputError("Name the study whose trainees the learners become.")
     tls = _tls(arguments.certificate, config) if arguments.lan else None
-    asyncio.run(_serve(arguments, settings, key, tls))
+    asyncio.run(_serve(arguments, settings, key, read_limits(config).views, tls))
     return 0
 
 
 async def _serve(
-    arguments: argparse.Namespace, settings: LtiSettings, key: ToolKey, tls: ssl.SSLContext | None
+    arguments: argparse.Namespace,
+    settings: LtiSettings,
+    key: ToolKey,
+    limits: ViewLimits,
+    tls: ssl.SSLContext | None,
 ) -> None:
     from rastrainer_simulator.lti.lti_server import LtiServer
     from rastrainer_simulator.lti.platform_client import PlatformClient
@@ -96,7 +102,7 @@ async def _serve(
 
     stop = asyncio.Event()
     async with PlatformClient() as client:
-        server = LtiServer(arguments.study, settings, key, client)
+        server = LtiServer(arguments.study, settings, key, client, limits)
         try:
             with stop_on_signals(asyncio.get_running_loop(), stop):
                 host = "0.0.0.0" if arguments.lan else DEFAULT_HOST

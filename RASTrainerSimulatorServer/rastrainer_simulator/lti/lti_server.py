@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import re
 import ssl
 from collections.abc import Mapping
+from typing import Any
 
 from aiohttp import hdrs, web
 from aiohttp.typedefs import Handler
@@ -34,7 +36,16 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.connections import Connections
 from rastrainer_simulator.net.views.limited_server import LimitedServer
 
+_log = logging.getLogger(__name__)
+
 COOKIE = "__Host-rastrainer-lti"
+COOKIE_TERMS: Mapping[str, Any] = {
+    "path": "/",
+    "httponly": True,
+    "secure": True,
+    "samesite": "None",
+}
+NOT_NOW = "The study or the platform cannot be reached; the program's messages say why."
 LARGEST_BODY = 2 * LARGEST_TOKEN
 BODY_S = 5.0
 LONGEST_HINT = 4096
@@ -103,10 +114,12 @@ class LtiServer:
         await self._rate_limiter.passed()
         try:
             return await handler(request)
+        except RefusedLaunchError as error:
+            return _refusal(request, str(error), 400)
         except InputError as error:
-            page = LaunchPage.in_language_of(request.headers.get(hdrs.ACCEPT_LANGUAGE, ""))
-            status = 400 if isinstance(error, RefusedLaunchError) else 503
-            return _html(page.refusal(str(error)), status)
+            # Paths and addresses of the lab are none of a visitor's business.
+            _log.warning("A launch has failed: %s", error)
+            return _refusal(request, NOT_NOW, 503)
 
     async def _login(self, request: web.Request) -> web.Response:
         """Send a browser to the platform that wants to launch, to be identified there."""
@@ -137,10 +150,7 @@ class LtiServer:
         place = URL(platform.authentication_url).update_query(query)
         response = web.Response(status=302, headers={hdrs.LOCATION: str(place), **PAGE_HEADERS})
         # The platform's page posts the launch from another site.
-        response.set_cookie(
-            COOKIE, browser, path="/", max_age=int(VALID_S), httponly=True, secure=True,
-            samesite="None",
-        )  # fmt: skip
+        response.set_cookie(COOKIE, browser, max_age=int(VALID_S), **COOKIE_TERMS)
         return response
 
     async def _launch(self, request: web.Request) -> web.Response:
@@ -191,6 +201,11 @@ async def _form(request: web.Request) -> Mapping[str, str]:
             values = await asyncio.wait_for(request.post(), BODY_S)
             return {name: value for name, value in values.items() if isinstance(value, str)}
     raise RefusedLaunchError("Send a form.")
+
+
+def _refusal(request: web.Request, reason: str, status: int) -> web.Response:
+    page = LaunchPage.in_language_of(request.headers.get(hdrs.ACCEPT_LANGUAGE, ""))
+    return _html(page.refusal(reason), status)
 
 
 def _html(text: str, status: int = 200) -> web.Response:

@@ -99,3 +99,14 @@ def test_what_a_platform_says_is_text_in_the_page_and_no_markup(browser):
     status, text = browser.launch(**{f"{CLAIM}custom": custom})
     assert status == 200
     assert "<script" not in text
+
+
+def test_what_fails_in_the_lab_is_logged_and_told_to_no_visitor(lab, browser, caplog):
+    links = PlatformLinks(lab.study).path
+    kept = links.read_bytes()
+    links.write_bytes(b"no database" * 100)
+    status, text = browser.launch()
+    links.write_bytes(kept)
+    assert status == 503
+    assert links.name not in text
+    assert links.name in caplog.text

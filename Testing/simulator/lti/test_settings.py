@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import stat
+import sys
 
 import pytest
 
@@ -114,3 +115,11 @@ def test_the_command_shows_what_the_administrator_enters(tmp_path, capsys):
     assert "There is no study" in capsys.readouterr().err
     assert main([*words, "none.db", "--lan", "--certificate", str(tmp_path / "none.pem")]) == 2
     assert "is no certificate" in capsys.readouterr().err
+
+
+def test_without_the_optional_package_the_command_says_what_to_install(
+    tmp_path, capsys, monkeypatch
+):
+    monkeypatch.setitem(sys.modules, "jwt", None)
+    assert main(["lti", "--config", str(tmp_path), "--show"]) == 2
+    assert "pip install 'rastrainer[lti]'" in capsys.readouterr().err
