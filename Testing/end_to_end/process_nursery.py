@@ -43,6 +43,7 @@ SIMULATOR = (
     "Testing.end_to_end.head_start",
 )
 SLICER_SIDE = ("rastrainer_headless.main",)
+STUDY_SIDE = ("Testing.end_to_end.study_side",)
 
 
 class Nursery:
@@ -58,6 +59,7 @@ class Nursery:
         )
         self._folder = folder
         self._numbers = itertools.count()
+        self._turn = threading.Lock()
         self._alive: dict[int, Forked] = {}
         assert self._process.stdout.readline() == "ready\n"
 
@@ -86,9 +88,10 @@ class Nursery:
         return self._ask({"wait": pid})
 
     def _ask(self, question: dict) -> int:
-        self._process.stdin.write(json.dumps(question) + "\n")
-        self._process.stdin.flush()
-        return int(self._process.stdout.readline())
+        with self._turn:
+            self._process.stdin.write(json.dumps(question) + "\n")
+            self._process.stdin.flush()
+            return int(self._process.stdout.readline())
 
 
 class Forked:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.logic.module_session import ModulePaths, ModuleSession
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer.study.database.address import PostgresAddress, study_place
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
@@ -19,8 +21,12 @@ STUDY, RECORDS = "study.db", "records"
 PERIOD_S = 0.05
 
 
-def run(folder: Path, port: int) -> None:
-    """Lead the trainees of the study in a folder; nobody is chosen. Never returns."""
+def run(folder: Path, port: int, address: str = "") -> None:
+    """Lead the trainees of the study in a folder, or at an address. Never returns.
+
+    Nobody is chosen.
+    """
+    place = study_place(address) if address else None
     places = ModulePaths(
         assets=asset_path(),
         python=Path(sys.executable),
@@ -29,6 +35,7 @@ def run(folder: Path, port: int) -> None:
         records=folder / RECORDS,
         library=folder / "scenarios",
         package=SimulatorPackage.of(ROOT / "RASTrainer"),
+        studyAddress=place if isinstance(place, PostgresAddress) else None,
     )
     session = ModuleSession(HeadlessScene().scene, places, headlessKit)
     session.link.connectTo(DEFAULT_HOST, port)
@@ -58,5 +65,11 @@ class StudySide:
         self._process.wait()
 
 
+def main(arguments: Sequence[str]) -> None:
+    """Run with folder, port and perhaps the study's address."""
+    folder, port, *address = arguments
+    run(Path(folder), int(port), *address)
+
+
 if __name__ == "__main__":
-    run(Path(sys.argv[1]), int(sys.argv[2]))
+    main(sys.argv[1:])

@@ -69,7 +69,7 @@ class SurvivingPlayer:
     """Plays trial after trial.
 
     Attributes:
-        task: of the trials that are begun.
+        trainee, task: of the trials that are begun.
         kept: for each trial the touches that were acknowledged and not undone.
         registered: the trials whose registration was acknowledged.
         resumed: how often an interrupted trial was resumed.
@@ -79,7 +79,7 @@ class SurvivingPlayer:
     def __init__(self, scenario: Scenario, rng: random.Random, trainee: str = TRAINEE):
         self._scenario = scenario
         self._rng = rng
-        self._trainee = trainee
+        self.trainee = trainee
         self.task = TASK
         self._seed = 0
         self._in_flight = ""
@@ -146,7 +146,7 @@ class SurvivingPlayer:
         """Do the next thing of a trial."""
         if not self.trial_id:
             self._seed = self._rng.randrange(2**31)
-            start = {"task": self.task, "trainee": self._trainee, "seed": self._seed}
+            start = {"task": self.task, "trainee": self.trainee, "seed": self._seed}
             self._begin(self._send(client, CommandName.START_TASK, killing, **start)["trialId"])
             return
         kept = self.kept[self.trial_id]

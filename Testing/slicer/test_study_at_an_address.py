@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from rastrainer.study.database import postgres_database
 from rastrainer.study.database.study import Study
 from Testing.postgres_server import PostgresServer
 from Testing.slicer.host.host import Host
@@ -35,6 +36,12 @@ def start(tmp_path):
     errors = list(running[0].errors)
     running.pop().close()
     assert not errors, "\n".join(errors)
+
+
+@pytest.fixture(autouse=True)
+def _a_patient_window(monkeypatch):
+    """A busy machine may take longer to connect than a window waits."""
+    monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 60.0)
 
 
 def names(host):

@@ -17,7 +17,7 @@ from rastrainer.slicer.logic.trial_delivery import MAX_WAITING
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.registration_nodes import isApplied
 from rastrainer.slicer.scene.scene import Role, findNode
-from rastrainer.study.database.database import LockWait
+from rastrainer.study.database.database import LockWait, StudyAwayError
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import review
 from rastrainer.trial.analysis import analyze_trial
@@ -214,6 +214,32 @@ def test_an_unacknowledged_score_is_sent_over_the_next_connection(lab, make_reco
     lab.link.connectTo(port=lab.simulator.port)
     lab.run_until(lambda: lab.scored)
     assert lab.stored().true_tre_mm is not None
+
+
+def test_a_trial_whose_study_was_away_is_scored_over_the_next_connection(lab, make_record):
+    opened, outages = lab.open_study, []
+
+    def away_once():
+        if lab.sent("SubmitRegistration") and not outages:
+            outages.append("server")
+            raise StudyAwayError("The study cannot be reached now.")
+        return opened()
+
+    lab.open_study = away_once
+    lab.logic.close()
+    lab.logic = lab.new_logic()
+    lab.logic.trialScored.connect(lab.scored.append)
+    lab.logic.problemFound.connect(lab.problems.append)
+    lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
+    lab.run_until(lambda: lab.problems)
+    assert "cannot be reached now" in lab.problems[0]
+    assert lab.stored().true_tre_mm is None
+    lab.link.disconnect()
+    lab.connect()
+    lab.run_until(lambda: lab.scored)
+    stored = lab.stored()
+    assert stored.score is not None
+    assert stored.true_tre_mm is not None
 
 
 def test_unacknowledged_scores_are_sent_one_after_the_other(lab, make_record):

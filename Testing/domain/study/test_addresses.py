@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import socket
 from pathlib import Path
 
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database import postgres_driver
+from rastrainer.study.database import postgres_database, postgres_driver
 from rastrainer.study.database.address import PostgresAddress, study_place
+from rastrainer.study.database.database import LockWait, StudyAwayError
 from rastrainer.study.database.postgres_errors import postgres_error
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.cli.main import main
@@ -112,6 +114,27 @@ def test_the_driver_is_found_in_the_simulators_folder_and_nothing_else_of_it(tmp
     with pytest.raises(ImportError):
         __import__("other_of_simulator")
     del postgres_driver.sys.modules["psycopg"]
+
+
+@pytest.fixture
+def silent_server():
+    """The port of a server that takes connections and never says a word."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield server
+
+
+def test_a_window_does_not_wait_for_a_server_that_is_silent_and_rests_after_it(
+    silent_server, monkeypatch
+):
+    monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 0.01)
+    lock_wait = LockWait(0.05, rest_s=1.0, clock=lambda: 0.0)
+    address = PostgresAddress("127.0.0.1", "study", "seat", silent_server.getsockname()[1])
+    with pytest.raises(StudyAwayError, match="cannot be reached now"):
+        Study.open(address, lock_wait)
+    assert lock_wait.timeout_s == 0.0
+    monkeypatch.setattr(postgres_database, "connected_within", None)
+    with pytest.raises(StudyAwayError, match="cannot be reached now"):
+        Study.open(address, lock_wait)
 
 
 class RefusalError(Exception):

@@ -7,7 +7,7 @@ import sqlite3
 
 import pytest
 
-from rastrainer.study.database.postgres_database import portable_to_postgres
+from rastrainer.study.database.postgres_statements import portable_to_postgres
 from rastrainer.study.database.schema import MIGRATIONS
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.tables import in_postgres, study_tables

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import subprocess
 import sys
 import threading
@@ -272,12 +273,16 @@ def rows_of(place):
         }
 
 
+MADE = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d UTC")
+"""When a report was made."""
+
+
 def written(place, folder):
-    """Return all files of report and exports, by name."""
+    """Return all files of report and exports by name, but for when they were made."""
     assert main(["report", str(place), "-o", str(folder / "report")]) == 0
     assert main(["export", str(place), "-o", str(folder / "export")]) == 0
     files = [path for path in folder.rglob("*") if path.is_file()]
-    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+    return {str(path.relative_to(folder)): MADE.sub(b"", path.read_bytes()) for path in files}
 
 
 def test_a_study_is_copied_there_and_back_to_the_last_bit(place, tmp_path, capsys):

@@ -15,6 +15,7 @@ from rastrainer.igtl.client import Reply
 from rastrainer.protocol import CommandName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
+from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import with_progress
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
@@ -64,9 +65,16 @@ class TrialScoring:
             self._work.do(
                 lambda: self._scored(analysis, truth),
                 lambda scored: report(scored, truth),
-                lambda error: self._work.do(
-                    lambda: self._keepTruth(analysis.record, truth), lambda _none: end(error), end
-                ),
+                lambda error: refuse(error, truth),
+            )
+
+        def refuse(error: Exception, truth: RevealedTruth) -> None:
+            """Keep the truth of what can never be scored; what can is asked for again."""
+            if isinstance(error, StudyBusyError):
+                end(error)
+                return
+            self._work.do(
+                lambda: self._keepTruth(analysis.record, truth), lambda _none: end(error), end
             )
 
         def report(scored: TrialAnalysis, truth: RevealedTruth) -> None:

@@ -45,11 +45,11 @@ class LockWait:
         """How long to wait now."""
         return 0.0 if self._clock() < self._retry_at else self._most_s
 
-    def note_timeout(self) -> None:
-        """Note a timeout."""
+    def note_timeout(self, waited_s: float = 0.0) -> None:
+        """Note a timeout; after a long wait, the rest lasts ten times as long."""
         self._has_timed_out = True
-        if self._clock() >= self._retry_at:
-            self._retry_at = self._clock() + self._rest_s
+        if self._clock() >= self._retry_at and self._rest_s:
+            self._retry_at = self._clock() + max(self._rest_s, 10.0 * waited_s)
 
     def may_retry(self) -> bool:
         """Return once whether it is time to retry after a timeout."""

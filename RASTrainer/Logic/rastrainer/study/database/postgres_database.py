@@ -11,62 +11,39 @@ UUID and offered again until they are acknowledged, and steps are stored once by
 
 from __future__ import annotations
 
-import functools
-import re
-from collections.abc import Iterable, Iterator, Sequence
+import time
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.address import PostgresAddress
-from rastrainer.study.database.connection import Rows
 from rastrainer.study.database.database import (
     LockWait,
     StudyAwayError,
     StudyBusyError,
     StudyDatabase,
 )
-from rastrainer.study.database.postgres_driver import postgres_driver, refuse_infinite_numbers
+from rastrainer.study.database.postgres_connecting import (
+    CONNECT_TIMEOUT_S,
+    INTERACTIVE_CONNECT_TIMEOUT_S,
+    INTERACTIVE_PATIENCE_S,
+    connected,
+    connected_within,
+)
+from rastrainer.study.database.postgres_driver import postgres_driver
 from rastrainer.study.database.postgres_errors import postgres_error
-from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
-from rastrainer.study.database.tables import in_postgres, study_tables
+from rastrainer.study.database.postgres_statements import PostgresStatements
+from rastrainer.study.database.postgres_tables import (
+    LOCKED,
+    check_server,
+    migrate,
+    stored_version,
+)
+from rastrainer.study.database.schema import MIGRATIONS
+from rastrainer.study.database.tables import study_tables
 
-CONNECT_TIMEOUT_S = 10
-INTERACTIVE_CONNECT_TIMEOUT_S = 2
-"""The least that libpq takes."""
-_JSON_EXTRACT = re.compile(r"json_extract\((\w+), '\$\.([\w.]+)'\)")
-_SESSION = """
-    SET search_path = public;
-    SET timezone = 'UTC';
-    SET synchronous_commit = on;
-    SET statement_timeout = '60s';
-    SET idle_in_transaction_session_timeout = '20s';
-    SET tcp_keepalives_idle = 10;
-    SET tcp_keepalives_interval = 5;
-    SET tcp_keepalives_count = 3;
-"""
-"""A committed change survives a power failure, and a seat that has vanished blocks nobody."""
-_NETWORK = {"keepalives_idle": 10, "keepalives_interval": 5, "tcp_user_timeout": 15_000}
 _READ = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"
-_LOCKED = "UPDATE rastrainer_study SET changes = changes + 1"
-_TABLES = """
-    SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace AND relkind = 'r'
-"""
-_COMMANDS = """
-    SELECT (SELECT count(*) FROM pg_class
-            WHERE relnamespace = 'public'::regnamespace AND relkind NOT IN ('r', 'i', 'S'))
-        + (SELECT count(*) FROM pg_trigger JOIN pg_class ON pg_class.oid = tgrelid
-            WHERE relnamespace = 'public'::regnamespace AND NOT tgisinternal)
-        + (SELECT count(*) FROM pg_rewrite JOIN pg_class ON pg_class.oid = ev_class
-            WHERE relnamespace = 'public'::regnamespace)
-        + (SELECT count(*) FROM pg_policy JOIN pg_class ON pg_class.oid = polrelid
-            WHERE relnamespace = 'public'::regnamespace)
-"""
-_HEADER = """
-    CREATE TABLE rastrainer_study (
-        application_id BIGINT NOT NULL, user_version BIGINT NOT NULL, changes BIGINT NOT NULL
-    )
-"""
 
 
 class PostgresDatabase(StudyDatabase):
@@ -112,17 +89,17 @@ class PostgresDatabase(StudyDatabase):
         self._connection.close()
 
     @contextmanager
-    def reading(self) -> Iterator[_Statements]:
+    def reading(self) -> Iterator[PostgresStatements]:
         """Give the connection for several reads of one state."""
         with self._transaction(_READ) as statements:
             yield statements
 
     @contextmanager
-    def writing(self) -> Iterator[_Statements]:
+    def writing(self) -> Iterator[PostgresStatements]:
         """Give the connection for changes in one transaction, when those of others are done."""
         if not self._may_change:
             raise InputError(f"The study {self._address} is read-only here.")
-        with self._transaction(f"{self._begin_waiting()}; {_LOCKED}") as statements:
+        with self._transaction(f"{self._begin_waiting()}; {LOCKED}") as statements:
             yield statements
         self._own_changes += 1
 
@@ -145,11 +122,11 @@ class PostgresDatabase(StudyDatabase):
                 )
 
     @contextmanager
-    def _transaction(self, begin: str) -> Iterator[_Statements]:
+    def _transaction(self, begin: str) -> Iterator[PostgresStatements]:
         with self._sentences():
             try:
                 self._begin(begin)
-                yield _Statements(self._connection)
+                yield PostgresStatements(self._connection)
                 if self._connection.execute("COMMIT").statusmessage != "COMMIT":
                     raise InputError(f"The study {self._address} did not accept the change.")
             finally:
@@ -177,93 +154,36 @@ class PostgresDatabase(StudyDatabase):
         return not self._connection.closed and self._connection.info.transaction_status != idle
 
     def _connect(self) -> Any:
-        timeout_s = self._lock_wait.timeout_s
-        if timeout_s == 0.0:
+        patience_s = self._lock_wait.timeout_s
+        if patience_s == 0.0:
             # It has just failed: a window does not wait again so soon.
             raise StudyAwayError(f"The study {self._address} cannot be reached now.")
-        connection = self._driver.connect(
-            **self._address.connection_words,
-            **_NETWORK,
-            autocommit=True,
-            prepare_threshold=None,
-            application_name="RASTrainer",
-            client_encoding="UTF8",
-            connect_timeout=(
-                INTERACTIVE_CONNECT_TIMEOUT_S if timeout_s < 1.0 else CONNECT_TIMEOUT_S
-            ),
-        )
-        refuse_infinite_numbers(connection)
-        connection.execute(_SESSION)
-        return connection
+        if patience_s >= 1.0:
+            return connected(self._address, CONNECT_TIMEOUT_S)
+        begun = time.monotonic()
+        try:
+            return connected_within(
+                INTERACTIVE_PATIENCE_S, self._address, INTERACTIVE_CONNECT_TIMEOUT_S
+            )
+        except TimeoutError:
+            self._lock_wait.note_timeout(time.monotonic() - begun)
+            raise StudyAwayError(f"The study {self._address} cannot be reached now.") from None
 
     def _prepare(self, may_create: bool) -> None:
-        if self._shown("server_encoding") != "UTF8":
-            raise InputError(f"The database {self._address} must have the encoding UTF8.")
-        if self._shown("fsync") != "on":
-            raise InputError(
-                f"The server of {self._address} runs with fsync = off and could lose trials that "
-                "it has acknowledged; switch it on."
-            )
+        check_server(self._connection, self._address)
         with self.reading():
-            version = self._checked_version()
+            version = stored_version(self._connection, self._address)
         if version == len(MIGRATIONS):
             return
+        if version == 0 and not (self._may_change and may_create):
+            raise InputError(f"The database {self._address} holds no study.")
         if not self._may_change:
             raise InputError(
                 f"The study {self._address} is of an earlier RASTrainer and is only read here; "
                 "open it once in Slicer, which migrates it."
-                if version
-                else f"The database {self._address} holds no study."
             )
-        if version == 0 and not may_create:
-            raise InputError(f"The database {self._address} holds no study.")
-        self._migrate()
-
-    def _checked_version(self) -> int:
-        """Return how many steps the schema has taken; 0 in an empty database."""
-        if self._number(_COMMANDS):
-            raise InputError(
-                f"The study {self._address} holds triggers, views, rules or policies; ours has "
-                "none."
-            )
-        if self._number("SELECT count(*) FROM pg_tables WHERE tablename = 'rastrainer_study'"):
-            row = self._connection.execute(
-                "SELECT application_id, user_version FROM rastrainer_study"
-            ).fetchall()
-            if len(row) != 1 or row[0][0] != APPLICATION_ID:
-                raise InputError(f"{self._address} is the database of another program.")
-            version = row[0][1]
-            if version > len(MIGRATIONS):
-                raise InputError(
-                    f"The study {self._address} was made by a newer RASTrainer (format {version}, "
-                    f"this one knows {len(MIGRATIONS)}); update it."
-                )
-            return version
-        if self._number(_TABLES):
-            raise InputError(f"{self._address} is the database of another program.")
-        return 0
-
-    def _migrate(self) -> None:
         with self._transaction(self._begin_waiting()) as statements:
-            # Another process may be creating or migrating the tables.
-            statements.execute("SELECT pg_advisory_xact_lock(?)", (APPLICATION_ID,))
-            version = self._checked_version()
-            if version == 0:
-                statements.execute(_HEADER)
-                statements.execute(
-                    "INSERT INTO rastrainer_study VALUES (?, 0, 0)", (APPLICATION_ID,)
-                )
-            statements.execute(_LOCKED)
-            for step in MIGRATIONS[version:]:
-                for statement in step:
-                    statements.execute(in_postgres(statement))
-            statements.execute("UPDATE rastrainer_study SET user_version = ?", (len(MIGRATIONS),))
-
-    def _shown(self, setting: str) -> str:
-        return self._connection.execute(f"SHOW {setting}").fetchone()[0]
-
-    def _number(self, query: str) -> int:
-        return self._connection.execute(query).fetchone()[0]
+            migrate(statements, self._address)
 
     @contextmanager
     def _sentences(self) -> Iterator[None]:
@@ -276,28 +196,3 @@ class PostgresDatabase(StudyDatabase):
             if isinstance(known, StudyBusyError):
                 self._lock_wait.note_timeout()
             raise known from error
-
-
-class _Statements:
-    """Gives PostgreSQL the statements of a study."""
-
-    def __init__(self, connection: Any) -> None:
-        self._connection = connection
-
-    def execute(self, sql: str, parameters: Sequence[Any] = (), /) -> Rows:
-        """Execute a statement with `?` for each parameter."""
-        return self._connection.execute(portable_to_postgres(sql), parameters)
-
-    def executemany(self, sql: str, parameters: Iterable[Sequence[Any]], /) -> None:
-        """Execute a statement for each of several sequences of parameters."""
-        with self._connection.cursor() as cursor:
-            cursor.executemany(portable_to_postgres(sql), parameters)
-
-
-@functools.cache
-def portable_to_postgres(sql: str) -> str:
-    """Return a statement with PostgreSQL's marks of parameters and way into JSON."""
-    sql = _JSON_EXTRACT.sub(
-        lambda found: f"({found[1]}::json #>> '{{{found[2].replace('.', ',')}}}')", sql
-    )
-    return sql.replace("%", "%%").replace("?", "%s")

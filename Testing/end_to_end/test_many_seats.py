@@ -1,0 +1,312 @@
+"""One study in PostgreSQL: twelve trainees move between three seats, and everything is killed.
+
+Each seat is a simulator and Slicer's side, processes of their own. Simulators die while a trainee
+plays, at a message or with a command on its way; Slicer's sides and the database at any time.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import signal
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.journal.journal_file import Integrity, read_journal
+from rastrainer.scenario.scenario import load_scenario
+from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.questionnaires import SUS
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import study_protocol_from_json
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.record.trial_archive import SUFFIX, find_unacknowledged
+from Testing.domain.study.test_study_in_postgres import rows_of, written
+from Testing.end_to_end.finished_trials import COLIN
+from Testing.end_to_end.process_nursery import SIMULATOR, STUDY_SIDE, Nursery
+from Testing.end_to_end.simulator_process import READY
+from Testing.end_to_end.study_side import RECORDS
+from Testing.end_to_end.surviving_player import Killing, SurvivingPlayer
+from Testing.end_to_end.test_study_through_crashes import SHIPPED
+from Testing.free_port import free_port
+from Testing.postgres_server import PostgresServer, opened_when_there
+
+pytestmark = pytest.mark.soak
+TRAINEES = [f"P{number:02d}" for number in range(1, 13)]
+TASKS = ("task-1", "task-2")
+SEATS = 3
+KILLED_SIMULATORS, KILLED_SLICERS, KILLED_DATABASES = 14, 10, 28
+"""Of each seat, of each seat, and in all: 100."""
+PROTOCOL = {
+    "modes": ["desktop"],
+    "modeOrder": "fixed",
+    "tasks": list(TASKS),
+    "taskOrder": "fixed",
+    "repetitions": 1,
+    "trialRun": {"minutes": 0},
+    "breaks": {"betweenModesMinutes": 0, "betweenTasksMinutes": 0},
+    "questionnaires": [{"name": "sus", "when": "after-mode", "modes": []}],
+}
+PATIENCE_S = 600.0
+"""For what does not change any more."""
+
+
+class Seat:
+    """A simulator and Slicer's side, which come and go; a lock lets only one thread change them."""
+
+    def __init__(self, folder, place, nurseries, seed):
+        folder.mkdir()
+        self.folder, self.port = folder, free_port()
+        self._place = str(place)
+        self._simulators, self._slicers = nurseries
+        self.rng = random.Random(seed)
+        self.player = SurvivingPlayer(load_scenario(COLIN), random.Random(seed + 100))
+        self.killed_simulators = self.killed_slicers = 0
+        self.turn = threading.Lock()
+        self.start_simulator()
+        self.start_slicer()
+
+    def start_simulator(self):
+        words = ("--no-views", "--speed", "10", "--port", str(self.port))
+        folders = ("--records", str(self.records), "--config", str(self.folder / "config"))
+        simulator = self._simulators.fork("simulator", *folders, *words)
+        ready = simulator.next_line()
+        assert ready.startswith(READY), ready
+        simulator.let_print()
+        self.end_simulator = simulator.end
+
+    def start_slicer(self):
+        slicer = self._slicers.fork(str(self.folder), str(self.port), self._place)
+        slicer.let_print()
+        self.end_slicer = slicer.end
+
+    @property
+    def records(self):
+        return self.folder / RECORDS
+
+    def play(self, trainee, task, kills):
+        """Play a trial to its end, through up to so many deaths of the simulator."""
+        self.player.trainee, self.player.task = trainee, task
+        while kills:
+            killing = Killing(self.rng, self._kill_simulator)
+            is_done = self.player.play(self.port, killing, 1)
+            if is_done and not killing.is_done:
+                return
+            kills -= 1
+            self.start_simulator()
+            if is_done:
+                return
+        assert self.player.play(self.port, None, 1)
+
+    def _kill_simulator(self):
+        self.killed_simulators += 1
+        self.end_simulator(signal.SIGKILL)
+
+    def kill_simulator_at_rest(self):
+        self._kill_simulator()
+        self.start_simulator()
+
+    def kill_slicer(self):
+        with self.turn:
+            self.killed_slicers += 1
+            self.end_slicer(signal.SIGKILL)
+            self.start_slicer()
+
+
+class Lab:
+    """The study, its server, and the seats."""
+
+    def __init__(self, folder, server, nurseries):
+        self.server, self.place = server, server.new_study()
+        self.killed_databases = 0
+        with Study.open(self.place) as study:
+            progress = StudyProgress(study)
+            protocol = study_protocol_from_json(json.loads(SHIPPED.read_text()) | PROTOCOL)
+            progress.set_protocol(replace(protocol, trial_run_min=0.0))
+            for name in TRAINEES:
+                study.create_trainee(name, consent=True)
+                progress.enroll(name)
+        self.seats = [
+            Seat(folder / f"seat-{number}", self.place, nurseries, number)
+            for number in range(SEATS)
+        ]
+
+    def next_step(self, trainee):
+        """Return the name of the trainee's next step, with what is stored already; "" if none."""
+        with opened_when_there(self.place) as study:
+            step = StudyProgress(study).played(trainee).next_step
+        return "" if step is None else step.name
+
+    def until_next(self, trainee, wanted):
+        """Wait until a step comes next."""
+        give_up = time.monotonic() + PATIENCE_S
+        while (name := self.asked(lambda: self.next_step(trainee))) != wanted:
+            assert time.monotonic() < give_up, (trainee, name, wanted)
+            time.sleep(0.2)
+
+    def asked(self, ask):
+        """Return what a function returns as soon as the database is there."""
+        give_up = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                return ask()
+            except InputError:
+                assert time.monotonic() < give_up
+                time.sleep(0.1)
+
+    def answer(self, trainee):
+        """Answer the questionnaire at some seat, again where the answer was lost in a crash."""
+        while self.next_step(trainee) != "":
+
+            def store():
+                with opened_when_there(self.place) as study:
+                    StudyProgress(study).count_played(trainee)
+                    step = StudyProgress(study).progress(trainee).next_step
+                    if step is not None:
+                        details = {"answers": [3] * len(SUS.items)}
+                        StudyProgress(study).finish(trainee, step.name, details)
+
+            self.asked(store)
+
+    def lead(self, seat_number):
+        """Play the trials of one seat: trainees move on to the next seat for each task."""
+        seat = self.seats[seat_number]
+        trials = [
+            (trainee, task)
+            for number, task in enumerate(TASKS)
+            for place, trainee in enumerate(TRAINEES)
+            if (place + number) % SEATS == seat_number
+        ]
+        for index, (trainee, task) in enumerate(trials):
+            self.until_next(trainee, f"desktop/1/{task}")
+            left = KILLED_SIMULATORS - seat.killed_simulators
+            seat.play(trainee, task, -(-left // (len(trials) - index)))
+            if task == TASKS[-1]:
+                self.until_next(trainee, "desktop/after/sus")
+                self.answer(trainee)
+        while seat.killed_simulators < KILLED_SIMULATORS:
+            seat.kill_simulator_at_rest()
+
+    def kill_slicers(self, seat, rng):
+        for _ in range(KILLED_SLICERS):
+            time.sleep(rng.uniform(0.0, 8.0))
+            seat.kill_slicer()
+
+    def kill_databases(self, rng):
+        for _ in range(KILLED_DATABASES):
+            time.sleep(rng.uniform(0.0, 3.0))
+            self.server.kill()
+            self.killed_databases += 1
+            time.sleep(rng.uniform(0.0, 0.5))
+            self.server.start()
+
+    def run(self):
+        """Play the whole study while simulators, Slicer's sides and the database are killed."""
+        with ThreadPoolExecutor(2 * SEATS + 1) as threads:
+            parts = [threads.submit(self.lead, number) for number in range(SEATS)]
+            parts += [
+                threads.submit(self.kill_slicers, seat, random.Random(50 + number))
+                for number, seat in enumerate(self.seats)
+            ]
+            parts.append(threads.submit(self.kill_databases, random.Random(60)))
+            for part in parts:
+                part.result()
+
+    def deliver_the_rest(self):
+        """Have everything acknowledged, and, over new connections, scored and revealed."""
+        self.until(lambda: not any(find_unacknowledged(seat.records) for seat in self.seats))
+        for seat in self.seats:
+            seat.end_slicer(signal.SIGKILL)
+            seat.start_slicer()
+        self.until(lambda: all(t.score and t.truth for t in self.trials()))
+
+    def until(self, is_so):
+        give_up = time.monotonic() + PATIENCE_S
+        while not is_so():
+            assert time.monotonic() < give_up
+            time.sleep(0.5)
+
+    def trials(self):
+        with opened_when_there(self.place) as study:
+            return [trial for name in TRAINEES for trial in study.history(name)]
+
+
+@pytest.fixture
+def lab(tmp_path):
+    with (
+        PostgresServer() as server,
+        Nursery(SIMULATOR, tmp_path) as simulators,
+        Nursery(STUDY_SIDE, tmp_path) as slicers,
+    ):
+        yield Lab(tmp_path, server, (simulators, slicers))
+
+
+def test_a_study_over_three_seats_survives_a_hundred_kills_of_all_its_parts(lab, tmp_path, capsys):
+    begun = time.monotonic()
+    lab.run()
+    lab.deliver_the_rest()
+    kills = [
+        sum(seat.killed_simulators for seat in lab.seats),
+        sum(seat.killed_slicers for seat in lab.seats),
+        lab.killed_databases,
+    ]
+    assert sum(kills) >= 100
+    check_trials(lab)
+    check_progress(lab)
+    file = tmp_path / "study.db"
+    assert main(["copy-study", str(lab.place), str(file)]) == 0
+    assert rows_of(lab.place) == rows_of(file)
+    files = [written(where, tmp_path / name) for name, where in
+             (("there", lab.place), ("here", file))]  # fmt: skip
+    assert files[0] == files[1]
+    with capsys.disabled():
+        resumed = sum(seat.player.resumed for seat in lab.seats)
+        print(
+            f"\n{sum(kills)} kills ({kills[0]} of simulators, {kills[1]} of Slicer's sides, "
+            f"{kills[2]} of the database) in {time.monotonic() - begun:.0f} s: "
+            f"{len(lab.trials())} trials, {resumed} times resumed, {len(files[0])} equal files"
+        )
+
+
+def check_trials(lab):
+    """Each registered trial is in the study once, with the touches of its journal."""
+    stored = lab.trials()
+    names = [trial.record.trial_id for trial in stored]
+    assert len(set(names)) == len(names) == len(TRAINEES) * len(TASKS)
+    assert set(names) == set.union(*(seat.player.registered for seat in lab.seats))
+    journals = {
+        path.stem.partition("_")[2]: path
+        for seat in lab.seats
+        for path in seat.records.glob(f"*{SUFFIX}")
+    }
+    for trial in stored:
+        reading = read_journal(journals[trial.record.trial_id])
+        assert reading.integrity is Integrity.INTACT
+        record = reading.of_kind("registered")[-1]["record"]
+        told = [(point["label"], tuple(point["positionMm"])) for point in record["points"]]
+        kept = [(point.label, tuple(point.position_mm)) for point in trial.record.points]
+        assert kept == told
+        assert len(kept) == 15
+
+
+def check_progress(lab):
+    """Everybody has done all steps in their order, each once, at two seats."""
+    with Study.open(lab.place) as study:
+        progress = StudyProgress(study)
+        for name in TRAINEES:
+            entries = progress.progress(name).entries
+            steps = [f"desktop/1/{task}" for task in TASKS]
+            assert [entry.step for entry in entries] == [*steps, "desktop/after/sus"]
+            assert [entry.outcome for entry in entries] == ["done"] * 3
+            seats = [
+                number
+                for entry in entries[:2]
+                for number, seat in enumerate(lab.seats)
+                if entry.details["trialId"] in seat.player.registered
+            ]
+            assert len(set(seats)) == 2
+        assert {trainee.pseudonym for trainee in study.trainees()} == set(TRAINEES)
