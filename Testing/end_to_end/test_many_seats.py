@@ -12,7 +12,6 @@ import signal
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import pytest
 
@@ -25,13 +24,13 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import study_protocol_from_json
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.record.trial_archive import SUFFIX, find_unacknowledged
-from Testing.domain.study.test_study_in_postgres import rows_of, written
+from Testing.domain.study.played_study import STUDIES
+from Testing.domain.study.study_content import rows_of, written_files
 from Testing.end_to_end.finished_trials import COLIN
 from Testing.end_to_end.process_nursery import SIMULATOR, STUDY_SIDE, Nursery
 from Testing.end_to_end.simulator_process import READY
 from Testing.end_to_end.study_side import RECORDS
 from Testing.end_to_end.surviving_player import Killing, SurvivingPlayer
-from Testing.end_to_end.test_study_through_crashes import SHIPPED
 from Testing.free_port import free_port
 from Testing.postgres_server import PostgresServer, opened_when_there
 
@@ -125,8 +124,8 @@ class Lab:
         self.killed_databases = 0
         with Study.open(self.place) as study:
             progress = StudyProgress(study)
-            protocol = study_protocol_from_json(json.loads(SHIPPED.read_text()) | PROTOCOL)
-            progress.set_protocol(replace(protocol, trial_run_min=0.0))
+            shipped = json.loads((STUDIES / "published-protocol.json").read_text())
+            progress.set_protocol(study_protocol_from_json(shipped | PROTOCOL))
             for name in TRAINEES:
                 study.create_trainee(name, consent=True)
                 progress.enroll(name)
@@ -260,7 +259,7 @@ def test_a_study_over_three_seats_survives_a_hundred_kills_of_all_its_parts(lab,
     file = tmp_path / "study.db"
     assert main(["copy-study", str(lab.place), str(file)]) == 0
     assert rows_of(lab.place) == rows_of(file)
-    files = [written(where, tmp_path / name) for name, where in
+    files = [written_files(where, tmp_path / name) for name, where in
              (("there", lab.place), ("here", file))]  # fmt: skip
     assert files[0] == files[1]
     with capsys.disabled():

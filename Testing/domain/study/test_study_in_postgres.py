@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import random
-import re
 import subprocess
 import sys
 import threading
@@ -17,10 +16,10 @@ from rastrainer.study.database.copying import copy_study
 from rastrainer.study.database.database import LockWait, StudyAwayError, StudyBusyError
 from rastrainer.study.database.schema import MIGRATIONS
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.tables import study_tables
 from rastrainer_simulator.cli.main import main
 from Testing.domain.study.played_study import study_with_trials
-from Testing.domain.study.test_study_database import KilledWriter, stored_numbers, writer
+from Testing.domain.study.study_content import rows_of, written_files
+from Testing.domain.study.writers import stored_numbers, writer
 from Testing.domain.trial.trial_records import make_record
 from Testing.postgres_server import PostgresServer, opened_when_there
 
@@ -39,40 +38,12 @@ def own_server():
         yield server
 
 
-def test_concurrent_seats_lose_and_duplicate_nothing(place):
-    Study.open(place).close()
-    writers = [writer(place, 0, 60), writer(place, 30, 90)]
-    for process in writers:
-        process.communicate(timeout=600)
-        assert process.returncode == 0
-    assert stored_numbers(place) == list(range(90))
-
-
 def test_seats_that_begin_a_study_at_once_make_it_once(place):
     writers = [writer(place, number, number + 1) for number in range(4)]
     for process in writers:
         process.communicate(timeout=600)
         assert process.returncode == 0
     assert stored_numbers(place) == [0, 1, 2, 3]
-
-
-def test_killed_seats_lose_and_duplicate_nothing(place):
-    rng = random.Random(5)
-    Study.open(place).close()
-    acknowledged, kills = set(), 0
-    writers = [KilledWriter(place, 0), KilledWriter(place, 0)]
-    while kills < 100:
-        time.sleep(rng.uniform(0.0, 0.2))
-        victim = rng.randrange(2)
-        acknowledged |= writers[victim].kill()
-        kills += 1
-        first = max(0, max(acknowledged, default=0) - rng.randrange(4))
-        writers[victim] = KilledWriter(place, first)
-    for process in writers:
-        acknowledged |= process.kill()
-    stored = stored_numbers(place)
-    assert acknowledged <= set(stored)
-    assert len(stored) == len(set(stored))
 
 
 def test_a_server_killed_while_trials_are_stored_loses_none_that_was_acknowledged(own_server):
@@ -263,28 +234,6 @@ def test_a_foreign_value_is_reported(sql, place, postgres_server, tmp_path, caps
     assert "did not write" in capsys.readouterr().err
 
 
-def rows_of(place):
-    with Study.open_for_reading(place) as study, study.database.reading() as connection:
-        return {
-            table.name: connection.execute(
-                f"SELECT {', '.join(table.columns)} FROM {table.name} ORDER BY {table.order}"
-            ).fetchall()
-            for table in study_tables()
-        }
-
-
-MADE = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d UTC")
-"""When a report was made."""
-
-
-def written(place, folder):
-    """Return all files of report and exports by name, but for when they were made."""
-    assert main(["report", str(place), "-o", str(folder / "report")]) == 0
-    assert main(["export", str(place), "-o", str(folder / "export")]) == 0
-    files = [path for path in folder.rglob("*") if path.is_file()]
-    return {str(path.relative_to(folder)): MADE.sub(b"", path.read_bytes()) for path in files}
-
-
 def test_a_study_is_copied_there_and_back_to_the_last_bit(place, tmp_path, capsys):
     file, back = tmp_path / "study.db", tmp_path / "back.db"
     study_with_trials(file)
@@ -295,7 +244,7 @@ def test_a_study_is_copied_there_and_back_to_the_last_bit(place, tmp_path, capsy
     assert "2 trainees, " in capsys.readouterr().out
     assert main(["copy-study", str(place), str(back)]) == 0
     assert rows_of(file) == rows_of(place) == rows_of(back)
-    reports = [written(each, tmp_path / name) for name, each in
+    reports = [written_files(each, tmp_path / name) for name, each in
                (("a", file), ("b", place), ("c", back))]  # fmt: skip
     assert reports[0] == reports[1] == reports[2]
     assert len(reports[0]) > 10
@@ -310,8 +259,8 @@ def test_a_study_is_copied_there_and_back_to_the_last_bit(place, tmp_path, capsy
     ("words", "status", "told"),
     [
         (("pass-mark", "--novices", "A", "--experts", "B"), 2, "scored trials, and 3 are needed"),
-        (("compare-methods",), 2, "can be registered on"),
-        (("rate", "--rater", "R1", "--no-window", "--records", "."), 2, "replay"),
+        (("compare-methods",), 2, "lie on one line"),
+        (("rate", "--rater", "R1", "--no-window", "--records", "."), 2, "nothing to rate"),
         (("delete-trainee", "A", "--records", ".", "--yes"), 1, "3 trials and 0 journals deleted"),
     ],
     ids=lambda value: value[0] if isinstance(value, tuple) else "",

@@ -1,0 +1,33 @@
+"""All that is in a study, and all that is written from it, to compare two places of it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.tables import study_tables
+from rastrainer_simulator.cli.main import main
+
+_MADE = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d UTC")
+"""When a report was made."""
+
+
+def rows_of(place: StudyPlace) -> dict[str, list[tuple]]:
+    """Return all rows by table, in the order of storing."""
+    with Study.open_for_reading(place) as study, study.database.reading() as connection:
+        return {
+            table.name: connection.execute(
+                f"SELECT {', '.join(table.columns)} FROM {table.name} ORDER BY {table.order}"
+            ).fetchall()
+            for table in study_tables()
+        }
+
+
+def written_files(place: StudyPlace, folder: Path) -> dict[str, bytes]:
+    """Return all files of report and exports by name, but for when they were made."""
+    assert main(["report", str(place), "-o", str(folder / "report")]) == 0
+    assert main(["export", str(place), "-o", str(folder / "export")]) == 0
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {str(path.relative_to(folder)): _MADE.sub(b"", path.read_bytes()) for path in files}
