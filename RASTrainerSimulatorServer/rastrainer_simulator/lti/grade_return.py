@@ -124,10 +124,11 @@ class GradeReturn:
         token, until = self._tokens.get(platform, ("", 0.0))
         if token and self._clock() < until:
             return token
+        audience = platform.token_audience or platform.token_url
         form = {
             "grant_type": "client_credentials",
             "client_assertion_type": _ASSERTION,
-            "client_assertion": self._key.assertion(platform.client_id, platform.token_url),
+            "client_assertion": self._key.assertion(platform.client_id, audience),
             "scope": SCORE_SCOPE,
         }
         answer = await self._client.json(platform.token_url, form)

@@ -58,6 +58,7 @@ class LearningPlatform:
         authentication_url: Where a browser is sent to be identified.
         token_url: That gives access to its services.
         key_set_url: Of its public keys.
+        token_audience: Whom requests for access are addressed to; "" for `token_url`.
         line_item_origins: Further servers of it that take grades.
         sends_grades: Whether grades are returned to it.
     """
@@ -69,6 +70,7 @@ class LearningPlatform:
     authentication_url: str
     token_url: str
     key_set_url: str
+    token_audience: str
     line_item_origins: tuple[str, ...]
     sends_grades: bool
 
@@ -89,6 +91,7 @@ _PLATFORM_KEYS = {
     "authenticationUrl": Argument(https_url),
     "tokenUrl": Argument(https_url),
     "keySetUrl": Argument(https_url),
+    "tokenAudience": Argument(text(500), ""),
     "lineItemOrigins": Argument(texts(0, 10), ()),
     "sendGrades": Argument(yes_or_no, True),
 }

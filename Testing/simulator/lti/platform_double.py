@@ -40,6 +40,7 @@ class PlatformDouble:
         stored_first: whether a planned status comes after the score was stored.
         assertions: claims of the requests for access.
         address: of the platform.
+        audience: that the requests for access must be addressed to.
         tool: address of the tool, whose assertions it checks.
     """
 
@@ -54,6 +55,7 @@ class PlatformDouble:
         self.token = str(uuid.uuid4())
         self._thread = thread
         self.address = f"http://{HOST}:{thread.run(self._listen())}"
+        self.audience = f"{self.address}/token"
 
     async def _listen(self) -> int:
         app = web.Application()
@@ -143,7 +145,7 @@ class PlatformDouble:
         key_set = jwt.PyJWKSet.from_json(answer.decode())
         assertion = form["client_assertion"]
         key = key_set[jwt.get_unverified_header(assertion)["kid"]]
-        claims = jwt.decode(assertion, key, ["RS256"], audience=f"{self.address}/token")
+        claims = jwt.decode(assertion, key, ["RS256"], audience=self.audience)
         assert claims["iss"] == claims["sub"] == CLIENT_ID
         self.assertions.append(claims)
         return web.json_response({"access_token": self.token, "expires_in": 3600})

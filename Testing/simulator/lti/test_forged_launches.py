@@ -10,6 +10,7 @@ import jwt
 import pytest
 from aiohttp import web
 from cryptography.hazmat.primitives import serialization
+from cryptography.hazmat.primitives.asymmetric import rsa
 
 from rastrainer_simulator.lti.launch_message import LARGEST_TOKEN, RefusedLaunchError
 from rastrainer_simulator.lti.open_logins import MOST_LOGINS, VALID_S, OpenLogins
@@ -79,8 +80,9 @@ def test_a_token_with_an_unknown_key_id_is_refused(lab, browser, key_id):
 def test_made_up_key_ids_do_not_make_this_tool_ask_the_platform_again_and_again(lab, browser):
     assert browser.launch(**TEACHER)[0] == 200
     asked = lab.platform.asked_for_keys
-    # Time stands still.
-    lab.tool.server._key_sets._clock = lambda: 0.0
+    key_sets = lab.tool.server._key_sets
+    (just_now,) = key_sets._asked.values()
+    key_sets._clock = lambda: just_now
     for number in range(5):
         assert browser.launch(headers={"kid": f"made-up-{number}"})[0] == 400
     assert lab.platform.asked_for_keys == asked
@@ -190,6 +192,7 @@ def test_too_long_deep_or_empty_tokens_are_refused(lab, browser):
     deep = base64.urlsafe_b64encode(b"[" * 9000).rstrip(b"=").decode()
     for token in ("", "a.b.c", "." * 50, "x" * (LARGEST_TOKEN + 1), f"{deep}.{deep}.x"):
         assert browser.post(browser.login()["state"], token)[0] == 400, token[:20]
+    assert browser.launch(**TEACHER, padding="x" * LARGEST_TOKEN)[0] == 400, "though it is signed"
     assert browser.post(browser.login()["state"], "x" * 40_000)[0] in (400, 413)
     assert browser.ask("/launch", "POST", b"{}")[0] == 400
     assert browser.ask("/launch")[0] == 405
@@ -207,13 +210,21 @@ def test_too_long_deep_or_empty_tokens_are_refused(lab, browser):
         {"keys": [{"kty": "oct", "kid": KEY_ID, "k": "c2VjcmV0"}]},
         {"keys": [public_key(OTHER_KEY)]},
         {"keys": [3, {"kid": 7}]},
-        {"padding": "x" * 200_000},
+        {"keys": [public_key(KEY)], "padding": "x" * 200_000},
     ],
     ids=["list", "text", "many", "short", "symmetric", "another", "nothing", "huge"],
 )
 def test_keys_that_are_unusable_or_huge_let_nobody_in(restarted, answer):
     restarted.platform.keys = answer
     assert restarted.new_browser().launch()[0] in (400, 503)
+    assert restarted.trainees() == []
+
+
+def test_a_platform_s_key_that_is_too_short_lets_nobody_in(restarted):
+    key = rsa.generate_private_key(public_exponent=65_537, key_size=1024)
+    restarted.platform.keys = {"keys": [public_key(key)]}
+    with pytest.warns(jwt.InsecureKeyLengthWarning):
+        assert restarted.new_browser().launch(key=key)[0] == 400
     assert restarted.trainees() == []
 
 

@@ -150,6 +150,15 @@ def test_an_outage_loses_no_grade_and_is_asked_about_less_and_less_often(lab, br
     assert [each["scoreGiven"] for each in platform.scores] == [score]
 
 
+def test_a_platform_may_ask_for_another_audience_of_requests(lab, browser, platform):
+    browser.launch()
+    play(lab)
+    platform.audience = "https://api.example.org/token"
+    lab.set(tokenAudience=platform.audience)
+    lab.start()
+    assert lab.tool.send_due() == 1
+
+
 def test_a_platform_that_nobody_runs_gets_the_grade_when_it_is_back(lab, browser, platform):
     browser.launch()
     play(lab)
