@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class OperatorCommand:
-    """One command whose arguments `rastrainer.protocol.check_arguments` has accepted.
+    """One command whose arguments `rastrainer.command_arguments.check_arguments` has accepted.
 
     `arguments` keep the names and units of the wire (mm); `ticket` is returned in the answer;
     `sender` names the client, for the state's `operator`.

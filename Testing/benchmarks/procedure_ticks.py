@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.protocol import CommandName, Phase, TouchRule, check_arguments
+from rastrainer.command_arguments import check_arguments
+from rastrainer.protocol import CommandName, Phase, TouchRule
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput

@@ -7,10 +7,10 @@ import time
 
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.igtl.client import Client
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.protocol import check_arguments
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study

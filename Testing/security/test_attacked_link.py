@@ -2,10 +2,10 @@
 
 import pytest
 
+from rastrainer.command_arguments import COMMAND_ARGUMENTS, check_arguments
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Transform
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import COMMAND_ARGUMENTS, check_arguments
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.security.attacked_process import (

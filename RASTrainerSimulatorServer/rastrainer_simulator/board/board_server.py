@@ -12,9 +12,9 @@ from typing import Any
 
 from aiohttp import hdrs, web
 
+from rastrainer.command_arguments import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.json_checks import accepted, one_of, text
-from rastrainer.protocol import decode_json_object
 from rastrainer_simulator.assets import NOT_BUILT, page_folder
 from rastrainer_simulator.board.live_view import SEAT_PATH, LiveView
 from rastrainer_simulator.board.seat_client import RefusedError, SeatClient

@@ -14,10 +14,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import newest_journal
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
-from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
+from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.procedure_motion import FED
 from rastrainer_simulator.operator_input import OperatorCommand

@@ -194,8 +194,8 @@ class ControlLoop:
     ) -> Future[Answer]:
         """Carry out a command in one of the next ticks.
 
-        `arguments` have passed `rastrainer.protocol.check_arguments`. The answer comes when the
-        change is on the disk.
+        `arguments` have passed `rastrainer.command_arguments.check_arguments`. The answer comes
+        when the change is on the disk.
         """
         ticket, future = self._answers.expect()
         arguments = dict(arguments or {})

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import RASTrainerError
-from rastrainer.protocol import CommandName, Mode, Phase, Proximity, check_arguments
+from rastrainer.protocol import CommandName, Mode, Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput

@@ -5,6 +5,7 @@ import json
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.command_arguments import check_arguments, decode_answer_object, decode_json_object
 from rastrainer.finite_json import MAX_MESSAGE_VALUES, MAX_RECORD_VALUES
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import MAX_TRAJECTORIES, ProcedureKind
@@ -15,14 +16,7 @@ from rastrainer.procedure.record import (
     MAX_TOUCHED_CHECKPOINTS,
 )
 from rastrainer.procedure.score import ProcedureMeasures, score_procedure
-from rastrainer.protocol import (
-    FIDUCIAL_COUNT,
-    PROCEDURE_PHASES,
-    CommandName,
-    check_arguments,
-    decode_json_object,
-    decode_told_object,
-)
+from rastrainer.protocol import FIDUCIAL_COUNT, PROCEDURE_PHASES, CommandName
 from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
@@ -86,7 +80,7 @@ def test_slicer_accepts_the_record_of_the_longest_procedure_and_a_study_stores_i
     record = largest_record()
     text = json.dumps(record)
     assert MAX_MESSAGE_VALUES < text.count(",") < MAX_RECORD_VALUES
-    read = TrialRecord.from_json(decode_told_object(text)).procedure
+    read = TrialRecord.from_json(decode_answer_object(text)).procedure
     assert len(read.attempts) == MAX_ATTEMPTS
     assert sum(len(attempt.checkpoints) for attempt in read.attempts) == MAX_TOUCHED_CHECKPOINTS
     assert len(read.instruments) == MAX_TRAJECTORIES

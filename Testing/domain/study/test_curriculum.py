@@ -8,17 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.command_arguments import check_arguments, decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.export.trainee_data import export_trainee
-from rastrainer.protocol import (
-    MAX_ASSIGNMENTS,
-    MAX_GATES,
-    AssignmentState,
-    CommandName,
-    GoalKind,
-    check_arguments,
-    decode_json_object,
-)
+from rastrainer.protocol import MAX_ASSIGNMENTS, MAX_GATES, AssignmentState, CommandName, GoalKind
 from rastrainer.study.curriculum.counted_trials import CountedTrial, counted_trials
 from rastrainer.study.curriculum.curriculum import (
     Assignment,

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
-from rastrainer.protocol import ALL_DONE, CommandName, check_arguments
+from rastrainer.protocol import ALL_DONE, CommandName
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.steps import (
     StepKind,

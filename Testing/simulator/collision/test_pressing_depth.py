@@ -5,10 +5,11 @@ import copy
 import numpy as np
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.protocol import CommandName, Proximity, check_arguments
+from rastrainer.protocol import CommandName, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
 from rastrainer_simulator.core.simulation import Simulation

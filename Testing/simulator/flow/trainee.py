@@ -9,7 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
-from rastrainer.protocol import Phase, Proximity, check_arguments
+from rastrainer.command_arguments import check_arguments
+from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
 from rastrainer_simulator.net.views.screen import Screen

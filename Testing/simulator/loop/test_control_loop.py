@@ -12,8 +12,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop import control_loop
@@ -398,7 +399,8 @@ KILLED = """
 import sys
 from dataclasses import replace
 from pathlib import Path
-from rastrainer.protocol import CommandName, TouchRule, check_arguments
+from rastrainer.command_arguments import check_arguments
+from rastrainer.protocol import CommandName, TouchRule
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation

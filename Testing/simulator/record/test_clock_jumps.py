@@ -6,8 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer.protocol import CommandName, Phase
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted

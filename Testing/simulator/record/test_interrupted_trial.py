@@ -8,10 +8,11 @@ import shutil
 import numpy as np
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import Recording
-from rastrainer.protocol import CommandName, Phase, Proximity, check_arguments
+from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted

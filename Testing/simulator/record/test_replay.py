@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.files.writing import write_json
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.protocol import CommandName, TouchRule, check_arguments
+from rastrainer.protocol import CommandName, TouchRule
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main

@@ -5,11 +5,12 @@ import json
 import numpy as np
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.skin_shift import UNMOVED, SkinShift
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.protocol import CommandName, Phase, check_arguments
+from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.net.views.news import TraceNews

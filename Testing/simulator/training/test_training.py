@@ -5,8 +5,9 @@ import itertools
 import numpy as np
 import pytest
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
-from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, TouchRule, check_arguments
+from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.ops.texts.english import ENGLISH
 from rastrainer_simulator.ops.texts.texts import Texts

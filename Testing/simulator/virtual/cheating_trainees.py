@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.surface_queries import outward_normal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
-from rastrainer.protocol import CommandName, Proximity, TouchRule, check_arguments
+from rastrainer.protocol import CommandName, Proximity, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import fiducial_normals

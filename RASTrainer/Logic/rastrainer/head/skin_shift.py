@@ -15,10 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.command_arguments import skin_amounts
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.protocol import SKIN_KEYS, SKIN_LIMIT_MM, skin_amounts
+from rastrainer.protocol import SKIN_KEYS, SKIN_LIMIT_MM
 
 REACH_MM = 50.0
 """Places that far apart move with a correlation of exp(−½)."""

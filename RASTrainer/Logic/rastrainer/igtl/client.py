@@ -13,11 +13,12 @@ from concurrent.futures import TimeoutError as NoResult
 from dataclasses import dataclass, field
 from typing import Any
 
+from rastrainer.command_arguments import decode_answer_object
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName, decode_told_object
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName
 
 PATIENCE_S = 30.0
 """How long is waited by default: a machine that is busy may answer only after some seconds."""
@@ -188,7 +189,7 @@ class Client:
 def _resolve(answer: Future[Reply], content: CommandReply, metadata: Mapping[str, str]) -> None:
     """Pass the answer to the waiting thread; its body is untrusted and checked."""
     try:
-        data = decode_told_object(content.body)
+        data = decode_answer_object(content.body)
     except InputError:
         answer.set_exception(LinkError("An answer's body must be a JSON object."))
         return

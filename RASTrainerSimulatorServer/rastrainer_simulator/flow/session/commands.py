@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import Any
 
-from rastrainer.protocol import check_arguments
+from rastrainer.command_arguments import check_arguments
 from rastrainer_simulator.state import Answer
 
 Submit = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]

@@ -14,8 +14,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
-from rastrainer.protocol import TRIAL_RUN, CommandName, Phase, check_arguments
+from rastrainer.protocol import TRIAL_RUN, CommandName, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.trial_review import scored_with_journal, with_progress_among
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial

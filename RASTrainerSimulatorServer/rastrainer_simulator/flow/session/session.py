@@ -10,18 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
-from rastrainer.protocol import (
-    OPEN_PHASES,
-    TRIAL_RUN,
-    CommandName,
-    GhostRule,
-    Guidance,
-    Mode,
-    check_arguments,
-)
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, GhostRule, Guidance, Mode
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.method_task import method_of, playable_methods

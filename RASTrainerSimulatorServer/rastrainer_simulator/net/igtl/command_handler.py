@@ -11,10 +11,11 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
+from rastrainer.command_arguments import check_arguments, decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import ERROR_KEY, FAIL, STATUS_KEY, SUCCESS, Command, CommandReply
 from rastrainer.igtl.message import Message
-from rastrainer.protocol import DeviceName, check_arguments, decode_json_object
+from rastrainer.protocol import DeviceName
 from rastrainer_simulator.net.igtl.connection import ClientConnection
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.net.limits import LinkLimits

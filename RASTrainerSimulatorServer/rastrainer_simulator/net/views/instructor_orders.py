@@ -6,9 +6,9 @@ import asyncio
 
 from aiohttp import hdrs, web
 
+from rastrainer.command_arguments import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.json_checks import accepted, one_of, text
-from rastrainer.protocol import decode_json_object
 from rastrainer_simulator.net.views.gate import ROLE, refuse_for
 from rastrainer_simulator.net.views.presenter import InstructorOrder, Presenter
 from rastrainer_simulator.net.views.sessions import ViewRole

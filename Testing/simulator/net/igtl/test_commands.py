@@ -6,11 +6,12 @@ from concurrent.futures import Future
 
 import pytest
 
+from rastrainer.command_arguments import COMMAND_ARGUMENTS
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, CommandReply
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.wire import crc64
-from rastrainer.protocol import COMMAND_ARGUMENTS, PROTOCOL_VERSION
+from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.state import Answer
 from Testing.simulator.net.igtl.servers import LinkServer, answer_to
 

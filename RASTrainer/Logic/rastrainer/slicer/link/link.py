@@ -12,14 +12,9 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from rastrainer.command_arguments import check_arguments
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import (
-    DEFAULT_HOST,
-    DEFAULT_PORT,
-    PROTOCOL_VERSION,
-    CommandName,
-    check_arguments,
-)
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, PROTOCOL_VERSION, CommandName
 from rastrainer.slicer.link.connection import ConnectorKit, SlicerConnection
 from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
 from rastrainer.slicer.link.pending_commands import Arrivals, OnReply, PendingCommands, Request

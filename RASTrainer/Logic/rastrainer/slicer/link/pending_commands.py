@@ -12,9 +12,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from rastrainer.command_arguments import decode_answer_object
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
-from rastrainer.protocol import DeviceName, decode_told_object
+from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.control_points import labelOf
 from rastrainer.slicer.scene.link_nodes import (
     capturedPointsNode,
@@ -151,7 +152,7 @@ def _answer(command: Any) -> Reply:
         sentence = shownText(command.GetErrorMessage())
         return Reply(False, sentence or _("The simulator refused without giving a reason."))
     try:
-        return Reply(True, "", decode_told_object(decodedText(command.GetResponseContent())))
+        return Reply(True, "", decode_answer_object(decodedText(command.GetResponseContent())))
     except InputError:
         return Reply(False, _("The simulator's answer cannot be read."))
 
@@ -226,7 +227,7 @@ class Arrivals:
 
     def _emitContent(self, text: str | bytes, name: str, signal: Signal) -> None:
         try:
-            value = decode_told_object(decodedText(text))
+            value = decode_answer_object(decodedText(text))
         except InputError as error:
             logging.error("What came as %s cannot be read: %s", name, error)
             return
