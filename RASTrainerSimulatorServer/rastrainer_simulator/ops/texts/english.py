@@ -943,9 +943,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "lti.no grade": "This link returns no grade to the course.",
         "lti.data": "Your data",
         "lti.data text": "{platform} gets at most your grade and when it was sent. This lab keeps "
-        "your user number of {platform} with your pseudonym in a private file, but neither your "
-        "name nor your e-mail address. Whether your trials may be used for research is asked in "
-        "the lab.",
+        "your user ID on {platform} with your pseudonym in a private file, but neither your name "
+        "nor your e-mail address. Whether your trials may be used for research is asked in the "
+        "lab.",
         "lti.no learner": "You are not a learner of this course, so you get no pseudonym and no "
         "grade.",
         "lti.link works": "The link works, and grades can be returned to the course.",

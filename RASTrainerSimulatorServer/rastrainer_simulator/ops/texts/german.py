@@ -1074,7 +1074,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "lti.no grade": "Dieser Link gibt dem Kurs keine Bewertung zurück.",
         "lti.data": "Deine Daten",
         "lti.data text": "{platform} bekommt höchstens deine Bewertung und den Zeitpunkt, zu dem "
-        "sie gesendet wurde. Das Labor bewahrt deine Nutzernummer bei {platform} zusammen mit "
+        "sie gesendet wurde. Das Labor bewahrt deine Nutzerkennung bei {platform} zusammen mit "
         "deinem Pseudonym in einer privaten Datei auf, aber weder deinen Namen noch deine "
         "E-Mail-Adresse. Ob deine Versuche für die Forschung verwendet werden dürfen, wirst du im "
         "Labor gefragt.",

@@ -1064,9 +1064,9 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "lti.no grade": "Este enlace no devuelve ninguna calificación al curso.",
         "lti.data": "Sus datos",
         "lti.data text": "{platform} recibe como mucho su calificación y el momento de su envío. "
-        "Este laboratorio guarda su número de usuario de {platform} junto con su seudónimo en un "
-        "archivo privado, pero ni su nombre ni su correo electrónico. En el laboratorio se le "
-        "pregunta si sus ensayos pueden usarse para la investigación.",
+        "Este laboratorio guarda su identificador de usuario en {platform} junto con su seudónimo "
+        "en un archivo privado, pero ni su nombre ni su correo electrónico. En el laboratorio se "
+        "le pregunta si sus ensayos pueden usarse para la investigación.",
         "lti.no learner": "Usted no participa en este curso como alumno, por lo que no recibe "
         "seudónimo ni calificación.",
         "lti.link works": "El enlace funciona y las calificaciones pueden devolverse al curso.",
