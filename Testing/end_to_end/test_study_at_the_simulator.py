@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import secrets
+import uuid
+
+import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.study.curriculum.counted_trials import CountedTrial
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
+from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
+from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import ViewedSimulator
+from Testing.end_to_end.study_side import STUDY, StudySide
 from Testing.simulator.net.views.served import ViewClient
 
 
@@ -90,3 +97,30 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
             "Curriculum", {"trainee": "P08", "assignments": [{}]}, timeout=60
         )
         assert 'An assignment needs the key "name"' in refused.error
+
+
+@pytest.mark.soak
+def test_the_module_tells_the_simulator_where_a_trainee_stands_and_what_another_seat_adds(
+    loop_thread, tmp_path
+):
+    path, key = tmp_path / STUDY, secrets.token_hex(32)
+    with Study.open(path) as study:
+        study.create_trainee("P08")
+        CurriculumStore(study).choose(TWO)
+    with (
+        ViewedSimulator(tmp_path / "records", key=key) as simulator,
+        StudySide(tmp_path, simulator.port),
+        ViewClient(loop_thread, simulator.url, key) as view,
+    ):
+        view.join(kind="desktop")
+        go_to(view, "train", "introduction")
+        go_to(view, "skip", "controls")
+        go_to(view, "next", "experiment")
+        view.send({"type": "text", "name": "trainee", "value": "P08"})
+        screen_where(view, lambda screen: "0 of 2 reached" in states(screen))
+        assert states(go_to(view, "assignments", "assignments")) == ["0 / 1", "locked"]
+        with Study.open(path) as study:
+            record = make_record(trialId=str(uuid.uuid4()), trainee="P08")
+            study.add_trial(record, score=gentle_score(60.0, 0.2))
+        screen = screen_where(view, lambda screen: "reached" in states(screen))
+        assert states(screen) == ["reached", "0 / 1"]
