@@ -13,6 +13,7 @@ from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.logic import trial_logic
 from rastrainer.slicer.logic.trial_delivery import MAX_WAITING
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.registration_nodes import isApplied
@@ -216,7 +217,11 @@ def test_an_unacknowledged_score_is_sent_over_the_next_connection(lab, make_reco
     assert lab.stored().true_tre_mm is not None
 
 
-def test_a_trial_whose_study_was_away_is_scored_over_the_next_connection(lab, make_record):
+@pytest.mark.parametrize("by_reconnecting", [True, False], ids=["reconnected", "connected"])
+def test_a_trial_whose_study_was_away_is_scored_when_it_is_back(
+    by_reconnecting, lab, make_record, monkeypatch
+):
+    monkeypatch.setattr(trial_logic, "RETRY_S", 1e6 if by_reconnecting else 0.0)
     opened, outages = lab.open_study, []
 
     def away_once():
@@ -234,8 +239,11 @@ def test_a_trial_whose_study_was_away_is_scored_over_the_next_connection(lab, ma
     lab.run_until(lambda: lab.problems)
     assert "cannot be reached now" in lab.problems[0]
     assert lab.stored().true_tre_mm is None
-    lab.link.disconnect()
-    lab.connect()
+    if by_reconnecting:
+        lab.link.disconnect()
+        lab.connect()
+    else:
+        lab.simulator.send(DeviceName.SIM_STATE, String('{"phase": "idle"}'))
     lab.run_until(lambda: lab.scored)
     stored = lab.stored()
     assert stored.score is not None

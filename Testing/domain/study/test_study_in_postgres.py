@@ -12,15 +12,21 @@ import time
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.copying import copy_study
 from rastrainer.study.database.database import LockWait, StudyAwayError, StudyBusyError
 from rastrainer.study.database.schema import MIGRATIONS
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.tables import study_tables
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.rating.forms import FORMS
+from rastrainer.study.rating.rating_store import RatingStore
 from rastrainer_simulator.cli.main import main
-from Testing.domain.study.played_study import study_with_trials
+from Testing.domain.study.played_study import STUDIES, study_with_trials
 from Testing.domain.study.study_content import rows_of, written_files
 from Testing.domain.study.writers import stored_numbers, writer
-from Testing.domain.trial.trial_records import make_record
+from Testing.domain.trial.trial_records import make_aborted, make_record
 from Testing.postgres_server import PostgresServer, opened_when_there
 
 pytestmark = pytest.mark.soak
@@ -75,6 +81,64 @@ def test_a_server_killed_while_trials_are_stored_loses_none_that_was_acknowledge
     assert stored_numbers(place) == acknowledged
 
 
+class LosesTheAnswer:
+    """Commits what a seat has changed, and loses the connection before the seat hears of it."""
+
+    def __init__(self, study):
+        self.study = study
+
+    def __enter__(self):
+        connection = self.study.database._connection
+        execute, driver = connection.execute, self.study.database._driver
+
+        def lost(sql, *parameters):
+            done = execute(sql, *parameters)
+            if sql == "COMMIT":
+                connection.close()
+                raise driver.OperationalError("server closed the connection unexpectedly")
+            return done
+
+        connection.execute = lost
+
+    def __exit__(self, *_exception):
+        pass
+
+
+def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_tried_again(place):
+    trial, matrix = make_record()["trialId"], [float(n) for n in range(16)]
+    with Study.open(place) as study:
+        study.create_trainee("A")
+        progress, ratings = StudyProgress(study), RatingStore(study)
+        progress.set_protocol(read_study_protocol(STUDIES / "published-protocol.json"))
+        form, mark_id = FORMS["gears"], "00000000-0000-0000-0000-0000000000aa"
+        domain = form.domains[0].name
+        changes = {
+            "enroll": lambda: progress.enroll("A"),
+            "trial": lambda: study.add_trial(make_record()),
+            "truth": lambda: study.set_truth(trial, 0.5, matrix),
+            "aborted": lambda: AbortedTrials(study).add(make_aborted()),
+            "assign": lambda: ratings.assign("R1", [trial], 1, random.Random(1)),
+            "mark": lambda: ratings.give(mark_id, "R1", trial, form, domain, 4),
+        }
+        for change in changes.values():
+            with LosesTheAnswer(study), pytest.raises(StudyAwayError):
+                change()
+            with study.database.reading() as connection:
+                before = counts_of(connection)
+            change()
+            with study.database.reading() as connection:
+                assert counts_of(connection) == before
+        assert len(study.history("T-001")) == 1
+        assert ratings.marks("R1", trial) == {domain: 4}
+
+
+def counts_of(connection):
+    return [
+        connection.execute(f"SELECT count(*) FROM {table.name}").fetchone()
+        for table in study_tables()
+    ]
+
+
 def test_a_connection_is_made_anew_after_the_server_was_away(own_server):
     place = own_server.new_study()
     with Study.open(place) as study:
@@ -104,6 +168,11 @@ def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place):
 STOPPED = """
 import os, signal, sys
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.tables import study_tables
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.rating.forms import FORMS
+from rastrainer.study.rating.rating_store import RatingStore
 study = Study.open(sys.argv[1])
 with study.database.writing() as connection:
     print("locked", flush=True)

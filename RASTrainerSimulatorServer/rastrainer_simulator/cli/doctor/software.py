@@ -20,6 +20,7 @@ OLDEST_PYTHON = (3, 10)
 MODULES = {
     "aiohttp": "aiohttp",
     "numpy": "numpy",
+    "psycopg": "psycopg",
     "pygame-ce": "pygame",
     "python-fcl": "fcl",
     "trimesh": "trimesh",

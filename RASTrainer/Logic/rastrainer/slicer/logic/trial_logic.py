@@ -5,12 +5,13 @@ main thread's.
 
 Nothing is lost and nothing counts twice, whatever is cut on the way. The simulator offers a trial
 until it is acknowledged, and it is acknowledged only when it is in the study; what is in the study
-without its truth is scored again over the next connection.
+without its truth is scored again over the next connection, and after the study was away.
 """
 
 from __future__ import annotations
 
 import logging
+import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
@@ -28,11 +29,15 @@ from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
+from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import DeliveredTrial, review, store_delivered
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
+
+RETRY_S = 5.0
+"""After a study was locked or away, until its trials are looked for again."""
 
 
 class _Scoring(Enum):
@@ -90,6 +95,7 @@ class TrialLogic:
         self._scored: dict[str, _Scoring] = {}
         self._unscored: deque[TrialRecord] = deque()
         self._state: Mapping[str, Any] = {}
+        self._retryAt: float | None = None
         self._queue: DeliveryQueue[DeliveredTrial] = DeliveryQueue(
             link,
             link.trialCompleted,
@@ -129,6 +135,12 @@ class TrialLogic:
 
     def _followTraining(self, state: Mapping[str, Any]) -> None:
         self._state = state
+        if self._retryAt is not None and time.monotonic() >= self._retryAt:
+            self._resume()
+
+    def _noteAway(self, error: Exception) -> None:
+        if isinstance(error, StudyBusyError):
+            self._retryAt = time.monotonic() + RETRY_S
 
     def _storing(self, delivery: Delivery) -> Callable[[], DeliveredTrial]:
         """Return what checks, registers and stores a trial, in the background."""
@@ -165,7 +177,8 @@ class TrialLogic:
         return review(analysis, truth, scenario, study, score)
 
     def _resume(self) -> None:
-        """Score the trials that were not scored before the connection was lost."""
+        """Score the trials that were not scored before connection or study were lost."""
+        self._retryAt = None
 
         def take(records: tuple[TrialRecord, ...]) -> None:
             self._unscored = deque(records)
@@ -175,7 +188,11 @@ class TrialLogic:
             with self._openStudy() as study:
                 return study.unrevealed()
 
-        self._work.do(unrevealed, take, lambda error: self._queue.report(str(error)))
+        def refuse(error: Exception) -> None:
+            self._noteAway(error)
+            self._queue.report(str(error))
+
+        self._work.do(unrevealed, take, refuse)
 
     def _resumeNext(self) -> None:
         """Score one trial; the next follows when the simulator has answered.
@@ -226,6 +243,7 @@ class TrialLogic:
 
         def fail(error: Exception) -> None:
             self._scored.pop(trialId, None)
+            self._noteAway(error)
             report(_("The trial was not scored: {error}").format(error=error))
             proceed()
 

@@ -26,7 +26,7 @@ _SESSION = """
     SET tcp_keepalives_count = 3;
 """
 """A committed change survives a power failure, and a seat that has vanished blocks nobody."""
-_NETWORK = {"keepalives_idle": 10, "keepalives_interval": 5, "tcp_user_timeout": 15_000}
+_NETWORK = {"keepalives_idle": 10, "keepalives_interval": 5}
 
 
 def connected(address: PostgresAddress, timeout_s: int) -> Any:
@@ -34,6 +34,8 @@ def connected(address: PostgresAddress, timeout_s: int) -> Any:
     connection = postgres_driver().connect(
         **address.connection_words,
         **_NETWORK,
+        # A server that has vanished is waited for no longer than one that is sought.
+        tcp_user_timeout=1000 * timeout_s,
         autocommit=True,
         # For servers behind a pool of connections.
         prepare_threshold=None,
