@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import socket
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.study.database import postgres_database, postgres_driver
 from rastrainer.study.database.address import PostgresAddress, study_place
+from rastrainer.study.database.companions import beside_study
 from rastrainer.study.database.database import LockWait, StudyAwayError
 from rastrainer.study.database.postgres_errors import postgres_error
 from rastrainer.study.database.study import Study
@@ -114,6 +116,19 @@ def test_the_driver_is_found_in_the_simulators_folder_and_nothing_else_of_it(tmp
     with pytest.raises(ImportError):
         __import__("other_of_simulator")
     del postgres_driver.sys.modules["psycopg"]
+
+
+def test_what_goes_with_a_study_is_beside_its_file_or_private_by_its_address(tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    assert beside_study(tmp_path / "study.db") == tmp_path / "study.db"
+    assert not (tmp_path / "RASTrainer").exists()
+    one, same, other = (
+        beside_study(PostgresAddress("host", name)) for name in ("study", "study", "other")
+    )
+    assert one == same != other
+    assert one.parent == tmp_path / "RASTrainer" / "studies"
+    if os.name == "posix":
+        assert one.parent.stat().st_mode & 0o077 == 0
 
 
 @pytest.fixture

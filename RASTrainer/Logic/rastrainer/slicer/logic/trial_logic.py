@@ -96,6 +96,8 @@ class TrialLogic:
         self._unscored: deque[TrialRecord] = deque()
         self._state: Mapping[str, Any] = {}
         self._retryAt: float | None = None
+        # What this simulator has refused, such as trials of another one.
+        self._refused: set[str] = set()
         self._queue: DeliveryQueue[DeliveredTrial] = DeliveryQueue(
             link,
             link.trialCompleted,
@@ -107,19 +109,20 @@ class TrialLogic:
         )
         self.problemFound = self._queue.problemFound
         link.stateChanged.connect(self._followTraining)
-        link.opened.connect(self._resume)
+        link.opened.connect(self._resumeAll)
 
     def close(self) -> None:
         """Stop listening to the link, and start nothing more."""
         self._queue.close()
         self._link.stateChanged.disconnect(self._followTraining)
-        self._link.opened.disconnect(self._resume)
+        self._link.opened.disconnect(self._resumeAll)
         self.forgetWaiting()
 
     def forgetWaiting(self) -> None:
         """Drop what has not started: the simulator offers it again, for another study."""
         self._queue.forgetWaiting()
         self._unscored.clear()
+        self._refused.clear()
         self.received.clear()
         for trialId in [each for each, state in self._scored.items() if state is _Scoring.DONE]:
             del self._scored[trialId]
@@ -138,9 +141,15 @@ class TrialLogic:
         if self._retryAt is not None and time.monotonic() >= self._retryAt:
             self._resume()
 
-    def _noteAway(self, error: Exception) -> None:
+    def _noteFailure(self, error: Exception, *trialIds: str) -> None:
         if isinstance(error, StudyBusyError):
             self._retryAt = time.monotonic() + RETRY_S
+        else:
+            self._refused.update(trialIds)
+
+    def _resumeAll(self) -> None:
+        self._refused.clear()
+        self._resume()
 
     def _storing(self, delivery: Delivery) -> Callable[[], DeliveredTrial]:
         """Return what checks, registers and stores a trial, in the background."""
@@ -189,7 +198,7 @@ class TrialLogic:
                 return study.unrevealed()
 
         def refuse(error: Exception) -> None:
-            self._noteAway(error)
+            self._noteFailure(error)
             self._queue.report(str(error))
 
         self._work.do(unrevealed, take, refuse)
@@ -202,7 +211,7 @@ class TrialLogic:
         while self._unscored and self._link.isOpen:
             record = self._unscored.popleft()
             # Since the list was read it may have been scored.
-            if record.trial_id not in self._scored:
+            if record.trial_id not in self._scored and record.trial_id not in self._refused:
                 self._scoreAgain(record)
                 return
 
@@ -243,7 +252,7 @@ class TrialLogic:
 
         def fail(error: Exception) -> None:
             self._scored.pop(trialId, None)
-            self._noteAway(error)
+            self._noteFailure(error, trialId)
             report(_("The trial was not scored: {error}").format(error=error))
             proceed()
 
