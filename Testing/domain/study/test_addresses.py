@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import os
 import socket
+import threading
 from pathlib import Path
 
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database import postgres_database, postgres_driver
+from rastrainer.study.database import (
+    postgres_connecting,
+    postgres_database,
+    postgres_driver,
+)
 from rastrainer.study.database.address import PostgresAddress, study_place
 from rastrainer.study.database.companions import beside_study
 from rastrainer.study.database.database import LockWait, StudyAwayError
@@ -150,6 +155,20 @@ def test_a_window_does_not_wait_for_a_server_that_is_silent_and_rests_after_it(
     monkeypatch.setattr(postgres_database, "connected_within", None)
     with pytest.raises(StudyAwayError, match="cannot be reached now"):
         Study.open(address, lock_wait)
+
+
+def test_a_connection_that_comes_late_is_there_for_the_next_attempt(monkeypatch):
+    is_there, address = threading.Event(), PostgresAddress("late", "study")
+
+    def slowly(_address, _silence_s):
+        is_there.wait()
+        return "connection"
+
+    monkeypatch.setattr(postgres_connecting, "connected", slowly)
+    with pytest.raises(TimeoutError):
+        postgres_connecting.connected_within(0.01, address)
+    is_there.set()
+    assert postgres_connecting.connected_within(60.0, address) == "connection"
 
 
 class RefusalError(Exception):

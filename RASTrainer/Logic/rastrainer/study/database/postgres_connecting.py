@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import Future
-from concurrent.futures import TimeoutError as NoAnswerError
 from typing import Any
 
 from rastrainer.study.database.address import PostgresAddress
 from rastrainer.study.database.postgres_driver import postgres_driver, refuse_infinite_numbers
 
 CONNECT_TIMEOUT_S = 10
-INTERACTIVE_CONNECT_TIMEOUT_S = 2
-"""The least that libpq takes."""
+SILENCE_S = 10
+"""After which a connection is given up if the other side no longer confirms what it gets."""
+INTERACTIVE_SILENCE_S = 2
 INTERACTIVE_PATIENCE_S = 0.5
 """Of a window; the attempt goes on without it."""
 _SESSION = """
@@ -27,47 +27,53 @@ _SESSION = """
 """
 """A committed change survives a power failure, and a seat that has vanished blocks nobody."""
 _NETWORK = {"keepalives_idle": 10, "keepalives_interval": 5}
+_attempts: dict[str, Future[Any]] = {}
+"""Connections that windows wait for, by address."""
 
 
-def connected(address: PostgresAddress, timeout_s: int) -> Any:
+def connected(address: PostgresAddress, silence_s: int = SILENCE_S) -> Any:
     """Return a connection; psycopg's error if there is none in time."""
     connection = postgres_driver().connect(
         **address.connection_words,
         **_NETWORK,
-        # A server that has vanished is waited for no longer than one that is sought.
-        tcp_user_timeout=1000 * timeout_s,
+        tcp_user_timeout=1000 * silence_s,
         autocommit=True,
         # For servers behind a pool of connections.
         prepare_threshold=None,
         application_name="RASTrainer",
         client_encoding="UTF8",
-        connect_timeout=timeout_s,
+        connect_timeout=CONNECT_TIMEOUT_S,
     )
     refuse_infinite_numbers(connection)
     connection.execute(_SESSION)
     return connection
 
 
-def connected_within(patience_s: float, address: PostgresAddress, timeout_s: int) -> Any:
-    """Return a connection, or raise `TimeoutError` soon: one that comes later is closed."""
+def connected_within(patience_s: float, address: PostgresAddress) -> Any:
+    """Return a connection, or raise `TimeoutError` soon: the next call gets it where it came."""
+    key = str(address)
+    if key not in _attempts:
+        _attempts[key] = _begun(address)
+    attempt = _attempts[key]
+    try:
+        connection = attempt.result(patience_s)
+    except Exception:
+        if not attempt.done():
+            raise TimeoutError from None
+        del _attempts[key]
+        raise
+    del _attempts[key]
+    return connection
+
+
+def _begun(address: PostgresAddress) -> Future[Any]:
     answer: Future[Any] = Future()
 
     def attempt() -> None:
         try:
-            connection = connected(address, timeout_s)
+            answer.set_result(connected(address, INTERACTIVE_SILENCE_S))
         except BaseException as error:
-            if answer.set_running_or_notify_cancel():
-                answer.set_exception(error)
-            return
-        if answer.set_running_or_notify_cancel():
-            answer.set_result(connection)
-        else:
-            connection.close()
+            answer.set_exception(error)
 
     threading.Thread(target=attempt, name="study", daemon=True).start()
-    try:
-        return answer.result(patience_s)
-    except NoAnswerError:
-        if answer.cancel():
-            raise TimeoutError from None
-        return answer.result()
+    return answer

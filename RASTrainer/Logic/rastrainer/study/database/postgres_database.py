@@ -25,8 +25,6 @@ from rastrainer.study.database.database import (
     StudyDatabase,
 )
 from rastrainer.study.database.postgres_connecting import (
-    CONNECT_TIMEOUT_S,
-    INTERACTIVE_CONNECT_TIMEOUT_S,
     INTERACTIVE_PATIENCE_S,
     connected,
     connected_within,
@@ -159,12 +157,10 @@ class PostgresDatabase(StudyDatabase):
             # It has just failed: a window does not wait again so soon.
             raise StudyAwayError(f"The study {self._address} cannot be reached now.")
         if patience_s >= 1.0:
-            return connected(self._address, CONNECT_TIMEOUT_S)
+            return connected(self._address)
         begun = time.monotonic()
         try:
-            return connected_within(
-                INTERACTIVE_PATIENCE_S, self._address, INTERACTIVE_CONNECT_TIMEOUT_S
-            )
+            return connected_within(INTERACTIVE_PATIENCE_S, self._address)
         except TimeoutError:
             self._lock_wait.note_timeout(time.monotonic() - begun)
             raise StudyAwayError(f"The study {self._address} cannot be reached now.") from None
