@@ -160,7 +160,7 @@ def test_a_window_does_not_wait_for_a_server_that_is_silent_and_rests_after_it(
 def test_a_connection_that_comes_late_is_there_for_the_next_attempt(monkeypatch):
     is_there, address = threading.Event(), PostgresAddress("late", "study")
 
-    def slowly(_address, _silence_s):
+    def slowly(_address, *_limits):
         is_there.wait()
         return "connection"
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import json
+import os
 import random
+import signal
 import subprocess
 import sys
 import threading
@@ -12,6 +15,7 @@ import time
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.study.database import postgres_connecting, postgres_database
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.copying import copy_study
 from rastrainer.study.database.database import LockWait, StudyAwayError, StudyBusyError
@@ -163,6 +167,22 @@ def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place):
                 # Readers wait for nobody.
                 assert study.trainees() == ()
             study.create_trainee("a")
+
+
+def test_a_server_that_hangs_is_given_up_by_windows_and_by_those_who_wait(place, monkeypatch):
+    hasty = functools.partial(postgres_connecting.connected, answer_s=1.0)
+    monkeypatch.setattr(postgres_database, "connected", hasty)
+    for lock_wait in (LockWait.interactive(), LockWait()):
+        with Study.open(place, lock_wait) as study, Study.open(place) as other:
+            process = study.database._connection.info.backend_pid
+            os.kill(process, signal.SIGSTOP)
+            try:
+                # Without an end, this would wait until the server goes on.
+                assert study.database.version() is not None
+                assert study.database._connection.info.backend_pid != process
+            finally:
+                os.kill(process, signal.SIGCONT)
+            assert other.trainees() == ()
 
 
 STOPPED = """

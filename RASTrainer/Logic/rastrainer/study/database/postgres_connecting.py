@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import threading
-from concurrent.futures import Future
+import time
+from collections.abc import Generator
+from concurrent.futures import Future, wait
+from types import ModuleType
 from typing import Any
 
 from rastrainer.study.database.address import PostgresAddress
@@ -13,6 +16,11 @@ CONNECT_TIMEOUT_S = 10
 SILENCE_S = 10
 """After which a connection is given up if the other side no longer confirms what it gets."""
 INTERACTIVE_SILENCE_S = 2
+ANSWER_S = 75
+"""After which one is given up that confirms everything and answers nothing, as a server that hangs.
+
+Longer than `statement_timeout`.
+"""
 INTERACTIVE_PATIENCE_S = 0.5
 """Of a window; the attempt goes on without it."""
 _SESSION = """
@@ -27,13 +35,16 @@ _SESSION = """
 """
 """A committed change survives a power failure, and a seat that has vanished blocks nobody."""
 _NETWORK = {"keepalives_idle": 10, "keepalives_interval": 5}
+_Waiting = Generator[Any, int, Any]
 _attempts: dict[str, Future[Any]] = {}
 """Connections that windows wait for, by address."""
 
 
-def connected(address: PostgresAddress, silence_s: int = SILENCE_S) -> Any:
+def connected(
+    address: PostgresAddress, silence_s: int = SILENCE_S, answer_s: float = ANSWER_S
+) -> Any:
     """Return a connection; psycopg's error if there is none in time."""
-    connection = postgres_driver().connect(
+    connection = _impatient(postgres_driver(), answer_s).connect(
         **address.connection_words,
         **_NETWORK,
         tcp_user_timeout=1000 * silence_s,
@@ -55,15 +66,11 @@ def connected_within(patience_s: float, address: PostgresAddress) -> Any:
     if key not in _attempts:
         _attempts[key] = _begun(address)
     attempt = _attempts[key]
-    try:
-        connection = attempt.result(patience_s)
-    except Exception:
-        if not attempt.done():
-            raise TimeoutError from None
-        del _attempts[key]
-        raise
+    wait([attempt], patience_s)
+    if not attempt.done():
+        raise TimeoutError
     del _attempts[key]
-    return connection
+    return attempt.result()
 
 
 def _begun(address: PostgresAddress) -> Future[Any]:
@@ -71,9 +78,33 @@ def _begun(address: PostgresAddress) -> Future[Any]:
 
     def attempt() -> None:
         try:
-            answer.set_result(connected(address, INTERACTIVE_SILENCE_S))
+            answer.set_result(connected(address, INTERACTIVE_SILENCE_S, INTERACTIVE_SILENCE_S))
         except BaseException as error:
             answer.set_exception(error)
 
     threading.Thread(target=attempt, name="study", daemon=True).start()
     return answer
+
+
+def _impatient(driver: ModuleType, answer_s: float) -> Any:
+    """Return psycopg's class of connections, which waits without end, with an end to it."""
+
+    def waits(self: Any, gen: _Waiting, *arguments: Any, **options: Any) -> Any:
+        return driver.Connection.wait(self, answers(self, gen), *arguments, **options)
+
+    def answers(self: Any, gen: _Waiting) -> _Waiting:
+        try:
+            wanted, until = next(gen), time.monotonic() + answer_s
+            while True:
+                ready = yield wanted
+                if ready:
+                    until = time.monotonic() + answer_s
+                # Asked several times a second while nothing comes.
+                elif time.monotonic() > until:
+                    self.pgconn.finish()
+                    raise driver.OperationalError("the server does not answer")
+                wanted = gen.send(ready)
+        except StopIteration as end:
+            return end.value
+
+    return type("Impatient", (driver.Connection,), {"wait": waits})
