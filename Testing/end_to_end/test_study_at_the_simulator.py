@@ -42,6 +42,10 @@ def enabled(screen):
     return [item["name"] for item in items if "task" in item["name"] and item["is_enabled"]]
 
 
+def trainee(screen):
+    return next(item["value"] for item in screen["menu"]["items"] if item["name"] == "trainee")
+
+
 TWO = Curriculum(
     "c",
     "C",
@@ -97,6 +101,15 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
             "Curriculum", {"trainee": "P08", "assignments": [{}]}, timeout=60
         )
         assert 'An assignment needs the key "name"' in refused.error
+        # The Slicer that comes next may have another study: what this one told is forgotten.
+        slicer.close()
+        screen_where(view, lambda screen: screen["menu"]["name"] == "experiment")
+        with Client(port=simulator.port) as another:
+            assert another.send_command("Hello", hello, timeout=60).ok
+            for name in ("P09", "P08"):
+                view.send({"type": "text", "name": "trainee", "value": name})
+                screen = screen_where(view, lambda screen, name=name: trainee(screen) == name)
+            assert "assignments" not in [item["name"] for item in screen["menu"]["items"]]
 
 
 @pytest.mark.soak

@@ -104,3 +104,12 @@ def test_who_is_deleted_or_archived_is_told_of_as_without_a_curriculum(lesson):
     lesson.trainees.setArchived(True)
     told = lesson.told(3)
     assert (told[2]["trainee"], "assignments" in told[2]) == ("A", False)
+
+
+def test_who_was_deleted_at_another_seat_is_gone_once_a_simulator_connects(lesson, tmp_path):
+    lesson.logic.choose(SHIPPED, isForEverybody=True)
+    assert list(lesson.logic.standings()) == ["A", "B"]
+    with Study.open(tmp_path / "study.db") as elsewhere:
+        elsewhere.delete_trainee("A")
+    lesson.room.link.opened.emit()
+    assert list(lesson.logic.standings()) == ["B"]

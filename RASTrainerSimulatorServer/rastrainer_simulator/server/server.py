@@ -156,6 +156,7 @@ class SimulatorServer:
             health=self._health,
             limits=self._limits.clients,
             answers=self._study.unacknowledged_answers,
+            slicer_left=self._curricula.forget_all,
         )
         feed = StateFeed(link.publisher.is_due, link.publish, loop)
         unsubscribe = self._control_loop.subscribe(feed)

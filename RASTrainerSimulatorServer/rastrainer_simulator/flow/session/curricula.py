@@ -16,8 +16,8 @@ Titles = Callable[[str], str]
 class Curricula:
     """Keeps where each trainee stands.
 
-    Nothing of it outlives the process: Slicer, which keeps the study, tells everything again once
-    it is connected.
+    Nothing of it outlives the connection: Slicer, which keeps the study, tells everything again
+    once it is connected, and by then a curriculum may have ended, or the study be another.
     """
 
     def __init__(self) -> None:
@@ -30,6 +30,10 @@ class Curricula:
             self._told[told.trainee] = told
         if len(self._told) > MAX_TRAINEES:
             del self._told[next(iter(self._told))]
+
+    def forget_all(self) -> None:
+        """Forget everybody, when no Slicer is connected any more."""
+        self._told.clear()
 
     def of(self, trainee: str) -> ToldCurriculum | None:
         """Return where a trainee stands; None for who has no curriculum."""

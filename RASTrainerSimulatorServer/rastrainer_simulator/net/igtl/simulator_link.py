@@ -62,6 +62,7 @@ class SimulatorLink:
         health: Callable[[], Mapping[str, Any]] = dict,
         limits: LinkLimits | None = None,
         answers: Callable[[], Sequence[StepAnswers]] = tuple,
+        slicer_left: Callable[[], None] = lambda: None,
     ):
         """Make a link, in the event loop's thread.
 
@@ -73,6 +74,7 @@ class SimulatorLink:
             health: gives what the heartbeat reports about the simulator, ready for JSON.
             limits: what clients may cost.
             answers: gives a study's answers that Slicer has not taken yet.
+            slicer_left: is called when the last client that registers and scores has left.
         """
         self.server = IgtlServer(self, limits)
         self.publisher = Publisher(latest)
@@ -81,6 +83,7 @@ class SimulatorLink:
         self._submit_command = submit
         self._health = health
         self._answers = answers
+        self._slicer_left = slicer_left
         self._commands = CommandHandler(self._submit, self.server.limits)
 
     def connected(self, connection: ClientConnection) -> None:
@@ -102,6 +105,8 @@ class SimulatorLink:
         """Forget a client."""
         self.publisher.unsubscribe(connection)
         self._commands.forget(connection)
+        if connection.scores and not self.is_slicer_connected:
+            self._slicer_left()
 
     def publish(self, state: SimulationState) -> None:
         """Publish what is due, and offer a newly registered trial."""

@@ -34,7 +34,7 @@ def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStandin
     rows = [
         [
             name,
-            str(sum(each.played for each in standing.standings)),
+            str(standing.played),
             f"{standing.reached} of {len(standing.standings)}",
             *map(short_progress_of, standing.standings),
         ]

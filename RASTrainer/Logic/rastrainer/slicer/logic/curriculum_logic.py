@@ -91,13 +91,13 @@ class CurriculumLogic:
             store = CurriculumStore(self._trainees.study)
             stamps = store.stamps()
             isSame = self._trainees.study is self._followed
-            self._followed = self._trainees.study
-            for name in [name for name in self._told if name not in stamps]:
+            known = self._told.keys() | self._standings.keys()
+            for name in sorted(known - stamps.keys()):
                 self._tell(name, None)
             for name, stamp in stamps.items():
                 if not isSame or self._stamps.get(name) != stamp:
                     self._tell(name, store.standing(name))
-            self._stamps = stamps
+            self._stamps, self._followed = stamps, self._trainees.study
         self.changed.emit()
 
     def _tell(self, name: str, standing: CurriculumStanding | None) -> None:

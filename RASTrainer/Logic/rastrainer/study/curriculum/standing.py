@@ -65,10 +65,17 @@ class AssignmentStanding:
 
 @dataclass(frozen=True)
 class CurriculumStanding:
-    """Where a trainee stands in a curriculum; `standings` are in its order."""
+    """Where a trainee stands in a curriculum.
+
+    Attributes:
+        curriculum: That is meant.
+        standings: In its order.
+        played: Trials of the present versions, each once however many assignments it counts for.
+    """
 
     curriculum: Curriculum
     standings: tuple[AssignmentStanding, ...]
+    played: int
 
     @property
     def reached(self) -> int:
@@ -105,7 +112,16 @@ def standing_in(
         if standing.state is AssignmentState.REACHED:
             reached.add(assignment.name)
         standings.append(standing)
-    return CurriculumStanding(curriculum, tuple(standings))
+    played = sum(
+        any(_is_comparable(trial, each) for each in curriculum.assignments) for trial in trials
+    )
+    return CurriculumStanding(curriculum, tuple(standings), played)
+
+
+def _is_comparable(trial: CountedTrial, assignment: Assignment) -> bool:
+    """Return whether a trial counts for an assignment with a score of the present version."""
+    is_present = trial.is_aborted or trial.version == _present_version(assignment)
+    return is_present and trial.counts_for(assignment)
 
 
 def _standing(
