@@ -39,7 +39,7 @@ def test_a_curriculum_is_set_for_a_trainee_shown_and_ended(panel):
     panel.type("curriculumPathLineEdit", str(SHIPPED))
     panel.press("setCurriculumButton")
     assert panel.text("curriculumText") == (
-        "First steps: 0 of 6 reached. Next: Task 1, which was not played yet."
+        "First steps: 0 of 6 reached. Next: Task 1, which has not been played yet."
     )
     rows = cells(panel, "assignmentsTable")
     assert rows[0] == ["Task 1", "0 of 2", "–"]

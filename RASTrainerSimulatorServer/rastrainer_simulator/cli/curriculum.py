@@ -29,13 +29,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         description=(
             "Without an option, prints where each trainee stands. What is set last counts: a "
             "curriculum set for everybody ends those set for single trainees before. Nothing is "
-            "overwritten; trials count, also those from before."
+            "overwritten; earlier trials count, too."
         ),
     )
     add_study(parser)
     choice = parser.add_mutually_exclusive_group()
-    choice.add_argument("--set", type=Path, metavar="FILE", help="a curriculum to follow from now")
-    choice.add_argument("--end", action="store_true", help="follow no curriculum from now")
+    choice.add_argument(
+        "--set", type=Path, metavar="FILE", help="a curriculum to follow from now on"
+    )
+    choice.add_argument("--end", action="store_true", help="follow no curriculum from now on")
     parser.add_argument("--trainee", metavar="PSEUDONYM", help="for this trainee alone")
     parser.set_defaults(run=run)
 
@@ -52,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         with Study.open(arguments.study, must_exist=True) as study:
             CurriculumStore(study).choose(curriculum, who)
         what = "no curriculum" if curriculum is None else f"“{curriculum.title}”"
-        print(f"{who or 'Everybody'} follows {what} from now.")
+        print(f"{who or 'Everybody'} follows {what} from now on.")
     with Study.open_for_reading(arguments.study) as study:
         store = CurriculumStore(study)
         standing = store.standing(who) if who else None

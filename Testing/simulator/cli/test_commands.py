@@ -335,7 +335,7 @@ def test_a_curriculum_is_set_for_one_or_all_and_the_table_says_where_they_stand(
     assert capsys.readouterr().out == "No trainee follows a curriculum.\n"
     assert main(["curriculum", str(study), "--set", str(CURRICULUM)]) == 0
     output = capsys.readouterr().out
-    assert output.startswith("Everybody follows “First steps” from now.\n\nE0, First steps: ")
+    assert output.startswith("Everybody follows “First steps” from now on.\n\nE0, First steps: ")
     assert output.count("First steps: ") == 10
     assert main(["curriculum", str(study), "--trainee", "N0"]) == 0
     title, _header, *rows = capsys.readouterr().out.strip().splitlines()
@@ -347,7 +347,7 @@ def test_a_curriculum_is_set_for_one_or_all_and_the_table_says_where_they_stand(
     assert "competence (LC-CUSUM), a trial passes at 70 or more" in rows[4]
     assert "second-points, third-points" in rows[4]
     assert main(["curriculum", str(study), "--end", "--trainee", "N0"]) == 0
-    assert capsys.readouterr().out == "N0 follows no curriculum from now.\n"
+    assert capsys.readouterr().out == "N0 follows no curriculum from now on.\n"
     assert main(["curriculum", str(study), "--trainee", "N0"]) == 0
     assert capsys.readouterr().out == "N0 does not follow a curriculum.\n"
     assert main(["curriculum", str(study), "--set", str(SHIPPED)]) == 2

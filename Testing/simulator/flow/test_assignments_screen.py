@@ -89,7 +89,7 @@ def test_each_assignment_is_a_row_with_its_state_and_the_next_one_has_the_focus(
     )
     assert page.item("assignment three").help == "Locked. First reach: Task 2."
     for elsewhere in ("five", "six"):
-        assert "This head does not have it" in page.item(f"assignment {elsewhere}").help
+        assert "Not possible on this head" in page.item(f"assignment {elsewhere}").help
 
 
 def test_an_assignment_begins_its_trial_in_its_mode(page):

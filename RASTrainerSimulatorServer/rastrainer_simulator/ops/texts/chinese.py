@@ -324,9 +324,9 @@ _TABLE: Mapping[str, str] = {
     "assignments.trials": "连续 {needed} 次试验得 {mark:g} 分或以上且不超出任何限值，即达成。",
     "assignments.competent": "您的试验显示出胜任能力 (LC-CUSUM) 时达成；"
     "一次试验得 {mark:g} 分或以上为及格。",
-    "assignments.no mark": "当前得分没有及格线：请询问指导教师。",
+    "assignments.no mark": "此得分没有设定及格线：请询问指导教师。",
     "assignments.gate": "未解锁。请先达成：{assignments}。",
-    "assignments.other head": "此头部没有这一目标：请选择另一个。",
+    "assignments.other head": "此头部没有这一目标：请选择另一个头部。",
     "assignments.all reached": "所有目标均已达成。",
     "assignments.next in brief": "下一项：{assignment}（{progress}）",
     "assignments.next": "下一项：{assignment}，您最薄弱的一项。",

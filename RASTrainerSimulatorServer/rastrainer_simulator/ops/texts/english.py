@@ -269,9 +269,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "more, within all limits.",
         "assignments.competent": "Reached when your trials show competence (LC-CUSUM); a trial "
         "passes with {mark:g} points or more.",
-        "assignments.no mark": "There is no pass mark for the present score: ask your instructor.",
+        "assignments.no mark": "No pass mark is set for its score: ask your instructor.",
         "assignments.gate": "Locked. First reach: {assignments}.",
-        "assignments.other head": "This head does not have it: choose another one.",
+        "assignments.other head": "Not possible on this head: choose another one.",
         "assignments.all reached": "All assignments are reached.",
         "assignments.next in brief": "Next: {assignment} ({progress})",
         "assignments.next": "Next: {assignment}, your weakest.",
@@ -935,7 +935,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "lti.return": "Open the link in your course again to see your new scores here.",
         "lti.scores": "Your trials",
         "lti.seconds": "{seconds:.0f} s",
-        "lti.no trials": "There is none yet that counts for this link.",
+        "lti.no trials": "No trial counts for this link yet.",
         "lti.grade best": "Your best acceptable score goes to your course: {score:.1f} / 100.",
         "lti.grade latest": "The score of your latest acceptable trial goes to your course: "
         "{score:.1f} / 100.",

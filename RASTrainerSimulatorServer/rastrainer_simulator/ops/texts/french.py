@@ -1071,8 +1071,8 @@ _TABLE: Mapping[str, str] = {
     "lti.data": "Vos données",
     "lti.data text": "{platform} reçoit tout au plus votre note et le moment de son envoi. Ce "
     "laboratoire conserve votre identifiant sur {platform} avec votre pseudonyme dans un fichier "
-    "privé, mais ni votre nom ni votre adresse électronique. L'utilisation de vos essais pour la "
-    "recherche vous est demandée au laboratoire.",
+    "privé, mais ni votre nom ni votre adresse électronique. Le laboratoire vous demandera si vos "
+    "essais peuvent servir à la recherche.",
     "lti.no learner": "Vous ne suivez pas ce cours en tant qu'apprenant : vous ne recevez donc ni "
     "pseudonyme ni note.",
     "lti.link works": "Le lien fonctionne, et des notes peuvent être transmises au cours.",

@@ -383,8 +383,8 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "Punkte haben, innerhalb aller Grenzen.",
         "assignments.competent": "Erreicht, wenn deine Versuche Kompetenz zeigen (LC-CUSUM); ein "
         "Versuch ist ab {mark:g} Punkten bestanden.",
-        "assignments.no mark": "Für die jetzige Punktzahl gibt es keine Marke zum Bestehen: Frag "
-        "die Kursleitung.",
+        "assignments.no mark": "Für diese Punktzahl ist keine Marke zum Bestehen gesetzt: Frag die "
+        "Kursleitung.",
         "assignments.gate": "Gesperrt. Erreiche zuerst: {assignments}.",
         "assignments.other head": "Diesen Auftrag gibt es an diesem Kopf nicht: Wähle einen "
         "anderen.",
@@ -392,7 +392,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "assignments.next in brief": "Als Nächstes: {assignment} ({progress})",
         "assignments.next": "Als Nächstes: {assignment}, dein schwächster Auftrag.",
         "assignments.next unplayed": "Als Nächstes: {assignment}, noch nicht gespielt.",
-        "assignments.weakest": "Die meisten Punkte kostet {part}.",
+        "assignments.weakest": "Was die meisten Punkte kostet: {part}.",
         "assignments.part time": "die Zeit",
         "assignments.part accuracy": "die Genauigkeit",
         "assignments.part common bias": "die gemeinsame Abweichung aller Berührungen",

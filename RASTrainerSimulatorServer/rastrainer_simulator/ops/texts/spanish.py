@@ -384,7 +384,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "assignments.other head": "Esta cabeza no tiene este objetivo: elija otra.",
         "assignments.all reached": "Todos los objetivos están alcanzados.",
         "assignments.next in brief": "Siguiente: {assignment} ({progress})",
-        "assignments.next": "Siguiente: {assignment}, lo más flojo.",
+        "assignments.next": "Siguiente: {assignment}, su punto más débil.",
         "assignments.next unplayed": "Siguiente: {assignment}, aún sin practicar.",
         "assignments.weakest": "Lo que más puntos cuesta: {part}.",
         "assignments.part time": "el tiempo",

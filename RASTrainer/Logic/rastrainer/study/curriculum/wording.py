@@ -40,7 +40,7 @@ def progress_of_assignment(standing: AssignmentStanding) -> str:
 def goal_of(standing: AssignmentStanding) -> str:
     """Return the goal, such as "3 trials in a row at 70 or more"."""
     if standing.mark is None:
-        return "no pass mark for the present score"
+        return "no pass mark set for its score"
     mark = f"{standing.mark:g} or more"
     if standing.assignment.goal is GoalKind.COMPETENT:
         return f"competence (LC-CUSUM), a trial passes at {mark}"
@@ -71,7 +71,7 @@ def advice_of(standing: CurriculumStanding) -> str:
         return "All assignments are reached."
     task = title_of(best.assignment)
     if best.mean is None:
-        return f"Next: {task}, which was not played yet."
+        return f"Next: {task}, which has not been played yet."
     part = PARTS.get(best.weakest, "")
     why = f"; most points are lost by {part}" if part else ""
     return f"Next: {task}, the weakest open one (latest mean {fixed(best.mean, 0)}){why}."
