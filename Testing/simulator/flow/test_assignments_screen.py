@@ -9,6 +9,7 @@ import pytest
 from rastrainer.protocol import TRIAL_RUN, AssignmentState, GoalKind
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer_simulator.flow.pages.result import FinishedPage
 from rastrainer_simulator.flow.session.curricula import MAX_TRAINEES, Curricula
 from rastrainer_simulator.flow.session.session import REACHED_S
 from rastrainer_simulator.net.views.screen import Tone
@@ -96,6 +97,21 @@ def test_an_assignment_begins_its_trial_in_its_mode(page):
     page.choose("assignment four")
     page.until_menu(None)
     assert (page.state.training.task, page.state.training.mode) == ("task-4", "hmd")
+
+
+def test_after_a_trial_the_next_assignment_is_offered_and_not_the_next_task(page, outside):
+    page.choose("assignment one")
+    page.until_menu(None)
+    finished = FinishedPage(page.presenter._session)
+    offered = {item.name: item.label for item in finished.items()}
+    assert offered["next"] == "Next: Task 2"
+    outside.services.curricula.take(replace(TOLD, next="four"))
+    offered = {item.name: item.label for item in finished.items()}
+    assert offered["next"] == "Next: Task 4 · Headset"
+    finished.accept("next")
+    assert page.presenter._session.pages.top.first == "assignments"
+    outside.services.curricula.take(replace(TOLD, next=""))
+    assert "next" not in [item.name for item in finished.items()]
 
 
 def test_a_locked_task_waits_for_its_gate_and_an_open_one_for_no_task_before_it(menu):

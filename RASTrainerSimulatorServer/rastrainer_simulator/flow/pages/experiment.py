@@ -199,8 +199,7 @@ class ExperimentPage(SessionPage):
             return "answer"
         if needs_tutorial(self.session) and not tutorial_obstacle(self.session):
             return "tutorial"
-        told = self.session.curriculum
-        best = None if told is None else told.find(told.next)
+        best = self.session.next_assignment
         if best is not None and not assignment_obstacle(self.session, best):
             return "assignments"
         tasks = [self._task(task.name) for task in self.session.scenario.tasks]

@@ -37,10 +37,12 @@ class FinishedPage(SessionPage):
 
     def items(self) -> tuple[MenuItem, ...]:
         """Return where one can go from here."""
+        best, words = self.session.next_assignment, self.session.assignment_words
         following = self._following()
-        label = self.say("result.next", task=self.session.task_title(following))
+        title = self.session.task_title(following) if best is None else words.label(best)
+        label = self.say("result.next", task=title)
         again = self.say("result.again", task=self.session.task_title(self.session.training.task))
-        buttons = [self.button("next", label)] if following else []
+        buttons = [self.button("next", label)] if following or best is not None else []
         if self._step() is None:
             buttons.append(self.button("again", again))
         return (*buttons, self.button("menu", self.say("result.menu")))
@@ -60,9 +62,12 @@ class FinishedPage(SessionPage):
         return self.session.study.step_of(self.session.training.trainee)
 
     def _following(self) -> str:
+        """Return the task that comes next; "" for none, or where a curriculum says what does."""
         step = self._step()
         if step is not None:
             return step.task if step.is_played else ""
+        if self.session.curriculum is not None:
+            return ""
         order = [task.name for task in self.session.scenario.tasks]
         task = self.session.training.task
         place = order.index(task) + 1 if task in order else len(order)

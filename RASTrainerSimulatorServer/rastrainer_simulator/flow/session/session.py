@@ -19,7 +19,7 @@ from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.method_task import method_of, playable_methods
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
+from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
@@ -245,6 +245,12 @@ class TrainingSession:
         if self.study.step_of(trainee) is not None or not self.is_slicer_connected():
             return None
         return self._services.curricula.of(trainee)
+
+    @property
+    def next_assignment(self) -> ToldAssignment | None:
+        """The assignment to practice next; None where no open one is left, or no curriculum."""
+        told = self.curriculum
+        return None if told is None else told.find(told.next)
 
     @property
     def assignment_words(self) -> AssignmentWords:
