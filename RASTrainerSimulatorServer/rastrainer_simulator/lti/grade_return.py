@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+from collections import Counter
 from collections.abc import Callable
 from datetime import timedelta
 from typing import Any
@@ -57,6 +58,7 @@ class GradeReturn:
         self._tokens: dict[LearningPlatform, tuple[str, float]] = {}
         self._retry: dict[LearningPlatform, tuple[float, float]] = {}
         self._refused: dict[tuple[str, str, str], float] = {}
+        self._failures: Counter[tuple[str, str, str]] = Counter()
 
     async def run(self) -> None:
         """Send until the task is canceled."""
@@ -74,14 +76,18 @@ class GradeReturn:
             InputError: the study or its links cannot be used.
         """
         confirmed = 0
-        for grade in await self._study.do(CourseStudy.due):
+        due = await self._study.do(CourseStudy.due)
+        # A grade that a platform always fails at comes last, and so holds up no other.
+        for grade in sorted(due, key=lambda each: self._failures[_key(each)]):
             platform = self._settings.platform(grade.assignment.issuer, grade.assignment.client_id)
             if platform is None or not self._may_send(platform, grade):
                 continue
             try:
                 confirmed += await self._send(platform, grade)
                 self._retry.pop(platform, None)
+                self._failures.pop(_key(grade), None)
             except PlatformAwayError as error:
+                self._failures[_key(grade)] += 1
                 self._wait(platform, error)
         return confirmed
 

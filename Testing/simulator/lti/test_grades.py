@@ -198,6 +198,22 @@ def test_a_grade_that_is_refused_holds_up_no_other_and_is_sent_with_the_next_sco
     assert lab.tool.send_due() == 1
 
 
+def test_a_grade_that_the_platform_always_fails_at_holds_up_no_other(lab, browser, platform):
+    skip(lab, 0.0)
+    browser.launch()
+    lab.new_browser().launch("user-2")
+    play(lab)
+    play(lab, "T002")
+    platform.planned = [500]
+    assert lab.tool.send_due() == 0
+    skip(lab, LAST_RETRY_S + 1.0)
+    platform.planned = [200, 500]
+    assert lab.tool.send_due() == 1
+    assert [each["userId"] for each in platform.scores] == ["user-2"]
+    skip(lab, LAST_RETRY_S + 1.0)
+    assert lab.tool.send_due() == 1
+
+
 def test_a_redirection_would_show_the_token_to_others_and_is_not_followed(lab, browser, platform):
     browser.launch()
     play(lab)
