@@ -155,7 +155,7 @@ def test_a_view_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
         command = [*COMMAND, *places, "--port", "0", "--view-port", port, "--no-gamepad"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2
-    assert done.stderr.startswith(f"rastrainer: Views cannot be served on 127.0.0.1:{port}")
+    assert done.stderr.startswith(f"rastrainer: Cannot listen on 127.0.0.1:{port}")
     assert len(done.stderr.splitlines()) == 1
 
 

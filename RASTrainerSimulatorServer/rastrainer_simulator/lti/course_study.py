@@ -7,6 +7,7 @@ from datetime import timedelta
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.study.database import study_trainees
 from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.companions import beside_study
 from rastrainer.study.database.study import Study
@@ -120,9 +121,12 @@ class CourseStudy:
 
     def forget_deleted(self) -> None:
         """Forget the users whose trainees were deleted from the study, on whatever computer."""
-        both = (self._study.trainees(), self._study.trainees(archived=True))
+        # First: whoever is linked meanwhile is already a trainee, and is not forgotten.
+        linked = self._links.pseudonyms()
+        with self._study.database.reading() as connection:
+            both = [study_trainees.listed(connection, archived) for archived in (False, True)]
         known = {trainee.pseudonym for trainees in both for trainee in trainees}
-        for pseudonym in self._links.pseudonyms() - known:
+        for pseudonym in linked - known:
             self._links.forget(pseudonym)
 
 

@@ -67,6 +67,9 @@ class GradeReturn:
                 await self.send_due()
             except InputError as error:
                 _log.warning("Grades wait: %s", error)
+            except Exception:
+                # Launches go on, and nobody would notice that nothing is sent any more.
+                _log.exception("Grades wait because of an unexpected error")
             await asyncio.sleep(ROUND_S)
 
     async def send_due(self) -> int:

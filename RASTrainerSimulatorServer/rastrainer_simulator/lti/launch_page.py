@@ -57,9 +57,12 @@ class LaunchPage:
 
     @classmethod
     def in_language_of(cls, wanted: str) -> LaunchPage:
-        """Return the pages in the first language that is there of those in an Accept-Language."""
+        """Return the pages in the first language that is there of those in an Accept-Language.
+
+        A platform may write `de_AT` instead of `de-AT`, as Moodle does.
+        """
         known = {tag.partition("-")[0]: tag for tag in LANGUAGES}
-        tags = re.findall(r"(?:^|,)\s*([A-Za-z]{2})\b", wanted[:200])
+        tags = re.findall(r"(?:^|,)\s*([A-Za-z]{2})(?![A-Za-z])", wanted[:200])
         return cls(next((known[tag.lower()] for tag in tags if tag.lower() in known), "en"))
 
     def for_learner(self, launch: PlatformLaunch, member: CourseMember) -> str:

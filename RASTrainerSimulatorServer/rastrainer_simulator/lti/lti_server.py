@@ -197,7 +197,8 @@ async def _form(request: web.Request) -> Mapping[str, str]:
         RefusedLaunchError: there is none.
     """
     if request.content_type == "application/x-www-form-urlencoded":
-        with contextlib.suppress(ValueError, asyncio.TimeoutError, ConnectionError):
+        # LookupError: a charset that nobody knows.
+        with contextlib.suppress(ValueError, LookupError, asyncio.TimeoutError, ConnectionError):
             values = await asyncio.wait_for(request.post(), BODY_S)
             return {name: value for name, value in values.items() if isinstance(value, str)}
     raise RefusedLaunchError("Send a form.")

@@ -70,6 +70,9 @@ def test_what_is_no_address_is_a_path():
         ("postgresql://host:99999/study", "looks like"),
         ("postgresql://host/study?port=0x1", "number from 1 to 65535"),
         ("postgresql://host/study\n", "printable text"),
+        ("postgresql://host/study%00", "printable text"),
+        ("postgresql://seat%0a@host/study", "printable text"),
+        ("postgresql://host/study?sslrootcert=%00", "printable text"),
         (f"postgresql://host/{'x' * 1000}", "printable text"),
         ("postgresql://host/study?sslmode=disable", "over TLS"),
         ("postgresql://host/study?sslmode=require", "over TLS"),
@@ -131,6 +134,8 @@ def test_what_goes_with_a_study_is_beside_its_file_or_private_by_its_address(tmp
         beside_study(PostgresAddress("host", name)) for name in ("study", "study", "other")
     )
     assert one == same != other
+    options = {"sslmode": "verify-ca"}
+    assert beside_study(PostgresAddress("host", "study", "seat", 5432, options)) == one
     assert one.parent == tmp_path / "RASTrainer" / "studies"
     if os.name == "posix":
         assert one.parent.stat().st_mode & 0o077 == 0

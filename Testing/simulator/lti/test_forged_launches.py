@@ -195,6 +195,8 @@ def test_too_long_deep_or_empty_tokens_are_refused(lab, browser):
     assert browser.launch(**TEACHER, padding="x" * LARGEST_TOKEN)[0] == 400, "though it is signed"
     assert browser.post(browser.login()["state"], "x" * 40_000)[0] in (400, 413)
     assert browser.ask("/launch", "POST", b"{}")[0] == 400
+    form = {"Content-Type": "application/x-www-form-urlencoded; charset=unknown"}
+    assert browser.ask("/launch", "POST", b"state=1", **form)[0] == 400
     assert browser.ask("/launch")[0] == 405
     assert browser.launch(**TEACHER)[0] == 200
     assert lab.trainees() == []

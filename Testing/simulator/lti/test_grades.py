@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 import uuid
 from datetime import timedelta
 
@@ -12,6 +13,7 @@ from rastrainer.export.trainee_data import erase_trainee, export_trainee
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import PlatformLinks
+from rastrainer_simulator.lti import grade_return
 from rastrainer_simulator.lti.grade_return import FIRST_RETRY_S, LAST_RETRY_S, scores_url
 from Testing.domain.trial.trial_records import first_score, gentle_score, make_record
 from Testing.simulator.lti.conftest import Lab
@@ -212,6 +214,28 @@ def test_a_grade_that_the_platform_always_fails_at_holds_up_no_other(lab, browse
     assert [each["userId"] for each in platform.scores] == ["user-2"]
     skip(lab, LAST_RETRY_S + 1.0)
     assert lab.tool.send_due() == 1
+
+
+def test_a_mistake_of_ours_is_logged_and_stops_no_later_grade(
+    lab, browser, platform, monkeypatch, caplog
+):
+    browser.launch()
+    play(lab)
+    grades, is_sent = lab.tool.server.grades, threading.Event()
+    send_due, mistakes = grades.send_due, [ValueError("a mistake")]
+
+    async def fail_once():
+        if mistakes:
+            raise mistakes.pop()
+        await send_due()
+        is_sent.set()
+
+    monkeypatch.setattr(grade_return, "ROUND_S", 0.01)
+    monkeypatch.setattr(grades, "send_due", fail_once)
+    lab.thread.call(lab.tool.server.return_grades)
+    assert is_sent.wait(60.0)
+    assert len(platform.scores) == 1
+    assert "a mistake" in caplog.text
 
 
 def test_a_redirection_would_show_the_token_to_others_and_is_not_followed(lab, browser, platform):

@@ -9,6 +9,7 @@ import jwt
 
 from rastrainer.study.database.study import Study
 from rastrainer.study.platform_links import PlatformLinks
+from rastrainer_simulator.lti.course_study import CourseStudy
 from rastrainer_simulator.lti.lti_server import COOKIE
 from Testing.simulator.lti.conftest import ADDRESS
 from Testing.simulator.lti.platform_double import CLAIM, KEY, KEY_ID
@@ -67,6 +68,23 @@ def test_a_trainee_who_is_deleted_is_forgotten_and_comes_back_as_somebody_new(la
     assert b"user-8765432" not in PlatformLinks(lab.study).path.read_bytes()
 
 
+def test_a_learner_who_comes_while_deleted_ones_are_forgotten_is_not_forgotten(
+    lab, browser, monkeypatch
+):
+    pseudonyms = []
+
+    def linked_now():
+        pseudonyms.append(pseudonym_in(browser.launch("user-late")[1]))
+        return PlatformLinks(lab.study).pseudonyms()
+
+    # As another process on the same study.
+    course = CourseStudy(lab.study)
+    monkeypatch.setattr(course._links, "pseudonyms", linked_now)
+    course.forget_deleted()
+    course.close()
+    assert [pseudonym_in(browser.launch("user-late")[1])] == pseudonyms
+
+
 def test_a_teacher_sees_what_the_link_asks_for_and_gets_no_pseudonym(lab, browser):
     before = lab.trainees()
     status, text = browser.launch(**{f"{CLAIM}roles": [INSTRUCTOR]})
@@ -79,6 +97,9 @@ def test_the_page_speaks_the_language_of_the_platform_or_of_the_browser(browser)
     said = browser.launch(**{f"{CLAIM}launch_presentation": {"locale": "de-AT"}})[1]
     assert '<html lang="de">' in said
     assert "Dein Pseudonym" in said
+    for locale, language in (("de_du", "de"), ("zh_cn", "zh-Hans"), ("", "en"), ("deu", "en")):
+        said = browser.launch(**{f"{CLAIM}launch_presentation": {"locale": locale}})[1]
+        assert f'<html lang="{language}">' in said
     assert "Votre pseudonyme" in browser.launch(language="xx,fr-CA;q=0.8,en;q=0.5")[1]
 
 

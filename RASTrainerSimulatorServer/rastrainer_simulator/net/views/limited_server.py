@@ -66,7 +66,7 @@ class LimitedServer:
         try:
             found = await listener.listen(host, port)
         except (OSError, OverflowError) as error:
-            raise InputError(f"Views cannot be served on {host}:{port}: {error}.") from None
+            raise InputError(f"Cannot listen on {host}:{port}: {error}.") from None
         self._listeners.append(listener)
         if self._connections.server is None:
             await self._runner.setup()

@@ -49,7 +49,7 @@ def test_a_joined_view_does_not_keep_the_simulator_from_ending(tmp_path, loop_th
 def test_a_port_that_is_taken_is_told_or_replaced(tmp_path):
     with socket.create_server((HOST, 0)) as other:
         taken = other.getsockname()[1]
-        with pytest.raises(AssertionError, match=f"Views cannot be served on 127.0.0.1:{taken}"):
+        with pytest.raises(AssertionError, match=f"Cannot listen on 127.0.0.1:{taken}"):
             _opened(tmp_path, "--view-port", str(taken))
     with _usual_port_taken(), ViewedSimulator(tmp_path / "others") as simulator:
         assert simulator.view_port != 18945

@@ -117,7 +117,10 @@ def _address(text: str) -> PostgresAddress:
         raise InputError(f"The address of a study names a host and a database: {EXAMPLE}.")
     if "port" in options:
         port = _port(options.pop("port"))
-    address = PostgresAddress(host, database, unquote(parts.username or ""), port, options)
+    user = unquote(parts.username or "")
+    if not "".join((host, database, user, *options.values())).isprintable():
+        raise InputError(f"An address of PostgreSQL is printable text such as {EXAMPLE}.")
+    address = PostgresAddress(host, database, user, port, options)
     if not address.is_here and address.connection_words["sslmode"] not in SAFE_MODES:
         raise InputError(
             "A study on another computer is reached over TLS with a certificate that is checked: "

@@ -26,4 +26,6 @@ def beside_study(place: StudyPlace) -> Path:
         make_private_folder(folder)
     except OSError as error:
         raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
-    return folder / hashlib.sha256(str(place).encode()).hexdigest()[:16]
+    # Not by the role or the options: another one leads to the same study.
+    where = f"{place.host}:{place.port or 5432}/{place.database}"
+    return folder / hashlib.sha256(where.encode()).hexdigest()[:16]
