@@ -24,6 +24,9 @@ from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
+from rastrainer.study.protocol.study_progress import StudyProgress
+from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.trial.scoring import SCORE_VERSION
 from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 
@@ -172,6 +175,20 @@ def test_a_goal_without_a_mark_is_that_of_the_study_and_never_reached_where_ther
     assert (found.standings[0].state, found.standings[0].mark) == (OPEN, None)
     own = Curriculum("c", "C", (replace(ONE, trials=1, mark=75.0),))
     assert standing_in(own, [PASSED], lambda _version: None).reached == 1
+    both = Curriculum("c", "C", (*curriculum.assignments, replace(ONE, name="own", mark=90.0)))
+    assert standing_in(both, [], lambda _version: None).next_best.assignment.name == "own"
+
+
+def test_an_assignment_that_the_mark_of_the_study_could_never_reach_is_refused(study):
+    published = read_study_protocol(SHIPPED.with_name("published-protocol.json"))
+    marked = replace(published, pass_mark=80.0, score_version=SCORE_VERSION)
+    StudyProgress(study).set_protocol(marked)
+    store = CurriculumStore(study)
+    with pytest.raises(InputError, match="biopsy could never be reached"):
+        store.choose(read_curriculum(SHIPPED))
+    assert store.choices() == ()
+    store.choose(Curriculum("c", "C", (ONE, replace(TWO, procedure="biopsy", mark=60.0))))
+    assert [each.mark for each in store.standing("A").standings] == [80.0, 60.0]
 
 
 def test_a_goal_by_lc_cusum_is_reached_at_competence_and_says_how_far_it_is():

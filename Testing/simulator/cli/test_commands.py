@@ -340,7 +340,7 @@ def test_a_curriculum_is_set_for_one_or_all_and_the_table_says_where_they_stand(
     assert main(["curriculum", str(study), "--trainee", "N0"]) == 0
     title, _header, *rows = capsys.readouterr().out.strip().splitlines()
     assert title.startswith("N0, First steps: 0 of 6 reached. Next: Task 1, the weakest open one")
-    assert "most points are lost by time" in title
+    assert "most points are lost on time" in title
     assert rows[0].split("  ")[0] == "first-points"
     assert re.split(" {2,}", rows[0])[2:4] == ["0 of 2", "2 trials in a row at 70 or more"]
     assert re.split(" {2,}", rows[1])[2] == "locked"

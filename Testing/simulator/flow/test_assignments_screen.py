@@ -62,7 +62,7 @@ def page(menu):
 def test_the_menu_says_how_far_the_trainee_is_and_what_comes_next(menu):
     row = menu.item("assignments")
     assert (row.label, row.value) == ("Your assignments", "1 of 6 reached")
-    assert row.help == "Next: Task 2, your weakest. Most points are lost by time."
+    assert row.help == "Next: Task 2, your weakest. Most points are lost on time."
 
 
 def test_a_board_reads_where_the_trainee_stands(menu, outside):

@@ -276,7 +276,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "assignments.next in brief": "Next: {assignment} ({progress})",
         "assignments.next": "Next: {assignment}, your weakest.",
         "assignments.next unplayed": "Next: {assignment}, which you have not played yet.",
-        "assignments.weakest": "Most points are lost by {part}.",
+        "assignments.weakest": "Most points are lost on {part}.",
         "assignments.part time": "time",
         "assignments.part accuracy": "accuracy",
         "assignments.part common bias": "the bias that all touches share",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rastrainer.errors import InputError
 from rastrainer.study.curriculum.counted_trials import counted_trials
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
 from rastrainer.study.curriculum.standing import CurriculumStanding, standing_in
@@ -59,8 +60,10 @@ class CurriculumStore:
         What was chosen last counts: a choice for everybody ends those for single trainees.
 
         Raises:
-            InputError: an unknown trainee.
+            InputError: an unknown trainee, or the study has no mark for an assignment without one.
         """
+        if curriculum is not None:
+            self._check_marks(curriculum)
         text = None if curriculum is None else json_text(curriculum.to_json())
         with self._study.database.writing() as connection:
             if pseudonym:
@@ -69,6 +72,16 @@ class CurriculumStore:
                 "INSERT INTO curriculum_choices (trainee_id, curriculum_json, stored_utc) "
                 f"VALUES (({TRAINEE_ID}), ?, ?)",
                 (pseudonym, text, utc_now()),
+            )
+
+    def _check_marks(self, curriculum: Curriculum) -> None:
+        protocol = StudyProgress(self._study).protocol()
+        untried = standing_in(curriculum, (), lambda version: pass_mark_of(protocol, version))
+        without = [each.assignment.name for each in untried.standings if each.mark is None]
+        if without:
+            raise InputError(
+                f"The assignment {without[0]} could never be reached: the pass mark of this study "
+                "holds for another score. Give the assignment a mark of its own."
             )
 
     def choices(self) -> tuple[CurriculumChoice, ...]:

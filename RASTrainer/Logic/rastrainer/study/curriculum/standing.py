@@ -57,10 +57,14 @@ class AssignmentStanding:
     def shortfall(self) -> float:
         """Points from the latest mean up to the mark; infinite before the first trial.
 
+        Without a mark it is infinitely little: practice leads to no goal there.
+
         Drawing the mean of few trials toward that of all improved nothing in simulated courses
         (`Testing/error_rates/curricula.py`).
         """
-        return math.inf if self.mean is None or self.mark is None else self.mark - self.mean
+        if self.mark is None:
+            return -math.inf
+        return math.inf if self.mean is None else self.mark - self.mean
 
 
 @dataclass(frozen=True)

@@ -73,7 +73,7 @@ def advice_of(standing: CurriculumStanding) -> str:
     if best.mean is None:
         return f"Next: {task}, which has not been played yet."
     part = PARTS.get(best.weakest, "")
-    why = f"; most points are lost by {part}" if part else ""
+    why = f"; most points are lost on {part}" if part else ""
     return f"Next: {task}, the weakest open one (latest mean {fixed(best.mean, 0)}){why}."
 
 
