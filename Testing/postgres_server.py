@@ -17,6 +17,7 @@ import trustme
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.address import PostgresAddress
+from rastrainer.study.database.database import LockWait
 from rastrainer.study.database.study import Study
 from Testing.free_port import free_port
 
@@ -153,12 +154,12 @@ def _is_alive(pid: int) -> bool:
     return False
 
 
-def opened_when_there(place: object) -> Study:
+def opened_when_there(place: object, lock_wait: LockWait | None = None) -> Study:
     """Return a study, opened once its server answers."""
     give_up = time.monotonic() + TIMEOUT_S
     while True:
         try:
-            return Study.open(place)
+            return Study.open(place, lock_wait)
         except InputError:
             assert time.monotonic() < give_up
             time.sleep(0.05)

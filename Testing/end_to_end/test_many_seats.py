@@ -159,7 +159,7 @@ class Lab:
 
     def answer(self, trainee):
         """Answer the questionnaire at some seat, again where the answer was lost in a crash."""
-        while self.next_step(trainee) != "":
+        while self.asked(lambda: self.next_step(trainee)) != "":
 
             def store():
                 with opened_when_there(self.place) as study:

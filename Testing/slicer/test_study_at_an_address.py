@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer.study.database import postgres_database
+from rastrainer.study.database import postgres_connecting, postgres_database
 from rastrainer.study.database.study import Study
 from Testing.postgres_server import PostgresServer
 from Testing.slicer.host.host import Host
@@ -42,6 +42,7 @@ def start(tmp_path):
 def _a_patient_window(monkeypatch):
     """A busy machine may take longer to connect than a window waits."""
     monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 60.0)
+    monkeypatch.setattr(postgres_connecting, "INTERACTIVE_SILENCE_S", 60)
 
 
 def names(host):

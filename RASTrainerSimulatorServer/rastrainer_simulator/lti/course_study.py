@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from datetime import timedelta
 from pathlib import Path
 
@@ -102,11 +103,12 @@ class CourseStudy:
         """
         self.forget_deleted()
         earliest = moment(utc_now()) - timedelta(days=FOLLOWED_DAYS)
+        past_trials = functools.cache(self._study.past_trials)
         found = []
         for pseudonym, assignment in self._links.assignments():
             if moment(assignment.launched_utc) < earliest:
                 continue
-            score = GradeTerms.of(assignment).grade(self._study.past_trials(pseudonym))
+            score = GradeTerms.of(assignment).grade(past_trials(pseudonym))
             if score is not None and round(score, 2) != assignment.sent_score:
                 found.append(DueGrade(assignment, round(score, 2)))
         return found

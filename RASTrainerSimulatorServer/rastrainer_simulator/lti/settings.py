@@ -22,7 +22,7 @@ def https_url(value: Any) -> str:
     """Accept the address of a page: https, but for this computer, without a name or password."""
     try:
         parts = urlsplit(text(500)(value))
-        is_usable = bool(parts.hostname) and not (parts.username or parts.fragment)
+        is_usable = bool(parts.hostname) and not ("@" in parts.netloc or parts.fragment)
         is_safe = parts.scheme == "https" or is_loopback(parts.hostname or "")
         _port = parts.port
     except ValueError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import json
 import os
 import random
@@ -156,7 +155,9 @@ def test_a_connection_is_made_anew_after_the_server_was_away(own_server):
         assert study.create_trainee().pseudonym == "T002"
 
 
-def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place):
+def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place, monkeypatch):
+    monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 60.0)
+    monkeypatch.setattr(postgres_connecting, "INTERACTIVE_SILENCE_S", 60)
     with Study.open(place) as holder:
         lock_wait = LockWait(0.05, rest_s=1.0, clock=lambda: 0.0)
         with Study.open(place, lock_wait) as study:
@@ -169,20 +170,35 @@ def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place):
             study.create_trainee("a")
 
 
-def test_a_server_that_hangs_is_given_up_by_windows_and_by_those_who_wait(place, monkeypatch):
-    hasty = functools.partial(postgres_connecting.connected, answer_s=1.0)
-    monkeypatch.setattr(postgres_database, "connected", hasty)
-    for lock_wait in (LockWait.interactive(), LockWait()):
-        with Study.open(place, lock_wait) as study, Study.open(place) as other:
-            process = study.database._connection.info.backend_pid
-            os.kill(process, signal.SIGSTOP)
-            try:
-                # Without an end, this would wait until the server goes on.
-                assert study.database.version() is not None
-                assert study.database._connection.info.backend_pid != process
-            finally:
-                os.kill(process, signal.SIGCONT)
-            assert other.trainees() == ()
+class HastyClock:
+    """Stands for `time`: at each look, so many more seconds have passed."""
+
+    def __init__(self):
+        self.step_s = self._ahead_s = 0.0
+
+    def monotonic(self):
+        self._ahead_s += self.step_s
+        return time.monotonic() + self._ahead_s
+
+
+@pytest.mark.parametrize("lock_wait", [LockWait(), LockWait.interactive()], ids=["work", "window"])
+def test_a_server_that_hangs_is_given_up_by_windows_and_by_those_who_wait(
+    lock_wait, place, monkeypatch
+):
+    clock = HastyClock()
+    monkeypatch.setattr(postgres_connecting, "time", clock)
+    with opened_when_there(place, lock_wait) as study:
+        process = study.database._connection.info.backend_pid
+        os.kill(process, signal.SIGSTOP)
+        clock.step_s = 20.0
+        give_up = time.monotonic() + 60.0
+        try:
+            # Without an end, the first question would wait until the server goes on.
+            while study.database.version() is None:
+                assert time.monotonic() < give_up
+            assert study.database._connection.info.backend_pid != process
+        finally:
+            os.kill(process, signal.SIGCONT)
 
 
 STOPPED = """

@@ -51,6 +51,7 @@ def test_grades_go_to_the_platform_s_own_servers_only(tmp_path):
         "https://courses.example.org:8443/1",
         "http://courses.example.org/1",
         "https://lab:secret@courses.example.org/1",
+        "https://:secret@courses.example.org/1",
         "https://courses.example.org:x/1",
         None,
     ):
