@@ -38,7 +38,7 @@ def postgres_driver() -> ModuleType:
     except ImportError:
         raise InputError(
             "A study in PostgreSQL needs the package psycopg, which comes with the simulator: set "
-            "the simulator up first (in Slicer's section Simulator, or pip install rastrainer)."
+            "the simulator up first, in the section Simulator."
         ) from None
     finally:
         for folder in searched:
