@@ -946,7 +946,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "your user ID on {platform} with your pseudonym in a private file, but neither your name "
         "nor your e-mail address. Whether your trials may be used for research is asked in the "
         "lab.",
-        "lti.no learner": "You are not a learner of this course, so you get no pseudonym and no "
+        "lti.no learner": "You are not a learner in this course, so you get no pseudonym and no "
         "grade.",
         "lti.link works": "The link works, and grades can be returned to the course.",
         "lti.refused": "This launch cannot be used",
