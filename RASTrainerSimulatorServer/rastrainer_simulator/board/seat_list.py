@@ -90,11 +90,11 @@ def checked_address(address: str) -> str:
     Raises:
         InputError: it is none, or would send the key over the network in the clear.
     """
-    parts = urlsplit(address.strip())
     try:
+        parts = urlsplit(address.strip())
         host, port = parts.hostname or "", parts.port
     except ValueError:
-        host, port = "", None
+        parts, host, port = urlsplit(""), "", None
     if parts.scheme not in ("https", "http") or not host or port is None or parts.username:
         raise InputError(
             f"{printable_name(address)} is no address of a simulator; it shows its own when it is "

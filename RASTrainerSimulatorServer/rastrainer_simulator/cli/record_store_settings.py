@@ -18,11 +18,22 @@ _MAX_BYTES = 10_000
 
 def home_page_url(value: Any) -> str:
     """Accept the address of a lab's own system, from which IRIs are made."""
-    parts = urlsplit(text(300, min_length=0)(value))
-    host = parts.hostname or ""
-    if parts.scheme not in ("https", "http") or not host or host.endswith(".invalid"):
+    address = text(300, min_length=0)(value)
+    if not _is_home_page(address):
         raise ValueError("the address of the lab's own system, such as https://lab.example.org")
-    return value.rstrip("/")
+    return address.rstrip("/")
+
+
+def _is_home_page(address: str) -> bool:
+    # What stands before an "@", such as a password, would be sent with every statement.
+    if any(sign in address for sign in "@?# "):
+        return False
+    try:
+        parts = urlsplit(address)
+        host, _port = parts.hostname or "", parts.port
+    except ValueError:
+        return False
+    return parts.scheme in ("https", "http") and host != "" and not host.endswith(".invalid")
 
 
 @dataclasses.dataclass(frozen=True)

@@ -59,11 +59,13 @@ class RecordStore:
         Raises:
             InputError: the address or the credentials cannot be used.
         """
-        parts = urlsplit(url)
         try:
+            parts = urlsplit(url)
             self._host, self._port = parts.hostname or "", parts.port
         except ValueError:
-            raise InputError(f"The port in {printable_name(url)} is no number.") from None
+            raise InputError(
+                f"{printable_name(url)} has a host that is none, or a port that is no number."
+            ) from None
         self._is_safe = parts.scheme == "https"
         if parts.scheme not in ("https", "http") or not self._host or parts.query or parts.username:
             raise InputError(

@@ -132,6 +132,7 @@ def test_a_removed_seat_is_forgotten_with_its_key(board, simulator):
         ({"address": "https://127.0.0.1"}, "is no address of a simulator"),
         ({"address": "https://me:secret@127.0.0.1:1"}, "is no address of a simulator"),
         ({"address": "https://127.0.0.1:99999"}, "is no address of a simulator"),
+        ({"address": "https://[127.0.0.1:1"}, "is no address of a simulator"),
         ({"address": "https://127.0.0.1:1"}, "does not answer at https://127.0.0.1:1"),
         ({"fingerprint": "12:34"}, "32 pairs of hexadecimal digits"),
         ({"name": ""}, "The name must be printable text of 1 to 40 characters"),

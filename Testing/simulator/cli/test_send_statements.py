@@ -133,6 +133,7 @@ def test_wrong_credentials_and_redirections_end_it_with_a_sentence(store, sender
         ("https://lab:secret@lrs.example.org/xAPI", "no address of a record store"),
         ("https://lrs.example.org:x/xAPI", "no number"),
         ("lrs.example.org", "no address of a record store"),
+        ("https://[lrs.example.org", "a host that is none"),
     ],
 )
 def test_an_address_that_would_reveal_something_is_refused(url, words):
@@ -194,6 +195,10 @@ def test_what_is_the_same_each_time_is_set_once(store, tmp_path, capsys):
     ("settings", "words"),
     [
         ({"homePage": "https://rastrainer.invalid"}, "homePage must be the address"),
+        ({"homePage": "https://["}, "homePage must be the address"),
+        ({"homePage": "https://lab.example.org:99999"}, "homePage must be the address"),
+        ({"homePage": "https://name:password@lab.example.org"}, "homePage must be the address"),
+        ({"homePage": "https://lab.example.org/?x"}, "homePage must be the address"),
         ({"homepage": HOME}, "there is no homepage"),
         ({"password": "secret"}, "there is no password"),
         ([], "must be a JSON object"),
