@@ -170,6 +170,23 @@ def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place, 
             study.create_trainee("a")
 
 
+def test_who_reads_slowly_is_not_cut_off_and_who_holds_the_lock_is(place, monkeypatch):
+    Study.open(place).close()
+    hasty = postgres_connecting._SESSION.replace("'20s'", "'10ms'")
+    monkeypatch.setattr(postgres_connecting, "_SESSION", hasty)
+    with Study.open(place) as study:
+        with study.database.reading() as connection:
+            # As a copy that writes a large table elsewhere before it reads the next.
+            time.sleep(1.0)
+            assert connection.execute("SELECT count(*) FROM trials").fetchone() == (0,)
+        with (
+            pytest.raises(StudyBusyError, match="waited too long"),
+            study.database.writing() as connection,
+        ):
+            time.sleep(1.0)
+            connection.execute("DELETE FROM trials")
+
+
 class HastyClock:
     """Stands for `time`: at each look, so many more seconds have passed."""
 

@@ -41,7 +41,12 @@ from rastrainer.study.database.postgres_tables import (
 from rastrainer.study.database.schema import MIGRATIONS
 from rastrainer.study.database.tables import study_tables
 
-_READ = "BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"
+_READ = """
+    BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY;
+    SET LOCAL idle_in_transaction_session_timeout = 0;
+    SET LOCAL statement_timeout = 0
+"""
+"""Who reads holds up nobody, and may take long, as for a copy of the whole study."""
 
 
 class PostgresDatabase(StudyDatabase):

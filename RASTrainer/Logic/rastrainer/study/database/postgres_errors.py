@@ -10,6 +10,8 @@ from rastrainer.study.database.database import StudyAwayError, StudyBusyError
 
 _LOCKED = ("55P03", "57014", "40P01", "40001")
 """A lock, or a statement, that took too long; two that wait for each other."""
+_LEFT = "25P03"
+"""The server has ended a change that this program did not go on with, such as a computer asleep."""
 _OURS = ("23", "42")
 """Classes of errors that only a mistake of ours makes."""
 _MAX_WORDS = 200
@@ -17,7 +19,6 @@ _MAX_WORDS = 200
 _BY_STATE = {
     "22": "The study holds a value that RASTrainer did not write, or was to store one.",
     "25006": "The study {0} is read-only.",
-    "25P03": "The study {0} waited too long for this program; try again.",
     "28": "The server of {0} refuses this user; check name, ~/.pgpass and pg_hba.conf.",
     "3D000": "The server of {0} has no such database; its administrator creates it.",
     "42501": "The user may not do this in {0}; make it the owner of the database.",
@@ -60,6 +61,11 @@ def postgres_error(error: Any, address: PostgresAddress) -> InputError | None:
     if state in _LOCKED:
         return StudyBusyError(
             f"Another program has the study {address} locked; try again when it has finished."
+        )
+    if state == _LEFT:
+        return StudyBusyError(
+            f"The study {address} waited too long for this program, and nothing has changed; try "
+            "again."
         )
     for sentences, found in ((_BY_STATE, state.startswith), (_BY_WORDS, text.__contains__)):
         for key, sentence in sentences.items():
