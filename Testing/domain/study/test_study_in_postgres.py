@@ -179,12 +179,14 @@ def test_who_reads_slowly_is_not_cut_off_and_who_holds_the_lock_is(place, monkey
             # As a copy that writes a large table elsewhere before it reads the next.
             time.sleep(1.0)
             assert connection.execute("SELECT count(*) FROM trials").fetchone() == (0,)
-        with (
-            pytest.raises(StudyBusyError, match="waited too long"),
-            study.database.writing() as connection,
-        ):
-            time.sleep(1.0)
-            connection.execute("DELETE FROM trials")
+
+        def change_slowly():
+            with study.database.writing() as connection:
+                time.sleep(1.0)
+                connection.execute("DELETE FROM trials")
+
+        with pytest.raises(StudyBusyError, match="waited too long"):
+            change_slowly()
 
 
 class HastyClock:
