@@ -41,13 +41,7 @@ def menu(trainee, outside):
     session = trainee.presenter._session
     session.progress.note("P07", session.scenario.name, TRIAL_RUN)
     outside.services.curricula.take(TOLD)
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    trainee.choose("skip")
-    trainee.until_menu("controls")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
-    trainee.presenter.on_text(1, "trainee", "P07")
+    trainee.go_to_experiment("P07")
     trainee.step(20)
     return trainee
 
