@@ -153,7 +153,7 @@ def _access(answer: Any) -> tuple[str, float]:
     try:
         token = text(8192)(values.get("access_token"))
         return token, min(float(lasts_s), 86_400.0)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise PlatformAwayError("it gives no access token") from None
 
 

@@ -40,6 +40,7 @@ class PlatformDouble:
         stored_first: whether a planned status comes after the score was stored.
         assertions: claims of the requests for access.
         address: of the platform.
+        lasts: for how many s it says that access is given.
         audience: that the requests for access must be addressed to.
         tool: address of the tool, whose assertions it checks.
     """
@@ -53,6 +54,7 @@ class PlatformDouble:
         self.assertions: list[dict] = []
         self.tool = ""
         self.token = str(uuid.uuid4())
+        self.lasts: object = 3600
         self._thread = thread
         self.address = f"http://{HOST}:{thread.run(self._listen())}"
         self.audience = f"{self.address}/token"
@@ -148,7 +150,7 @@ class PlatformDouble:
         claims = jwt.decode(assertion, key, ["RS256"], audience=self.audience)
         assert claims["iss"] == claims["sub"] == CLIENT_ID
         self.assertions.append(claims)
-        return web.json_response({"access_token": self.token, "expires_in": 3600})
+        return web.json_response({"access_token": self.token, "expires_in": self.lasts})
 
     async def _take_score(self, request):
         assert request.query == {"type": "1"}

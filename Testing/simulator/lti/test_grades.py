@@ -216,6 +216,18 @@ def test_a_grade_that_the_platform_always_fails_at_holds_up_no_other(lab, browse
     assert lab.tool.send_due() == 1
 
 
+@pytest.mark.parametrize("lasts", [None, "soon", [], 10**400], ids=lambda lasts: str(lasts)[:5])
+def test_access_for_a_time_that_is_none_is_asked_for_again_later(lab, browser, platform, lasts):
+    skip(lab, 0.0)
+    browser.launch()
+    play(lab)
+    platform.lasts = lasts
+    assert lab.tool.send_due() == 0
+    platform.lasts = 3600
+    skip(lab, LAST_RETRY_S)
+    assert lab.tool.send_due() == 1
+
+
 def test_a_mistake_of_ours_is_logged_and_stops_no_later_grade(
     lab, browser, platform, monkeypatch, caplog
 ):
