@@ -179,6 +179,8 @@ def test_an_unknown_trainee_is_added_without_consent_so_that_no_trial_is_lost(st
         ({}, "needs the key"),
         (record(extra=float("nan")), "must be JSON with finite numbers"),
         (record(extra={1, 2}), "must be JSON with finite numbers"),
+        (record(extra="a\\\0b"), "whole characters, none of them null"),
+        (record(extra=["\ud83d"]), "whole characters, none of them null"),
         (record(extra="x" * 2**20), "larger than 1 MiB"),
     ],
 )

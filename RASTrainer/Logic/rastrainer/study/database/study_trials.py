@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
@@ -49,6 +50,7 @@ _STAMPED_TRIALS = f"""
 """
 """Each trial of a trainee with a stamp that changes with any stored result."""
 
+_NULL = re.compile(r"(?<!\\)(?:\\\\)*\\u0000")
 Value = TypeVar("Value")
 
 
@@ -300,11 +302,23 @@ def outcomes(connection: Connection, task: str, mode: str) -> tuple[TrialOutcome
 
 
 def json_text(value: object) -> str:
-    """Return a value as ASCII JSON; raise `InputError` if that is impossible."""
+    """Return a value as ASCII JSON; raise `InputError` if that is impossible.
+
+    Null characters and halves of surrogate pairs are refused: PostgreSQL cannot read JSON with
+    them, and a single trial would hide all of its trainee's.
+    """
     try:
-        return json.dumps(value, allow_nan=False)
+        text = json.dumps(value, allow_nan=False)
+        if "\\ud" in text:
+            json.dumps(value, ensure_ascii=False).encode()
+        if _NULL.search(text):
+            raise ValueError
     except (TypeError, ValueError, RecursionError):
-        raise InputError("What a study stores must be JSON with finite numbers.") from None
+        raise InputError(
+            "What a study stores must be JSON with finite numbers and whole characters, none of "
+            "them null."
+        ) from None
+    return text
 
 
 def decoded(text: str, read: Callable[[Any], Value]) -> Value:
