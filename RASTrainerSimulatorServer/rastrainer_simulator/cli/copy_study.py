@@ -6,8 +6,10 @@ import argparse
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
+from rastrainer.study.database.companions import beside_study
 from rastrainer.study.database.copying import copy_study
 from rastrainer.study.database.study import Study
+from rastrainer.study.platform_links import PlatformLinks
 from rastrainer_simulator.cli.shared import add_study
 
 
@@ -37,9 +39,13 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("FROM and TO are the same study.")
     with Study.open_for_reading(arguments.source) as source, Study.open(arguments.target) as target:
         counts = copy_study(source, target)
+        links = PlatformLinks(beside_study(source.database.place))
+        users = links.copy_to(PlatformLinks(beside_study(target.database.place)))
     print(
         f"{arguments.target}: {counted(counts['trainees'], 'trainee')}, "
         f"{counted(counts['trials'], 'trial')}, {counted(sum(counts.values()), 'row')} in all, "
         "each compared with its original"
     )
+    if users:
+        print(f"{counted(users, 'user')} of learning platforms copied with it")
     return 0

@@ -7,7 +7,9 @@ import dataclasses
 import pytest
 
 from rastrainer.errors import InputError
+from rastrainer.study.database.study import Study
 from rastrainer.study.platform_links import LinkedAssignment, PlatformLinks
+from rastrainer_simulator.cli.main import main
 
 ISSUER = "https://courses.example.org"
 TASK = LinkedAssignment(
@@ -44,6 +46,22 @@ def test_where_nobody_is_linked_no_file_is_made(links):
     links.forget("T001")
     assert links.users("T001") == []
     assert not links.path.exists()
+
+
+def test_a_copy_of_a_study_has_the_same_users_and_grades(links, tmp_path, capsys):
+    with Study.open(tmp_path / "study.db") as study:
+        study.create_trainee()
+    links.link(ISSUER, "u1", "T001")
+    links.put(TASK)
+    links.note_sent(TASK, 70.5, "2026-01-01T11:00:00Z")
+    copied = PlatformLinks(tmp_path / "copy.db")
+    copied.link(ISSUER, "u2", "T001")
+    assert main(["copy-study", str(tmp_path / "study.db"), str(tmp_path / "copy.db")]) == 0
+    assert "1 user of learning platforms" in capsys.readouterr().out
+    assert copied.assignments() == links.assignments()
+    assert copied.users("T001") == links.users("T001")
+    assert main(["copy-study", str(tmp_path / "study.db"), str(tmp_path / "copy.db")]) == 2
+    assert copied.assignments() == links.assignments()
 
 
 def test_a_damaged_file_is_named_and_left_as_it_is(links):

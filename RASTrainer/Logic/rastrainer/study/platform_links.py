@@ -117,6 +117,28 @@ class PlatformLinks:
             with self._opened() as database:
                 database.execute("DELETE FROM users WHERE pseudonym = ?", (pseudonym,))
 
+    def copy_to(self, other: PlatformLinks) -> int:
+        """Copy everything beside a new copy of the study; return the number of users.
+
+        Without this, learners would begin anew, and lower grades would replace theirs.
+        """
+        if not self.path.exists():
+            return 0
+        with self._opened() as database:
+            users = database.execute("SELECT * FROM users").fetchall()
+            query = f"SELECT {_COLUMNS} FROM assignments ORDER BY rowid"
+            assignments = database.execute(query).fetchall()
+        if users:
+            with other._opened() as database:
+                # A study that was empty has no trainees whom these could be.
+                database.execute("DELETE FROM users")
+                database.executemany("INSERT INTO users VALUES (?, ?, ?)", users)
+                marks = ", ".join("?" * len(_COLUMNS.split(", ")))
+                database.executemany(
+                    f"INSERT INTO assignments ({_COLUMNS}) VALUES ({marks})", assignments
+                )
+        return len(users)
+
     def put(self, assignment: LinkedAssignment) -> None:
         """Remember an assignment of a linked user, or its new terms; what was sent is kept."""
         with self._opened() as database:
