@@ -326,6 +326,18 @@ def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(s
     assert store.standing("B").reached == 0
 
 
+def test_a_failed_trial_that_is_stored_late_breaks_the_row_in_which_it_was_played(study):
+    store = CurriculumStore(study)
+    store.choose(Curriculum("c", "C", (ONE, TWO)))
+    for number in (1, 3):
+        study.add_trial(record(number), score=gentle_score(60.0, 0.2))
+    assert store.standing("A").reached == 1
+    AbortedTrials(study).add(make_aborted(trainee="A", startedUtc="2024-05-17T10:02:00Z"))
+    assert [each.state for each in store.standing("A").standings] == [OPEN, LOCKED]
+    study.add_trial(record(4), score=gentle_score(60.0, 0.2))
+    assert store.standing("A").reached == 1
+
+
 def test_a_study_of_an_earlier_format_gets_the_table(tmp_path):
     path = tmp_path / "old.db"
     write_old_study(path, 8, "INSERT INTO trainees VALUES (1, 'A', 1, 0, '2026-01-01T00:00:00Z')")
