@@ -97,7 +97,7 @@ def _key_id(token: str) -> str:
     try:
         header = jwt.get_unverified_header(token)
     except (jwt.PyJWTError, ValueError, RecursionError):
-        raise RefusedLaunchError("This is no token.") from None
+        raise RefusedLaunchError("This is not a token.") from None
     if header.get("alg") != ALGORITHM:
         raise RefusedLaunchError(f"The token must be signed by {ALGORITHM}.")
     return _short(header.get("kid"), "The key ID of the token")
@@ -125,7 +125,9 @@ def _check_message(
     }
     for name, value in wanted.items():
         if claims.get(name) != value:
-            raise RefusedLaunchError(f"The token's {name.removeprefix(_CLAIM)} is another.")
+            raise RefusedLaunchError(
+                f"The token's {name.removeprefix(_CLAIM)} is not the expected one."
+            )
     if claims.get(f"{_CLAIM}deployment_id") not in platform.deployment_ids:
         raise RefusedLaunchError("The platform launches from a deployment that is not registered.")
     _short(_object(claims, f"{_CLAIM}resource_link").get("id"), "The ID of the link")

@@ -133,7 +133,7 @@ class LtiServer:
             name: values[name] for name in ("login_hint", "lti_message_hint") if name in values
         }
         if "login_hint" not in hints or any(len(hint) > LONGEST_HINT for hint in hints.values()):
-            raise RefusedLaunchError("The platform does not say, or not in brief, who logs in.")
+            raise RefusedLaunchError("The platform's login_hint is missing, or a hint is too long.")
         browser = _browser(request) or new_secret()
         state, nonce = self._logins.begin(platform, browser)
         query = {
