@@ -14,7 +14,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.journal.recording import WholeRecording
-from rastrainer.protocol import AbortReason, CommandName, Phase
+from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, CommandName, Phase
 from rastrainer.scenario.method_task import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint
@@ -177,7 +177,10 @@ def _interrupted_attempt(entries: tuple[Mapping[str, Any], ...]) -> AbortedTrial
         )
         for touch in trajectory.touches
     )
-    phase = [entry["phase"] for entry in entries if entry["kind"] in ("phase", "continued")][-1]
+    phases = [entry["phase"] for entry in entries if entry["kind"] in ("phase", "continued")]
+    stage = next((phase for phase in reversed(phases) if phase != Phase.PAUSED.value), "")
+    # A procedure that is paused is aborted in what it was paused in.
+    phase = stage if stage in {phase.value for phase in PROCEDURE_PHASES} else phases[-1]
     if phase == Phase.COMPLETE.value:
         elapsed_s = trajectory.intended[-1].time_s
     else:

@@ -262,6 +262,7 @@ class TrialEntries:
     def aborted(self, before: SimulationState, reason: str, utc: str) -> AbortedTrial:
         """Return the record of a trial that was aborted in a state, for a reason, at a time."""
         training = before.training
+        stage = training.phase if training.procedure is None else training.procedure.stage
         return AbortedTrial(
             trial_id=training.trial_id,
             trainee=training.trainee,
@@ -271,7 +272,8 @@ class TrialEntries:
             started_utc=self.started_utc,
             aborted_utc=utc,
             elapsed_s=before.elapsed,
-            phase=training.phase.value,
+            # A procedure that is paused is aborted in what it was paused in.
+            phase=(stage if stage in PROCEDURE_PHASES else training.phase).value,
             reason=reason,
             points=self._points(training),
             rejected_touches=training.rejected,

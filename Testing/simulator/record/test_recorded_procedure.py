@@ -290,6 +290,18 @@ def test_an_abort_in_a_phase_is_kept_with_the_phase(simulation, tmp_path, phase)
     assert AbortedTrial.from_json(json.loads(json.dumps(record.to_json()))) == record
 
 
+def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simulation, tmp_path):
+    with Theatre(simulation, tmp_path) as server:
+        server.to(Phase.DRILLING)
+        server.must(CommandName.PAUSE)
+        server.loop._writer.submit(lambda: None).result()
+        left = interrupted_attempt(read_journal(server.path))
+        server.must(CommandName.ABORT, reason="trainee")
+        server.loop._writer.submit(lambda: None).result()
+        (record,) = server.loop.unacknowledged()
+    assert (record.phase, left.phase) == ("drilling", "drilling")
+
+
 def test_a_procedure_that_nobody_continues_counts_as_aborted_in_its_phase(simulation, tmp_path):
     with Theatre(simulation, tmp_path) as server:
         server.to(Phase.DRILLING)
