@@ -80,7 +80,12 @@ class CourseStudy:
         if pseudonym is None:
             # Consent to research is asked for in the lab, not by a course.
             pseudonym = self._study.create_trainee().pseudonym
-            self._links.link(issuer, subject, pseudonym)
+            try:
+                self._links.link(issuer, subject, pseudonym)
+            except InputError:
+                # Otherwise each further click would add a trainee whom nobody is.
+                self._study.delete_trainee(pseudonym)
+                raise
         if launch.line_item:
             self._links.put(_assignment(launch))
         terms = launch.terms

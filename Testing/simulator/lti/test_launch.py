@@ -7,6 +7,7 @@ import stat
 
 import jwt
 
+from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
 from rastrainer.study.platform_links import PlatformLinks
 from rastrainer_simulator.lti.course_study import CourseStudy
@@ -83,6 +84,20 @@ def test_a_learner_who_comes_while_deleted_ones_are_forgotten_is_not_forgotten(
     course.forget_deleted()
     course.close()
     assert [pseudonym_in(browser.launch("user-late")[1])] == pseudonyms
+
+
+def test_a_link_that_cannot_be_written_leaves_no_trainee_behind(lab, browser, monkeypatch):
+    before = lab.trainees()
+
+    def full(*_link):
+        raise InputError("The disk is full.")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(PlatformLinks, "link", full)
+        for _click in range(3):
+            assert browser.launch("user-unlinked")[0] == 503
+    assert lab.trainees() == before
+    assert browser.launch("user-unlinked")[0] == 200
 
 
 def test_a_teacher_sees_what_the_link_asks_for_and_gets_no_pseudonym(lab, browser):
