@@ -22,13 +22,28 @@ from rastrainer_simulator.board.seat_client import (
 from rastrainer_simulator.board.seat_list import SeatEntry
 from rastrainer_simulator.net.views.messages import BOARD, HELLO
 from rastrainer_simulator.net.views.outgoing import SEAT
+from rastrainer_simulator.ops.texts.typesetting import NARROW_SPACE, NO_BREAK_SPACE
 from rastrainer_simulator.state import TouchStage
 
 RETRY_S = 2.0
 MOST_WARNINGS = 8
 _HELLO = json.dumps({"type": HELLO, "kind": BOARD, "device": "", "refreshHz": 0})
-_sentence = text(600, min_length=0)
-_short = text(200, min_length=0)
+_SPACES = str.maketrans({NARROW_SPACE: " ", NO_BREAK_SPACE: " "})
+"""French and Chinese texts have spaces that count as not printable."""
+
+
+def _words(longest: int) -> Callable[[Any], str]:
+    """Accept words of a simulator in any language."""
+    check = text(longest, min_length=0)
+
+    def checked(value: Any) -> str:
+        check(value.translate(_SPACES) if isinstance(value, str) else value)
+        return str(value)
+
+    return checked
+
+
+_sentence, _short = _words(600), _words(200)
 
 
 def _sentences(value: Any) -> list[str]:

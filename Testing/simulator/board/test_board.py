@@ -12,6 +12,7 @@ from rastrainer_simulator.board.seat_list import SEATS_FILE
 from rastrainer_simulator.board.watched_seat import checked_seat
 from rastrainer_simulator.net.views.presenter import Seat
 from rastrainer_simulator.net.views.sessions import BOARDS_FILE
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from Testing.simulator.board.conftest import PIN, WatchedSimulator
 from Testing.simulator.net.views.served import HELLO, request
 
@@ -279,6 +280,20 @@ def test_a_seat_that_says_what_no_simulator_says_is_not_shown(name, value):
     assert checked_seat(good_seat()) == good_seat()
     with pytest.raises(ValueError, match=f"The seat's {name} must be"):
         checked_seat({**good_seat(), name: value})
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_seat_is_shown_in_every_language(language):
+    texts = Texts(LANGUAGES[language])
+    said = {
+        "task": texts.say("task.task-1"),
+        "instruction": texts.say("start", trainee="P07", point="3"),
+        "warnings": [texts.say("warning.pressing", depth=1.5), texts.say("warning.slicer")],
+        "assignments": texts.say("assignments.next in brief", assignment="1", progress="5 %"),
+        "language": language,
+    }
+    seat = {**good_seat(), **said}
+    assert checked_seat(seat) == seat
 
 
 def test_a_seat_with_too_many_warnings_shows_the_first_and_one_that_lacks_something_is_refused():
