@@ -9,19 +9,24 @@ import { writtenLanguage } from "../texts/typesetting";
 
 export type BoardText = keyof english.BoardTexts;
 
-const TABLES: Readonly<Record<string, english.BoardTexts>> = {
-  en: english.BOARD,
-  de: german.BOARD,
-  fr: french.BOARD,
-  es: spanish.BOARD,
-  zh: chinese.BOARD,
-};
+interface Texts {
+  PAGE: english.PageTexts;
+  BOARD: english.BoardTexts;
+}
+
+const LANGUAGES: Readonly<Record<string, Texts>> = { en: english, de: german, fr: french, es: spanish, zh: chinese };
 const language = navigator.language.slice(0, 2);
-const table = TABLES[language] ?? english.BOARD;
-document.documentElement.lang = language in TABLES ? writtenLanguage(language) : "en";
+const { PAGE, BOARD } = LANGUAGES[language] ?? english;
+document.documentElement.lang = language in LANGUAGES ? writtenLanguage(language) : "en";
+
+/** What drives an arm, as the page of its seat calls it. */
+export function holderName(holder: string): string {
+  const name = `source.${holder}`;
+  return name in PAGE ? PAGE[name as keyof english.PageTexts] : holder;
+}
 
 export function say(name: BoardText, values: Readonly<Record<string, string>> = {}): string {
-  return table[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole);
+  return BOARD[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole);
 }
 
 /** Return a figure with the language's decimal sign. */

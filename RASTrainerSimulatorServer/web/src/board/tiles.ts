@@ -2,7 +2,7 @@
 
 import { element } from "../elements";
 import { isTouchError, type TouchStage } from "../messages";
-import { figure, say, type BoardText } from "./texts";
+import { figure, holderName, say, type BoardText } from "./texts";
 
 export type Order = "pause" | "say" | "replay";
 export type Phase =
@@ -142,7 +142,7 @@ function factsOf(seat: SeatNews): [string, string][] {
   if (seat.assignments !== "") facts.push([say("assignments"), seat.assignments]);
   facts.push(
     [say("score"), seat.score === null ? say("none") : `${figure(seat.score, 1)} / 100`],
-    [say("driven"), seat.holder || say("none")],
+    [say("driven"), seat.holder === "" ? say("none") : holderName(seat.holder)],
     [say("slicer"), say(seat.slicer ? "connected" : "missing")],
   );
   return facts;
