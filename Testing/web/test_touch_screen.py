@@ -7,7 +7,8 @@ import pytest
 
 from Testing.web.chromium import open_page
 from Testing.web.place import WITHOUT_GRAPHICS, Place
-from Testing.web.tapping_trainee import PHONE, TappingTrainee
+from Testing.web.tapping_trainee import PHONE, SteeringTrainee, TappingTrainee
+from Testing.web.test_mouse import PATIENT, SLOW
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +35,7 @@ def page(place, browser):
 def steering(place, page, trainee):
     """Somebody whose trial runs, begun by tapping."""
     if place.view.state["phase"] != "running":
-        trainee.go_to_experiment()
-        trainee.write_id()
-        trainee.begin_task("task-1")
-        trainee.until(lambda: place.view.state["phase"] == "running", "the trial")
+        trainee.begin_by_taps("task-1")
     page.wait_for_selector("#touch-controls")
     return trainee
 
@@ -72,3 +70,22 @@ def test_what_is_said_to_press_is_written_on_the_buttons(place, page, steering):
     hints = {hint.control for hint in place.view.screen.hints if "stick" not in hint.control}
     buttons = page.query_selector_all("#touch-controls button:not([hidden])")
     assert hints == {button.inner_text() for button in buttons}
+
+
+@pytest.mark.soak
+def test_by_two_thumbs_alone_a_whole_trial_is_touched_and_scored(tmp_path, browser):
+    with Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any") as place:
+        simulator = place.simulator
+        page = open_page(
+            browser, simulator.url, simulator.code, size=PHONE, has_touch=True, draws=False
+        )
+        trainee = SteeringTrainee(place, page)
+        trainee.begin_by_taps("task-1")
+        page.wait_for_selector("#touch-controls .stick")
+        trainee.touch_all()
+        trainee.register()
+        trainee.until_menu("result")
+        assert trainee.menu.facts[0].label == "Score"
+        assert len(place.entries("touch")) == 15
+        assert {entry["operator"] for entry in place.entries("input")} <= {"touch screen", ""}
+        assert page.problems == []
