@@ -26,7 +26,10 @@ STEPS = {"up": (0, -1), "down": (0, 1), "left": (-1, 0), "right": (1, 0)}
 _POINT = """async (name) => {
   const { boards, placement } = page.headset;
   const has = (board) => board.regions.some((region) => region.name === name);
-  const board = [boards.menu, boards.actions, boards.work].find(has);
+  const find = () => [boards.menu, boards.actions, boards.work].find(has);
+  // The simulator's menu may not have been drawn yet.
+  for (let frame = 0; frame < 300 && !find(); frame++) await frames_(1);
+  const board = find();
   if (!board) return;
   const { x, y, width, height } = board.regions.find((region) => region.name === name);
   const size = board.mesh.geometry.parameters;
