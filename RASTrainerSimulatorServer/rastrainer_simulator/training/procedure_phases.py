@@ -7,7 +7,7 @@ the true distances in the moment of LockGuide only decide whether the guide may 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS
@@ -30,6 +30,7 @@ from rastrainer_simulator.registration_state import (
 from rastrainer_simulator.state import EventKind, TrainingState
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
+from rastrainer_simulator.training.replies import RefusedStep, TrialStep
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
 
 if TYPE_CHECKING:
@@ -53,37 +54,6 @@ OF_A_PROCEDURE = (
     CommandName.RELEASE_INSTRUMENT,
 )
 """Commands that lead a procedure from one phase to the next."""
-
-
-@dataclass(frozen=True)
-class PhaseStep:
-    """What a command leads to.
-
-    Attributes:
-        state: of the trial.
-        key: of the instruction that goes with it.
-        values: that are filled in.
-        data: goes into the answer and the event, ready for JSON.
-        recorded: goes into the event alone: clients never learn it.
-        kind: of the event.
-        feed: what is in the guide from now on; None as before.
-    """
-
-    state: TrainingState
-    key: str
-    values: Mapping[str, Any] = field(default_factory=dict)
-    data: Mapping[str, Any] = field(default_factory=dict)
-    recorded: Mapping[str, Any] = field(default_factory=dict)
-    kind: EventKind = EventKind.PHASE
-    feed: Feed | None = None
-
-
-@dataclass(frozen=True)
-class RefusedStep:
-    """Why a command is refused; `data` is that of a touch that does not count."""
-
-    sentence: str
-    data: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -124,7 +94,7 @@ class ProcedurePhases:
         self._settings = settings
         self._texts = texts
         self._handlers: Mapping[
-            str, Callable[[ProcedureMoment, OperatorCommand], PhaseStep | RefusedStep]
+            str, Callable[[ProcedureMoment, OperatorCommand], TrialStep | RefusedStep]
         ] = {
             CommandName.REGISTER: self._verify,
             CommandName.CAPTURE: self._check_point,
@@ -139,30 +109,30 @@ class ProcedurePhases:
 
     def step(
         self, command: OperatorCommand, state: TrainingState, now: TouchMoment, elapsed: float
-    ) -> PhaseStep | RefusedStep:
+    ) -> TrialStep | RefusedStep:
         """Return what a command leads to that is allowed in the phase of a state."""
         return self._handlers[command.name](ProcedureMoment(state, now, elapsed), command)
 
-    def resumed(self, state: TrainingState) -> PhaseStep:
+    def resumed(self, state: TrainingState) -> TrialStep:
         """Return the step by which a paused procedure continues in its stage."""
         procedure = state.procedure
         assert procedure is not None
         running = replace(state, phase=procedure.stage)
         if procedure.stage is Phase.VERIFYING:
             if procedure.registration is None:
-                return PhaseStep(running, "verifying")
-            return PhaseStep(running, "verify", {"fre": procedure.registration.fre_mm})
+                return TrialStep(running, "verifying")
+            return TrialStep(running, "verify", {"fre": procedure.registration.fre_mm})
         name = _present(state).line.name
-        return PhaseStep(running, AT_EACH_STAGE[procedure.stage], {"name": name})
+        return TrialStep(running, AT_EACH_STAGE[procedure.stage], {"name": name})
 
-    def _verify(self, moment: ProcedureMoment, _command: OperatorCommand) -> PhaseStep:
+    def _verify(self, moment: ProcedureMoment, _command: OperatorCommand) -> TrialStep:
         elapsed_s = moment.state.completed_s
         data = {"completionTimeS": elapsed_s}
-        return PhaseStep(moment.entering(Phase.VERIFYING), "verifying", data=data)
+        return TrialStep(moment.entering(Phase.VERIFYING), "verifying", data=data)
 
     def _use_registration(
         self, moment: ProcedureMoment, command: OperatorCommand
-    ) -> PhaseStep | RefusedStep:
+    ) -> TrialStep | RefusedStep:
         """Show the plan by a registration from now on; a second one is refused unless equal."""
         registration = FinalRegistration.from_arguments(command.arguments)
         known = moment.procedure.registration
@@ -187,11 +157,11 @@ class ProcedurePhases:
                 "expectedTreMm": used.expected_tre_mm,
             }
         }
-        return PhaseStep(state, "verify", {"fre": used.fre_mm}, data)
+        return TrialStep(state, "verify", {"fre": used.fre_mm}, data)
 
     def _check_point(
         self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> PhaseStep | RefusedStep:
+    ) -> TrialStep | RefusedStep:
         """Touch the nearest checkpoint; its error is by the trainee's own registration."""
         procedure, now = moment.procedure, moment.now
         name, error = self._nearest_checkpoint(procedure, now)
@@ -210,7 +180,7 @@ class ProcedurePhases:
         error_mm = MM_PER_M * error
         data = {**place, "errorMm": error_mm, "kept": len(checkpoints)}
         said = {"name": name, "error": error_mm}
-        return PhaseStep(state, "checked", said, data, kind=EventKind.CHECKPOINT)
+        return TrialStep(state, "checked", said, data, kind=EventKind.CHECKPOINT)
 
     def _nearest_checkpoint(self, procedure: ProcedureState, now: TouchMoment) -> tuple[str, float]:
         """Return the checkpoint nearest to the tip by the registration in use, and how far, m."""
@@ -242,17 +212,17 @@ class ProcedurePhases:
 
     def _accept(
         self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> PhaseStep | RefusedStep:
+    ) -> TrialStep | RefusedStep:
         procedure = moment.procedure
         if procedure.registration is None:
             return RefusedStep(self._texts.say("not in use yet"))
         attempts = (*procedure.attempts, _attempt(moment))
         state = moment.entering(Phase.ALIGNING, attempts=attempts, trajectory=0)
-        return PhaseStep(state, "align", {"name": procedure.trajectories[0].line.name})
+        return TrialStep(state, "align", {"name": procedure.trajectories[0].line.name})
 
     def _register_again(
         self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> PhaseStep | RefusedStep:
+    ) -> TrialStep | RefusedStep:
         """Touch all points again; what was touched stays in the record as an attempt."""
         attempts = (*moment.procedure.attempts, _attempt(moment))
         if len(attempts) >= MAX_ATTEMPTS:
@@ -262,9 +232,9 @@ class ProcedurePhases:
         )
         trace = None if state.trace is None else TraceState()
         again = replace(state, touches=(), next_point=self._labels[0], trace=trace)
-        return PhaseStep(again, "register again", {"point": self._labels[0]})
+        return TrialStep(again, "register again", {"point": self._labels[0]})
 
-    def _lock(self, moment: ProcedureMoment, _command: OperatorCommand) -> PhaseStep | RefusedStep:
+    def _lock(self, moment: ProcedureMoment, _command: OperatorCommand) -> TrialStep | RefusedStep:
         """Lock the guide where it is, if a drill in it would meet the head."""
         now, limit_mm = moment.now, STAND_OFF_LIMIT_MM
         ahead = now.feed.ahead
@@ -285,7 +255,7 @@ class ProcedurePhases:
             is_self_aligned=GuideAlignment.of(guide, aligned.line).is_exact,
             drill_depth=0.0,
         )
-        return PhaseStep(
+        return TrialStep(
             _with_present(entered, locked),
             "drill",
             {"name": locked.line.name},
@@ -299,23 +269,23 @@ class ProcedurePhases:
 
     def _retract(
         self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> PhaseStep | RefusedStep:
+    ) -> TrialStep | RefusedStep:
         """Take the drill out and align again: only before it has cut bone."""
         if moment.now.feed.has_cut_bone:
             return RefusedStep(self._texts.say("bone is cut"))
         state = moment.entering(Phase.ALIGNING)
-        return PhaseStep(state, "realign", {"name": _present(state).line.name}, feed=NO_FEED)
+        return TrialStep(state, "realign", {"name": _present(state).line.name}, feed=NO_FEED)
 
     def _start_insertion(
         self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> PhaseStep | RefusedStep:
+    ) -> TrialStep | RefusedStep:
         """Exchange the drill for the instrument, which begins at the guide's tip."""
         feed = moment.now.feed
         if feed.drilled <= 0.0:
             return RefusedStep(self._texts.say("nothing drilled"))
         entered = moment.entering(Phase.INSERTING)
         drilled = replace(_present(entered), drill_depth=feed.drilled)
-        return PhaseStep(
+        return TrialStep(
             _with_present(entered, drilled),
             "insert",
             {"name": drilled.line.name},
@@ -324,7 +294,7 @@ class ProcedurePhases:
 
     def _release(
         self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> PhaseStep | RefusedStep:
+    ) -> TrialStep | RefusedStep:
         """Leave the instrument where it is; the next line follows, or the end."""
         depth = moment.now.feed.depth
         if depth <= 0.0:
@@ -338,10 +308,10 @@ class ProcedurePhases:
         assert state.procedure is not None
         if is_last:
             ended = replace(state.procedure, ended_s=moment.elapsed)
-            return PhaseStep(replace(state, procedure=ended), "procedure done", feed=NO_FEED)
+            return TrialStep(replace(state, procedure=ended), "procedure done", feed=NO_FEED)
         onward = replace(state, procedure=replace(state.procedure, trajectory=following))
         name = procedure.trajectories[following].line.name
-        return PhaseStep(onward, "align next", {"name": name}, feed=NO_FEED)
+        return TrialStep(onward, "align next", {"name": name}, feed=NO_FEED)
 
 
 def _attempt(moment: ProcedureMoment) -> RegistrationAttempt:

@@ -1,4 +1,4 @@
-"""Replies to the commands of a trial, and what they and events say about it, in mm."""
+"""What a command of a trial leads to, and the reply to it."""
 
 from __future__ import annotations
 
@@ -6,14 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 from rastrainer.registration.methods import RegistrationMethod
-from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.state import Event, TrainingState
+from rastrainer_simulator.state import Event, EventKind, TrainingState
 from rastrainer_simulator.training.feed import Feed
-from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import vector
 
 
 @dataclass(frozen=True)
@@ -25,6 +20,39 @@ class TrainingReply:
     data: Mapping[str, Any] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
     feed: Feed | None = None
+
+
+@dataclass(frozen=True)
+class TrialStep:
+    """What a command leads to.
+
+    Attributes:
+        state: of the trial.
+        key: of the instruction that goes with it.
+        values: that are filled in.
+        data: goes into the answer and the event, ready for JSON.
+        recorded: goes into the event alone: clients never learn it.
+        answered: goes into the answer alone.
+        kind: of the event; another than that of a phase is followed by one if the phase changes.
+        feed: what is in the guide from now on; None as before.
+    """
+
+    state: TrainingState
+    key: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+    data: Mapping[str, Any] = field(default_factory=dict)
+    recorded: Mapping[str, Any] = field(default_factory=dict)
+    answered: Mapping[str, Any] = field(default_factory=dict)
+    kind: EventKind = EventKind.PHASE
+    feed: Feed | None = None
+
+
+@dataclass(frozen=True)
+class RefusedStep:
+    """Why a command is refused; `data` is that of a touch that does not count."""
+
+    sentence: str
+    data: Mapping[str, Any] | None = None
 
 
 def summary(state: TrainingState) -> dict[str, Any]:
@@ -46,32 +74,3 @@ def summary(state: TrainingState) -> dict[str, Any]:
     if state.trace is not None:
         data["traced"] = len(state.trace.points)
     return data
-
-
-def given(state: TrainingState) -> dict[str, Any]:
-    """Return what a trial is registered by: its touches and its trace, in double precision."""
-    trace = state.trace
-    if trace is None:
-        return {"touches": _touched(state)}
-    traced = [[*(MM_PER_M * x for x in p.position), p.sim_time] for p in trace.points]
-    return {"touches": _touched(state), "trace": traced}
-
-
-def _touched(state: TrainingState) -> list[dict[str, Any]]:
-    return [
-        {
-            "label": touch.label,
-            "positionMm": [MM_PER_M * value for value in touch.position],
-            "simTime": touch.sim_time,
-        }
-        for touch in state.touches
-    ]
-
-
-def revealed(truth: Truth, state: TrainingState, matrix: tuple[float, ...]) -> dict[str, Any]:
-    """Return the truth that a registration reveals; `matrix` is WorldToHead, 16 floats, mm."""
-    touches = (
-        (touch.label, vector(MM_PER_M * value for value in touch.position))
-        for touch in state.touches
-    )
-    return truth.revealed(np.array(matrix, dtype=float).reshape(4, 4), touches)

@@ -13,6 +13,7 @@ from rastrainer.protocol import MIN_TRACE_POINTS, TRACE_SPACING_MM, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.registration_state import TracedPoint, TraceState
 from rastrainer_simulator.state import Event, EventKind, TrainingState
+from rastrainer_simulator.training.replies import TrialStep
 from rastrainer_simulator.training.rules import TOO_DEEP_MM, TouchMoment, TrainingSettings
 from rastrainer_simulator.vectors import Vector, distance
 
@@ -64,6 +65,13 @@ def tip_data(now: TouchMoment, measured: Vector) -> dict[str, Any]:
 def stroke_data(trace: TraceState) -> dict[str, Any]:
     """Return the data of a trace where a stroke begins, ends or is undone."""
     return {"on": trace.is_on, "kept": len(trace.points), "strokes": len(trace.strokes)}
+
+
+def stroke(state: TrainingState, **others: bool) -> TrialStep:
+    """Return the step to a state in which a stroke has begun, is ended or undone."""
+    assert state.trace is not None
+    data = {**stroke_data(state.trace), **others}
+    return TrialStep(state, instruction(state), counts(state.trace), data, kind=EventKind.STROKE)
 
 
 def begun(state: TrainingState) -> TrainingState:

@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
-from rastrainer.head.skin_shift import SkinShift
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
-from rastrainer.scenario.method_task import TRACED_METHODS, method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.procedure_state import ProcedureState
-from rastrainer_simulator.registration_state import FinalRegistration, TouchState, TraceState
-from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
+from rastrainer_simulator.registration_state import TouchState
+from rastrainer_simulator.state import Event, EventKind, TrainingState
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
-from rastrainer_simulator.training.placed_head import PlacedHead
-from rastrainer_simulator.training.procedure_phases import (
-    OF_A_PROCEDURE,
-    PhaseStep,
-    ProcedurePhases,
-    RefusedStep,
+from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE, ProcedurePhases
+from rastrainer_simulator.training.registered_trial import (
+    take_registration,
+    take_score,
+    trial_data,
 )
-from rastrainer_simulator.training.replies import TrainingReply, given, revealed, summary
+from rastrainer_simulator.training.replies import RefusedStep, TrainingReply, TrialStep, summary
 from rastrainer_simulator.training.rules import (
     INTERRUPTED,
     RECORDING_FAILED,
@@ -35,8 +31,15 @@ from rastrainer_simulator.training.rules import (
     refusal,
     refused_touch,
 )
-from rastrainer_simulator.training.trial_clock import KeptStates, TrialClock, trial_id, trial_seed
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.trial_clock import (
+    KeptStates,
+    TrialClock,
+    interrupted,
+    paused,
+    resumed,
+)
+from rastrainer_simulator.training.trial_start import TrialStarter
+from rastrainer_simulator.training.true_error import PlacedHead, Truth
 from rastrainer_simulator.vectors import Vector
 
 if TYPE_CHECKING:
@@ -60,12 +63,12 @@ class Training:
         procedure: ProcedureSettings | None = None,
     ) -> None:
         self._scenario = scenario
-        self._seed = seed
         self._settings = settings or TrainingSettings()
-        self._procedure_settings = procedure or ProcedureSettings()
-        self._phases: ProcedurePhases | None = None
         self._texts = texts or Texts()
-        self._number = 0
+        self._starter = TrialStarter(
+            scenario, seed, self._settings, procedure or ProcedureSettings(), self._texts
+        )
+        self._phases: ProcedurePhases | None = None
         self._clock = TrialClock(0.0)
         self._task: Task | None = None
         self._head = PlacedHead.nominal(scenario)
@@ -147,82 +150,43 @@ class Training:
         return len(self._task.labels) if self._task else 0
 
     def elapsed(self, sim_time: float) -> float:
-        """Return the trial's time in s, pauses excluded.
-
-        It ends with the last point that was touched or traced, or with the procedure.
-        """
-        phase, procedure = self.state.phase, self.state.procedure
-        if phase is Phase.IDLE:
-            return 0.0
-        if procedure is not None and procedure.ended_s is not None:
-            return procedure.ended_s
-        if procedure is not None or phase in (Phase.RUNNING, Phase.PAUSED):
-            return self._clock.elapsed(sim_time)
-        return self.state.completed_s
+        """Return the trial's time in s, pauses excluded."""
+        return self._clock.time_of(self.state, sim_time)
 
     def _start(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        arguments = command.arguments
-        chosen_procedure = arguments.get("procedure") or ""
-        skin = SkinShift.from_json(arguments.get("skin") or self._scenario.skin.amounts)
         try:
-            method = method_of(arguments.get("method"))
-            task = task_by_method(self._scenario, arguments["task"], method)
-            phases = self._phases_of(chosen_procedure, task)
-            number, chosen = self._number, arguments.get("seed")
-            seed = trial_seed(self._seed, number) if chosen is None else chosen
-            self._head = PlacedHead.of_trial(self._scenario, task, seed, skin)
+            started = self._starter.start(command.arguments, self.state.revision)
         except InputError as error:
             return TrainingReply(False, str(error))
-        self._number += 1
-        self.trial_seed, self._task, self._phases = seed, task, phases
-        self._clock = TrialClock(now.sim_time)
-        idle = TrainingState(revision=self.state.revision)
-        self._kept.begin(idle)
-        started = TrainingState(
-            phase=Phase.RUNNING,
-            trainee=arguments["trainee"],
-            task=task.name,
-            mode=arguments["mode"],
-            trial_id=arguments.get("trialId") or trial_id(self._seed, number),
-            next_point=task.labels[0],
-            revision=self.state.revision,
-            procedure=ProcedureState(chosen_procedure) if chosen_procedure else None,
-            method=method,
-            trace=TraceState() if method in TRACED_METHODS else None,
-        )
-        event = self._enter(started, "start", now)
+        self.trial_seed, self._task, self._phases = started.seed, started.task, started.phases
+        self._head, self._clock = started.head, TrialClock(now.sim_time)
+        self._kept.begin(TrainingState(revision=self.state.revision))
+        event = self._enter(started.state, "start", now)
         return TrainingReply(True, data=summary(self.state), events=(event,))
-
-    def _phases_of(self, procedure: str, task: Task) -> ProcedurePhases | None:
-        """Return the phases of a procedure, None without one.
-
-        Raises:
-            InputError: the scenario has no such procedure.
-        """
-        if not procedure:
-            return None
-        plan = self._scenario.procedure(procedure)
-        settings = self._procedure_settings
-        return ProcedurePhases(plan, task.labels, self._settings, settings, self._texts)
 
     def _in_procedure(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Carry out a command of the procedure in its phase."""
         assert self._phases is not None, "the phase has a procedure"
         elapsed = self._clock.elapsed(now.sim_time)
         step = self._phases.step(command, self.state, now, elapsed)
-        if isinstance(step, PhaseStep):
+        if isinstance(step, TrialStep):
             return self._taken(step, now)
         return self._refused(step, now)
 
-    def _taken(self, step: PhaseStep, now: TouchMoment) -> TrainingReply:
+    def _taken(self, step: TrialStep, now: TouchMoment) -> TrainingReply:
+        """Take on the state of a step; what is no change of phase itself may lead to one."""
+        answer = {**step.data, **step.answered}
         if step.kind is EventKind.PHASE:
             event = self._enter(step.state, step.key, now, **step.values)
             event = replace(event, data={**event.data, **step.data, **step.recorded})
-            data = {**summary(self.state), **step.data}
-            return TrainingReply(True, data=data, events=(event,), feed=step.feed)
-        self._keep(step.state, step.key, **step.values)
-        event = Event(step.kind, now.sim_time, step.data)
-        return TrainingReply(True, data=step.data, events=(event,), feed=step.feed)
+            answer = {**summary(self.state), **answer}
+            return TrainingReply(True, data=answer, events=(event,), feed=step.feed)
+        events = [Event(step.kind, now.sim_time, step.data)]
+        if step.state.phase is self.state.phase:
+            self._keep(step.state, step.key, **step.values)
+        else:
+            events.append(self._enter(step.state, step.key, now, **step.values))
+        return TrainingReply(True, data=answer, events=tuple(events), feed=step.feed)
 
     def _refused(self, step: RefusedStep, now: TouchMoment) -> TrainingReply:
         if step.data is None:
@@ -248,27 +212,23 @@ class Training:
             "depthMm": MM_PER_M * now.depth,
         }
         if sentence is not None:
-            self.state = replace(state, rejected=state.rejected + 1, instruction=sentence)
-            data = {**place, "message": sentence}
-            return TrainingReply(
-                False, sentence, events=(Event(EventKind.REJECTED, now.sim_time, data),)
-            )
+            self.state = replace(state, rejected=state.rejected + 1)
+            return self._refused(RefusedStep(sentence, {**place, "message": sentence}), now)
         touch = TouchState(label, measured, now.sim_time, self._clock.elapsed(now.sim_time))
         touches = (*state.touches, touch)
         data = {**place, "kept": len(touches)}
-        event = Event(EventKind.TOUCH, now.sim_time, data)
-        if len(touches) == len(task.labels) and state.trace is not None:
-            self._keep_traced(replace(state, touches=touches, next_point=None))
-            return TrainingReply(True, data={**data, "nextPoint": None}, events=(event,))
-        if len(touches) == len(task.labels):
-            complete = replace(state, phase=Phase.COMPLETE, touches=touches, next_point=None)
-            return TrainingReply(
-                True, data=data, events=(event, self._enter(complete, "complete", now))
-            )
-        following = task.labels[len(touches)]
+        following = task.labels[len(touches)] if len(touches) < len(task.labels) else None
         touched = replace(state, touches=touches, next_point=following)
-        self._keep(touched, "touched", label=label)
-        return TrainingReply(True, data={**data, "nextPoint": following}, events=(event,))
+        answered: Mapping[str, object] = {"nextPoint": following}
+        key = "touched"
+        values: Mapping[str, object] = {"label": label}
+        if following is None and state.trace is not None:
+            key, values = tracing.instruction(touched), tracing.counts(state.trace)
+        elif following is None:
+            touched = replace(touched, phase=Phase.COMPLETE)
+            key, values, answered = "complete", {}, {}
+        step = TrialStep(touched, key, values, data, answered=answered, kind=EventKind.TOUCH)
+        return self._taken(step, now)
 
     def _trace(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Begin or end a stroke; a command that has come before changes nothing."""
@@ -277,7 +237,7 @@ class Training:
         if on == trace.is_on:
             return TrainingReply(True, data=tracing.stroke_data(trace))
         state = tracing.begun(self.state) if on else tracing.ended(self.state)
-        return self._stroke(state, now)
+        return self._taken(tracing.stroke(state), now)
 
     def _traced(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Add a point to the stroke, which ends with the last one that a trial takes."""
@@ -286,33 +246,17 @@ class Training:
         event, trace = tracing.point_event(self.state, now), self.state.trace
         if trace is None or not trace.is_full:
             return TrainingReply(True, events=(event,))
-        over = self._stroke(tracing.ended(self.state), now)
+        over = self._taken(tracing.stroke(tracing.ended(self.state)), now)
         return replace(over, events=(event, *over.events))
-
-    def _stroke(self, state: TrainingState, now: TouchMoment, **others: bool) -> TrainingReply:
-        """Take on a state in which a stroke has begun, is ended or undone."""
-        assert state.trace is not None
-        data = {**tracing.stroke_data(state.trace), **others}
-        event = Event(EventKind.STROKE, now.sim_time, data)
-        if state.phase is self.state.phase:
-            self._keep_traced(state)
-            return TrainingReply(True, data=data, events=(event,))
-        phase = self._enter(state, tracing.instruction(state), now, **tracing.counts(state.trace))
-        return TrainingReply(True, data=data, events=(event, phase))
-
-    def _keep_traced(self, state: TrainingState) -> None:
-        assert state.trace is not None
-        self._keep(state, tracing.instruction(state), **tracing.counts(state.trace))
 
     def _undo(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         state = self.state
         if state.trace is not None and state.trace.strokes:
-            return self._stroke(tracing.undone(state), now, undone=True)
+            return self._taken(tracing.stroke(tracing.undone(state), undone=True), now)
         if not state.touches:
             return TrainingReply(False, self._texts.say("nothing to undo", point=state.next_point))
         label = state.touches[-1].label
         data = {"label": label, "kept": len(state.touches) - 1, "nextPoint": label}
-        events = [Event(EventKind.UNDO, now.sim_time, data)]
         undone = replace(
             state,
             phase=Phase.RUNNING,
@@ -320,18 +264,15 @@ class Training:
             next_point=label,
             undone=state.undone + 1,
         )
-        if state.phase is Phase.RUNNING:
-            self._keep(undone, "undone", label=label)
-        else:
-            events.append(self._enter(undone, "undone", now, label=label))
-        return TrainingReply(True, data=data, events=tuple(events))
+        step = TrialStep(undone, "undone", {"label": label}, data, kind=EventKind.UNDO)
+        return self._taken(step, now)
 
     def _register(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         if self._phases is not None:
             return self._in_procedure(command, now)
-        event = self._enter(replace(self.state, phase=Phase.REGISTERED), "registered", now)
-        data = {**summary(self.state), "completionTimeS": self.state.completed_s}
-        return TrainingReply(True, data=data, events=(event,))
+        registered = replace(self.state, phase=Phase.REGISTERED)
+        answered = {"completionTimeS": self.state.completed_s}
+        return self._taken(TrialStep(registered, "registered", answered=answered), now)
 
     def _abort(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         aborted = self.state
@@ -343,8 +284,7 @@ class Training:
 
     def _pause(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         self._clock.pause(now.sim_time)
-        paused = replace(tracing.ended(self.state), phase=Phase.PAUSED)
-        return TrainingReply(True, events=(self._enter(paused, "paused", now),))
+        return self._entered(TrialStep(paused(self.state), "paused"), now)
 
     def _resume(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         self._clock.resume(now.sim_time)
@@ -352,59 +292,20 @@ class Training:
         if procedure is not None and procedure.stage in PROCEDURE_PHASES:
             assert self._phases is not None
             return self._taken(self._phases.resumed(self.state), now)
-        running, trace = replace(self.state, phase=Phase.RUNNING), self.state.trace
-        if trace is None or self.state.next_point is not None:
-            return TrainingReply(True, events=(self._enter(running, "resumed", now),))
-        resumed = tracing.ended(running)
-        key = tracing.instruction(resumed)
-        event = self._enter(resumed, key, now, **tracing.counts(trace))
-        return TrainingReply(True, events=(event,))
+        return self._entered(resumed(self.state), now)
 
     def _take_registration(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        """Accept a registration, which becomes final, and reveal the truth."""
-        known = self.state.registration
-        registration = FinalRegistration.from_arguments(command.arguments)
-        if known is not None and not known.agrees_with(registration):
-            return TrainingReply(False, self._texts.say("registration is final"))
-        matrix = registration.matrix if known is None else known.matrix
-        data = {"trialId": self.state.trial_id, **revealed(self.truth, self.state, matrix)}
-        if known is not None:
-            return TrainingReply(True, data=data)
-        key = "registered" if self._phases is None else "procedure done"
-        self._keep(replace(self.state, registration=registration), key)
-        event = Event(EventKind.REGISTRATION, now.sim_time, {"trialId": self.state.trial_id})
-        return TrainingReply(True, data=data, events=(event,))
+        taken = take_registration(command.arguments, self.state, self.truth, self._texts)
+        return self._taken(taken, now) if isinstance(taken, TrialStep) else taken
 
     def _scored(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        arguments, registration = command.arguments, self.state.registration
-        data = {"trialId": self.state.trial_id}
-        if registration is None:
-            return TrainingReply(False, self._texts.say("no registration"))
-        result = TrialResult(
-            registration=registration,
-            true_tre_mm=revealed(self.truth, self.state, registration.matrix)["trueTreMm"],
-            score=arguments["score"],
-            details=arguments["details"],
-        )
-        if result == self.state.result:
-            return TrainingReply(True, data=data)
-        scored = replace(self.state, phase=Phase.SCORED, result=result)
-        event = self._enter(
-            scored,
-            "scored",
-            now,
-            score=result.score,
-            fre=registration.fre_mm,
-            tre=result.true_tre_mm,
-        )
-        return TrainingReply(True, data=data, events=(event,))
+        scored = take_score(command.arguments, self.state, self.truth, self._texts)
+        if not isinstance(scored, TrialStep):
+            return scored
+        return replace(self._entered(scored, now), data=scored.answered)
 
     def _get_trial(self, _command: OperatorCommand, _now: TouchMoment) -> TrainingReply:
-        state = self.state
-        data = {**summary(state), **given(state)}
-        if state.registration is not None:
-            data.update(revealed(self.truth, state, state.registration.matrix))
-        return TrainingReply(True, data=data)
+        return TrainingReply(True, data=trial_data(self.state, self.truth))
 
     def _recording_failed(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Go back to the last revision that is on the disk, and pause."""
@@ -415,7 +316,7 @@ class Training:
         sentence = self._texts.say("not recorded", reason=command.arguments["reason"])
         if kept.phase in (Phase.RUNNING, *PROCEDURE_PHASES):
             self._clock.pause(now.sim_time)
-            kept = replace(tracing.ended(kept), phase=Phase.PAUSED)
+            kept = paused(kept)
         if kept.phase is Phase.IDLE:
             self._leave()
         back = replace(kept, revision=self.state.revision)
@@ -425,17 +326,13 @@ class Training:
 
     def _interrupted(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
         """Pause a trial that runs; one whose points are all touched has no time to stop."""
-        trace = self.state.trace
-        values = {} if trace is None else tracing.counts(trace)
-        if self.state.phase is Phase.COMPLETE:
-            key = "interrupted complete" if trace is None else "interrupted trace"
-            event = self._enter(self.state, key, now, **values)
-        else:
+        if self.state.phase is not Phase.COMPLETE:
             self._clock.pause(now.sim_time)
-            paused = replace(tracing.ended(self.state), phase=Phase.PAUSED)
-            key = _interruption(paused)
-            event = self._enter(paused, key, now, kept=len(paused.touches), **values)
-        return TrainingReply(True, events=(event,))
+        return self._entered(interrupted(self.state), now)
+
+    def _entered(self, step: TrialStep, now: TouchMoment) -> TrainingReply:
+        """Enter another phase, with nothing more to answer than that."""
+        return TrainingReply(True, events=(self._enter(step.state, step.key, now, **step.values),))
 
     def _enter(self, state: TrainingState, key: str, now: TouchMoment, **values: object) -> Event:
         """Enter another phase and return the event of it."""
@@ -463,11 +360,3 @@ class Training:
     def _leave(self) -> None:
         """Between trials the head is where it nominally is."""
         self._head = PlacedHead.nominal(self._scenario)
-
-
-def _interruption(state: TrainingState) -> str:
-    """Return the key of what is said of a trial that was interrupted in its midst."""
-    procedure = state.procedure
-    if procedure is not None and procedure.stage in PROCEDURE_PHASES:
-        return "interrupted procedure"
-    return "interrupted" if state.next_point is not None else "interrupted trace"

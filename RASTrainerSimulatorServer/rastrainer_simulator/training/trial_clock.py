@@ -1,26 +1,14 @@
-"""A trial's clock, its seed and ID, and the states to which it can go back."""
+"""A trial's clock, how it pauses and resumes, and the states to which it can go back."""
 
 from __future__ import annotations
 
-import hashlib
-import uuid
+from dataclasses import replace
 
+from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer_simulator.state import TrainingState
+from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import Feed
-
-
-def trial_seed(seed: int, number: int) -> int:
-    """Return the seed of a session's `number`-th trial, 0 … 2^53 − 1 (exact in any JSON reader)."""
-    return int.from_bytes(_digest("seed", seed, number)[:8], "big") >> 11
-
-
-def trial_id(seed: int, number: int) -> str:
-    """Return the ID of a session's `number`-th trial, shaped like a random UUID (version 4)."""
-    return str(uuid.UUID(bytes=_digest("id", seed, number)[:16], version=4))
-
-
-def _digest(what: str, seed: int, number: int) -> bytes:
-    return hashlib.sha256(f"{what}:{seed}:{number}".encode()).digest()
+from rastrainer_simulator.training.replies import TrialStep
 
 
 class TrialClock:
@@ -42,10 +30,49 @@ class TrialClock:
             self._paused += now - self._paused_since
             self._paused_since = None
 
+    def time_of(self, state: TrainingState, now: float) -> float:
+        """Return the time of a trial, which ends with its last point or with its procedure, s."""
+        phase, procedure = state.phase, state.procedure
+        if phase is Phase.IDLE:
+            return 0.0
+        if procedure is not None and procedure.ended_s is not None:
+            return procedure.ended_s
+        if procedure is not None or phase in (Phase.RUNNING, Phase.PAUSED):
+            return self.elapsed(now)
+        return state.completed_s
+
     def elapsed(self, now: float) -> float:
-        """Return the trial's time in s."""
+        """Return the time that has been counted, s."""
         until = now if self._paused_since is None else self._paused_since
         return until - self._start - self._paused
+
+
+def paused(state: TrainingState) -> TrainingState:
+    """Return the state of a trial that is paused; no stroke is being drawn."""
+    return replace(tracing.ended(state), phase=Phase.PAUSED)
+
+
+def resumed(state: TrainingState) -> TrialStep:
+    """Return the step by which the touches or the trace of a paused trial continue."""
+    running, trace = replace(state, phase=Phase.RUNNING), state.trace
+    if trace is None or state.next_point is not None:
+        return TrialStep(running, "resumed")
+    again = tracing.ended(running)
+    return TrialStep(again, tracing.instruction(again), tracing.counts(trace))
+
+
+def interrupted(state: TrainingState) -> TrialStep:
+    """Return the step by which a trial waits after the server's end: paused, unless complete."""
+    trace, procedure = state.trace, state.procedure
+    values = {} if trace is None else tracing.counts(trace)
+    if state.phase is Phase.COMPLETE:
+        key = "interrupted complete" if trace is None else "interrupted trace"
+        return TrialStep(state, key, values)
+    if procedure is not None and procedure.stage in PROCEDURE_PHASES:
+        key = "interrupted procedure"
+    else:
+        key = "interrupted" if state.next_point is not None else "interrupted trace"
+    return TrialStep(paused(state), key, {"kept": len(state.touches), **values})
 
 
 class KeptStates:

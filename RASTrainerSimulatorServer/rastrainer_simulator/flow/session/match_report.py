@@ -11,7 +11,7 @@ from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.touch_registration import register_trial
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.state import TrainingState
-from rastrainer_simulator.training.replies import given
+from rastrainer_simulator.training.registered_trial import given
 
 
 @dataclass(frozen=True)
