@@ -18,6 +18,7 @@ from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
 from rastrainer_simulator.flow.pages.tutorial import TutorialDonePage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
+from rastrainer_simulator.flow.session.chosen_trial import begin_ghost
 from rastrainer_simulator.flow.session.obstacles import needs_tutorial
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
@@ -136,11 +137,13 @@ class Flow:
             self._unseen = why
             self._screen_of_work.open_menu()
 
-    def screen(self, more_warnings: tuple[ScreenMessage, ...] = ()) -> Screen:
+    def screen(self) -> Screen:
         """Return what the trainee reads now."""
         session = self._session
         page, menu = session.pages.top, session.pages.menu()
-        warnings = (*more_warnings, *self._link_warnings(), *session.notices())
+        notices = session.notices
+        lasting = notices.lasting(session.texts)
+        warnings = (*lasting, *self._link_warnings(), *notices.brief())
         work = self._screen_of_work
         shown = None if page is None else page.screen()
         if shown is not None:
@@ -216,7 +219,7 @@ class Flow:
         self._unseen = ""
         if tutorial.setup is not self._control_loop.setup:
             session.end_tutorial()
-            session.notice(session.texts.say("tutorial.head is gone"), Tone.WARNING)
+            session.notices.add(session.texts.say("tutorial.head is gone"), Tone.WARNING)
             session.pages.show_start()
             return
         self._tutorial_screen.advance(dt)
@@ -273,7 +276,7 @@ class Flow:
             session.places.forget()
             if is_guided:
                 session.places.begin(training.trial_id, session.setup, truth)
-            session.begin_ghost(truth.head_to_world)
+            begin_ghost(session, truth.head_to_world)
             session.trainee = training.trainee
             session.mode = training.mode
         if training.phase is Phase.COMPLETE and training.task == TRIAL_RUN:
@@ -283,7 +286,7 @@ class Flow:
         """Have the journal say that a ghost is shown from now on, or the trainee that none is."""
         session = self._session
         if session.ghost.rule is GhostRule.OFF:
-            session.notice(session.texts.say("ghost.none"))
+            session.notices.add(session.texts.say("ghost.none"))
         elif session.has_open_trial:
             self._control_loop.note_display(GhostReport(session.ghost.rule.value))
 

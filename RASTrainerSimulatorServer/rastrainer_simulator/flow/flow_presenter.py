@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -12,12 +12,13 @@ from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.operated_view import OperatedView
 from rastrainer_simulator.flow.seat import instruct, seat_of
 from rastrainer_simulator.flow.session.preferences import Preferences
-from rastrainer_simulator.flow.session.session import FlowServices, TrainingSession
+from rastrainer_simulator.flow.session.services import FlowServices
+from rastrainer_simulator.flow.session.session import TrainingSession
+from rastrainer_simulator.flow.view_sources import ViewSources
 from rastrainer_simulator.input.bindings import Bindings
 from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.input.controls import IDLE_S, Controls
 from rastrainer_simulator.input.inputs import (
-    SIMULATOR_SEAT,
     InputDevice,
     Source,
     SourceKind,
@@ -25,10 +26,13 @@ from rastrainer_simulator.input.inputs import (
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.results import Subscribers
-from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, FeedbackEvent
+from rastrainer_simulator.net.views.feedback_event import (
+    FEEDBACK_EFFECTS,
+    FeedbackEvent,
+    feedback_of,
+)
 from rastrainer_simulator.net.views.presenter import (
     Control,
-    Feedback,
     Frames,
     Hello,
     InstructorOrder,
@@ -36,7 +40,7 @@ from rastrainer_simulator.net.views.presenter import (
     TraceGuidance,
     ViewUpdate,
 )
-from rastrainer_simulator.net.views.screen import PRESS, Screen, ScreenMessage, Tone
+from rastrainer_simulator.net.views.screen import PRESS, Screen, Tone
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.record.beside_the_trial import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
@@ -82,10 +86,7 @@ class FlowPresenter:
         self.rumble: Callable[[float, float], None] = _nothing_vibrates
         self._results: deque[StepResult] = deque()
         self._subscribers: Subscribers[ViewUpdate] = Subscribers()
-        self._views: dict[int, Hello] = {}
-        self._silent: set[int] = set()
-        self._touched: set[int] = set()
-        self._lasting: dict[str, tuple[str, Mapping[str, object]]] = {}
+        self._views = ViewSources()
         self._number = 0
         self._sent_sticks = HANDS_OFF
         self._is_changed = True
@@ -160,21 +161,18 @@ class FlowPresenter:
 
     def view_joined(self, view: int, hello: Hello) -> None:
         """Take note of a view; with a headset the next trial is one in a headset."""
-        self._views[view] = hello
+        self._views.join(view, hello)
         self._choose_mode(hello)
 
     def view_left(self, view: int) -> None:
         """Forget a view; nobody sees the trial any more if it was the trainee's."""
         self._lose_sight(view, "unseen.left")
-        self._choose_mode(self._views.pop(view, None))
-        self._silent.discard(view)
-        self._view.look(view, None)
-        self._touched.discard(view)
+        self._choose_mode(self._views.leave(view))
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
         """Take a key: what it types, where a text has the focus, or what it does."""
-        source = self._source(SourceKind.KEYBOARD, view)
+        source = self._views.source(SourceKind.KEYBOARD, view)
         if is_down and self._types(source, code, text):
             self._is_changed = True
             return
@@ -183,7 +181,7 @@ class FlowPresenter:
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
         """Take a gamepad that a browser reads."""
-        source = self._source(SourceKind.BROWSER_GAMEPAD, view)
+        source = self._views.source(SourceKind.BROWSER_GAMEPAD, view)
         self.controls.set_inputs(source, w3c_gamepad_inputs(axes, buttons))
         self._settle()
 
@@ -196,9 +194,9 @@ class FlowPresenter:
         yaw_deg: float,
     ) -> None:
         """Take XR controllers' sticks and where the eyes above them look, or those on a screen."""
-        source = self._sticks_source(view)
+        source = self._views.sticks_source(view, self._session.screen_sticks.is_shown)
         if source.kind is SourceKind.XR:
-            self._view.look(view, yaw_deg)
+            self._views.look(view, yaw_deg)
         sticks = OperatorInput(translation, rotation, is_fine)
         if source.kind is SourceKind.MOUSE:
             sticks = self._session.screen_sticks.moved(translation, rotation)
@@ -207,7 +205,7 @@ class FlowPresenter:
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
         """Turn the view for the operator; nobody else may."""
-        source = self._source(SourceKind.MOUSE, view)
+        source = self._views.source(SourceKind.MOUSE, view)
         self._view.turn(source, around_deg, higher_deg, zoom)
 
     def on_press(self, view: int, control: str) -> None:
@@ -217,14 +215,16 @@ class FlowPresenter:
         name = ControlName(control)
         if self._flow.situation is ControlContext.MENU:
             name = _IN_MENUS.get(name, name)
-        self.controls.press(self._sticks_source(view), name)
+        self.controls.press(
+            self._views.sticks_source(view, self._session.screen_sticks.is_shown), name
+        )
         self._settle()
 
     def on_item(self, view: int, name: str) -> None:
         """Take a click on an item of the menu, or on a hint that presses a control."""
         pressed = name.removeprefix(PRESS) if name.startswith(PRESS) else ""
         control = ControlName._value2member_map_.get(pressed)
-        source = self._hand_source(SourceKind.MOUSE, view)
+        source = self._views.hand_source(SourceKind.MOUSE, view)
         if not self.controls.allows(source, None if control is None else ControlName(pressed)):
             return
         if not pressed:
@@ -236,15 +236,15 @@ class FlowPresenter:
 
     def on_text(self, view: int, name: str, value: str) -> None:
         """Take what now stands in a text item."""
-        if self.controls.allows(self._hand_source(SourceKind.KEYBOARD, view)):
+        if self.controls.allows(self._views.hand_source(SourceKind.KEYBOARD, view)):
             self._session.pages.write(name, value)
             self._is_changed = True
 
     def on_frames(self, view: int, frames: Frames) -> None:
         """Take how smoothly a view draws; what the trainee looks at is recorded."""
-        self._silent.discard(view)
-        hello = self._views.get(view)
-        if hello is None or view != self._watched():
+        self._views.hear(view, True)
+        hello = self._views.hello(view)
+        if hello is None or view != self._views.watched(self.controls.holder):
             return
         report = DisplayReport(
             hello.kind, hello.device, frames.refresh_hz, frames.shown, frames.dropped
@@ -260,7 +260,7 @@ class FlowPresenter:
     def on_silence(self, view: int) -> None:
         """Pause the trial when its picture stands still, and free the control."""
         self._lose_sight(view, "unseen.still")
-        self._silent.add(view)
+        self._views.hear(view, False)
         self._settle()
 
     def pressed(self, control: ControlName) -> None:
@@ -278,7 +278,7 @@ class FlowPresenter:
     def taken_over(self, source: Source) -> None:
         """Another operator has taken the control."""
         name = self._session.texts.say(f"source.{source.kind.value}")
-        self._session.notice(self._session.texts.say("control.taken", source=name))
+        self._session.notices.add(self._session.texts.say("control.taken", source=name))
         self._flow.taken_over()
         self._is_changed = True
 
@@ -291,7 +291,7 @@ class FlowPresenter:
         menu = self._session.texts.say("control.menu")
         key = "control.locked" if self._session.lock.is_locked else "control.held"
         text = self._session.texts.say(key, source=name, menu=menu, seconds=IDLE_S)
-        self._session.notice(text, Tone.WARNING)
+        self._session.notices.add(text, Tone.WARNING)
         self._is_changed = True
 
     def unplugged(self, source: Source) -> None:
@@ -302,97 +302,47 @@ class FlowPresenter:
 
     def warn(self, about: str, key: str = "", **values: object) -> None:
         """Show a warning until it is called off by an empty key."""
-        self._lasting.pop(about, None)
-        if key:
-            self._lasting[about] = key, values
+        self._session.notices.warn(about, key, **values)
         self._is_changed = True
 
     def happened(self, what: FeedbackEvent) -> None:
         """Let something be heard and felt, once."""
-        effect = FEEDBACK_EFFECTS[what]
         preferences = self._session.preferences
+        volume = 0.0 if preferences.muted else preferences.volume / 100.0
         self._number += 1
-        feedback = Feedback(
-            number=self._number,
-            kind=what.value,
-            sound=effect.sound,
-            volume=0.0 if preferences.muted else preferences.volume / 100.0,
-            rumble=effect.rumble,
-            data={"rumbleMs": round(1000.0 * effect.seconds)},
-        )
-        if effect.rumble > 0.0:
-            self.rumble(effect.rumble, effect.seconds)
+        feedback = feedback_of(what, self._number, volume)
+        if feedback.rumble > 0.0:
+            self.rumble(feedback.rumble, FEEDBACK_EFFECTS[what].seconds)
         self._publish(feedback)
 
     def _may_be_taken(self) -> bool:
         """Return whether another operator may take the control from one who rests."""
         return not self._session.lock.is_locked
 
-    def _watched(self) -> int | None:
-        """Return the view that the trainee looks at: a headset, else the one that is operated."""
-        # A headset whose network broke comes back as another view, long before the first has left.
-        heard = [each for each in reversed(self._views.items()) if each[0] not in self._silent]
-        by_kind = {hello.kind: view for view, hello in heard}
-        holder = self.controls.holder
-        operated = None if holder is None else holder.view
-        choices = (by_kind.get("headset"), operated, by_kind.get("desktop"), by_kind.get("page"))
-        return next((view for view in choices if view is not None), None)
-
     def _lose_sight(self, view: int, why: str) -> None:
         """Release what is operated without being seen; `why` is the key of a sentence."""
-        if view == self._watched():
+        if view == self._views.watched(self.controls.holder):
             self._flow.pause(why)
         for kind in SourceKind:
-            self.controls.forget(self._source(kind, view))
+            self.controls.forget(self._views.source(kind, view))
 
     def _choose_mode(self, changed: Hello | None) -> None:
         """Let the next trial be one in a headset while there is one; people may choose again."""
         if changed is not None and changed.kind == "headset":
-            has_headset = any(hello.kind == "headset" for hello in self._views.values())
-            self._session.mode = (Mode.HMD if has_headset else Mode.DESKTOP).value
+            self._session.mode = (Mode.HMD if self._views.has_headset else Mode.DESKTOP).value
 
     def _take_tick(self, result: StepResult) -> None:
         """Keep a tick in which something happened; called in the control loop's thread."""
         if result.events:
             self._results.append(result)
 
-    def _source(self, kind: SourceKind, view: int) -> Source:
-        """Return a view's source; the simulator's own windows share a seat with its gamepad."""
-        hello = self._views.get(view)
-        is_own = hello is not None and hello.kind == "desktop"
-        return Source(kind, SIMULATOR_SEAT if is_own else f"view {view}", view)
-
-    def _sticks_source(self, view: int) -> Source:
-        """Return whose sticks a view sends: a headset's, a touch screen's, or a mouse's.
-
-        A page has sticks of its own on a touch screen; for a mouse they have been asked for.
-        """
-        hello = self._views.get(view)
-        if hello is None or hello.kind == "headset":
-            return self._source(SourceKind.XR, view)
-        is_for_mouse = self._session.screen_sticks.is_shown and view not in self._touched
-        if hello.kind == "desktop" or is_for_mouse:
-            return self._source(SourceKind.MOUSE, view)
-        self._touched.add(view)
-        return self._source(SourceKind.TOUCH_SCREEN, view)
-
-    def _hand_source(self, kind: SourceKind, view: int) -> Source:
-        """Return what an item was chosen or written with: a finger, where one has been seen."""
-        hello = self._views.get(view)
-        if hello is not None and hello.kind == "headset":
-            return self._source(SourceKind.XR, view)
-        return self._source(SourceKind.TOUCH_SCREEN if view in self._touched else kind, view)
-
     def _types(self, source: Source, code: str, text: str) -> bool:
         """Let a key type into the text that has the focus; return whether it did."""
-        item = self._session.pages.text_item()
-        is_deleting = code == "Backspace"
-        if item is None or not (is_deleting or (len(text) == 1 and text.isprintable())):
+        typed = self._session.pages.typed(code, text)
+        if typed is None:
             return False
-        if not self.controls.allows(source):
-            return True
-        value = item.value[:-1] if is_deleting else item.value + text
-        self._session.pages.write(item.name, value)
+        if self.controls.allows(source):
+            self._session.pages.write(*typed)
         return True
 
     def _settle(self) -> None:
@@ -400,11 +350,13 @@ class FlowPresenter:
         self.shown.show(self._flow.playback)
         self.shown.alter = None if self._session.tutorial is None else self._flow.shown
         self.controls.enter(self._flow.situation)
-        sticks = self._view.turned(self.controls.sticks)
+        holder, setup = self.controls.holder, self._control_loop.setup
+        camera = setup.scenario.cameras[self._control_loop.latest.camera]
+        yaw_deg, axes = self._views.yaw_deg(holder), setup.settings.axes
+        sticks = self._session.view.turned(self.controls.sticks, camera, axes, yaw_deg)
         if sticks != self._sent_sticks:
             self._sent_sticks = sticks
             self._control_loop.hold_sticks(sticks)
-        holder = self.controls.holder
         control = Control() if holder is None else Control(holder.kind.value, holder.view)
         if control != self.control:
             self.control = control
@@ -414,9 +366,7 @@ class FlowPresenter:
     def _refresh(self) -> None:
         self._is_changed = False
         self._since_refresh = 0.0
-        say = self._session.texts.say
-        warnings = (say(key, **values) for key, values in self._lasting.values())
-        screen = self._flow.screen(tuple(ScreenMessage(text, Tone.WARNING) for text in warnings))
+        screen = self._flow.screen()
         if screen != self.screen:
             self.screen = screen
             self._publish(screen)

@@ -17,7 +17,7 @@ from rastrainer_simulator.flow.session.preferences import (
     Preferences,
     read_preferences,
 )
-from rastrainer_simulator.flow.session.session import FlowServices
+from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
 from rastrainer_simulator.input.inputs import SIMULATOR_SEAT, Source, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop

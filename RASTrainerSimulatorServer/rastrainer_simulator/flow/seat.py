@@ -45,7 +45,7 @@ def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text:
     """Do what a teacher wants; return why it cannot be done, "" if it is."""
     if order is InstructorOrder.SAY:
         said = session.texts.say("instructor.says", text=text)
-        session.notice(said, seconds=SENTENCE_S)
+        session.notices.add(said, seconds=SENTENCE_S)
         return ""
     if order is InstructorOrder.PAUSE:
         is_shown = flow.playback is not None

@@ -20,6 +20,7 @@ from rastrainer_simulator.flow.arm_screen import BACK_WITHIN, FARTHEST, ArmScree
 from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
+from rastrainer_simulator.flow.session.chosen_trial import guidance_of
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import SourceKind
@@ -107,7 +108,7 @@ class TrialScreen(ArmScreen):
         self._is_beside = self._was_refused = self._is_practice_end_shown = False
         self._forget_arm()
         self._practice_step, self._practice_end_s = None, None
-        self.guidance = self._session.guidance()
+        self.guidance = guidance_of(self._session)
 
     def pressed(self, control: ControlName) -> None:
         """Do what a control is for while the arm is driven."""

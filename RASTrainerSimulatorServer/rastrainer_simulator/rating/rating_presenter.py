@@ -13,10 +13,9 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.input.inputs import InputDevice, w3c_gamepad_inputs
 from rastrainer_simulator.loop.results import Subscribers
-from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, FeedbackEvent
+from rastrainer_simulator.net.views.feedback_event import FeedbackEvent, feedback_of
 from rastrainer_simulator.net.views.presenter import (
     Control,
-    Feedback,
     Frames,
     Hello,
     InstructorOrder,
@@ -283,11 +282,8 @@ class RatingPresenter:
         return Screen(menu=self.pages.menu(), hints=hints, language=self._language)
 
     def _happened(self, what: FeedbackEvent) -> None:
-        effect = FEEDBACK_EFFECTS[what]
         self._count += 1
-        data = {"rumbleMs": round(1000.0 * effect.seconds)}
-        feedback = Feedback(self._count, what.value, effect.sound, 1.0, effect.rumble, data)
-        self._subscribers.publish(feedback)
+        self._subscribers.publish(feedback_of(what, self._count))
 
 
 def _pressed(values: Sequence[float]) -> frozenset[int]:

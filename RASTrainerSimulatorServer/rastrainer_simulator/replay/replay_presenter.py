@@ -9,10 +9,9 @@ from functools import reduce
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.loop.results import Subscribers
-from rastrainer_simulator.net.views.feedback_event import FEEDBACK_EFFECTS, feedback_event
+from rastrainer_simulator.net.views.feedback_event import feedback_event, feedback_of
 from rastrainer_simulator.net.views.presenter import (
     Control,
-    Feedback,
     Frames,
     Hello,
     InstructorOrder,
@@ -315,9 +314,7 @@ class ReplayPresenter:
             if kind is None:
                 continue
             self._count += 1
-            felt = FEEDBACK_EFFECTS[kind]
-            data = {"rumbleMs": round(1000 * felt.seconds)}
-            self._tell(Feedback(self._count, kind.value, felt.sound, 1.0, felt.rumble, data))
+            self._tell(feedback_of(kind, self._count))
 
     def _refresh(self) -> None:
         screen = self._make_screen()

@@ -247,7 +247,7 @@ class SimulatorServer:
     def _make_presenter(self, link: SimulatorLink, stop: asyncio.Event) -> RunningPresenter:
         """Return the trainee's presenter."""
         from rastrainer_simulator.flow.running_presenter import RunningPresenter
-        from rastrainer_simulator.flow.session.session import FlowServices
+        from rastrainer_simulator.flow.session.services import FlowServices
 
         services = FlowServices(
             config=self._config,

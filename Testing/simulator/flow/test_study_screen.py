@@ -8,6 +8,7 @@ import pytest
 
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
+from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
 from rastrainer_simulator.flow.session.study_steps import ANSWERED, MAX_TRAINEES, StudySteps
 
 TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
@@ -235,18 +236,18 @@ def test_the_guide_forgets_the_oldest_news_and_keeps_no_more_than_it_may():
 
 def test_a_trial_of_a_study_is_registered_by_what_its_protocol_says(menu, guide):
     session = menu.presenter._session
-    chosen = session.method_of("task-2")
+    chosen = registration_method(session, "task-2")
     tell(menu, guide, replace(TASK_2, method="surface"))
     assert menu.menu.paragraphs == (
         "Step 3 of 19: play Task 2 by a trace over the skin on the desktop screen.",
     )
-    assert session.method_of("task-2") is RegistrationMethod.SURFACE
+    assert registration_method(session, "task-2") is RegistrationMethod.SURFACE
     method = menu.item("method")
     assert (method.value, method.is_enabled) == ("trace over the skin", False)
     tell(menu, guide, TASK_2)
-    assert session.method_of("task-2") is RegistrationMethod.FIDUCIALS
+    assert registration_method(session, "task-2") is RegistrationMethod.FIDUCIALS
     tell(menu, guide, StudyStep("P07"))
-    assert session.method_of("task-2") is chosen
+    assert registration_method(session, "task-2") is chosen
 
 
 def test_a_trial_of_a_study_has_the_skin_of_its_protocol(menu, guide):
@@ -256,7 +257,7 @@ def test_a_trial_of_a_study_has_the_skin_of_its_protocol(menu, guide):
     known = menu.menu
     tell(menu, guide, replace(TASK_2, skin=skin))
     assert menu.menu == known
-    session.start_task("task-2")
+    start_task(session, "task-2")
     menu.until_menu(None)
     truth = session._control_loop.truth
     assert truth.skin.amounts == skin

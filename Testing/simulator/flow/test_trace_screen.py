@@ -10,6 +10,7 @@ from rastrainer.protocol import MIN_TRACE_POINTS, Phase
 from rastrainer.registration.trace_guidance import COVERED_MM
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.pages.match import MatchPage
+from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
 from rastrainer_simulator.flow.session.match_report import MatchReport
 from rastrainer_simulator.net.views.presenter import TraceGuidance
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
@@ -191,8 +192,8 @@ def test_the_method_is_chosen_in_the_experiment_menu_where_the_head_has_landmark
     ]
     trainee.tap("left", "left")
     session = trainee.presenter._session
-    assert session.method_of("trial-run").value == "fiducials"
-    session.start_task("task-1")
+    assert registration_method(session, "trial-run").value == "fiducials"
+    start_task(session, "task-1")
     trainee.until_menu(None)
     training = trainee.state.training
     assert training.method.value == "surface"

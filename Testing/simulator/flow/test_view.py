@@ -142,15 +142,15 @@ def test_only_the_operators_view_turns_the_view(by_hand):
 
 
 def test_in_a_study_the_view_follows_only_where_that_is_set(trainee):
-    session = trainee.presenter._session
+    session, view = trainee.presenter._session, trainee.presenter._view
     trainee.start("task-1")
-    assert session.does_view_follow
+    assert view.follows
     session.study.take(StudyStep(trainee="P07", kind=StepKind.TRIAL.value, task="task-1"))
-    assert not session.does_view_follow
+    assert not view.follows
     session.preferences = session.preferences.__class__(view="always")
-    assert session.does_view_follow
+    assert view.follows
     session.preferences = session.preferences.__class__(view="never")
-    assert not session.does_view_follow
+    assert not view.follows
 
 
 def test_the_journal_says_how_the_view_was_turned_and_whether_it_follows(by_hand, outside):

@@ -22,7 +22,7 @@ from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE
-from rastrainer_simulator.flow.session.session import FlowServices
+from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.state import Answer
 from Testing.sdl_virtual_gamepad import VirtualGamepad

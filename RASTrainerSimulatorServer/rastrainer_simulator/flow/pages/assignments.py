@@ -5,6 +5,7 @@ from __future__ import annotations
 from rastrainer.scenario.method_task import method_of
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.chosen_trial import start_task
 from rastrainer_simulator.flow.session.obstacles import assignment_obstacle
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.net.views.screen import Menu, MenuItem
@@ -42,7 +43,7 @@ class AssignmentsPage(SessionPage):
             return
         session.mode = each.mode or session.mode
         session.method, session.procedure = method_of(each.method), each.procedure
-        session.start_task(each.task)
+        start_task(session, each.task)
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
         """Close where the trainee has no curriculum any more."""

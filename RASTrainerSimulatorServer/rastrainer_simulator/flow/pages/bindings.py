@@ -53,7 +53,7 @@ class BindingsPage(SessionPage):
             self.back()
         elif item == "defaults":
             session.rebind(DEFAULT_BINDINGS)
-            session.notice(self.say("bindings.are default"))
+            session.notices.add(self.say("bindings.are default"))
         else:
             session.pages.open(ListenPage(session, self._device, ControlName(item)))
 
@@ -168,7 +168,7 @@ def rebind(session: TrainingSession, device: InputDevice, control: ControlName, 
         session.complain(session.texts.say("bindings.impossible"))
         return
     session.rebind(bindings)
-    session.notice(
+    session.notices.add(
         session.texts.say(
             "bindings.changed",
             control=session.texts.say(f"control.{control.value}"),

@@ -18,6 +18,7 @@ from rastrainer_simulator.flow.pages.trainee_id import (
     KeyboardPage,
     QuestionnairePage,
 )
+from rastrainer_simulator.flow.session.chosen_trial import offered_method, start_task
 from rastrainer_simulator.flow.session.obstacles import (
     assignment_obstacle,
     needs_tutorial,
@@ -104,7 +105,7 @@ class ExperimentPage(SessionPage):
             else:
                 self.session.pages.open(KeyboardPage(self.session, self.write))
         else:
-            self.session.start_task(item)
+            start_task(self.session, item)
 
     def step(self, item: str, direction: int) -> None:
         """Change the mode, by what is registered, or what follows that."""
@@ -114,7 +115,7 @@ class ExperimentPage(SessionPage):
             self.session.mode = modes[place]
         elif item == "method":
             methods = playable_methods(self.session.scenario)
-            place = methods.index(self.session.offered_method) + direction
+            place = methods.index(offered_method(self.session)) + direction
             self.session.method = methods[place % len(methods)]
         elif item == "procedure":
             names = ["", *(each.name for each in self.session.scenario.procedures)]
@@ -141,7 +142,7 @@ class ExperimentPage(SessionPage):
         if len(playable_methods(self.session.scenario)) < 2:
             return ()
         step = self._step()
-        method = self.session.offered_method if step is None else method_of(step.method)
+        method = offered_method(self.session) if step is None else method_of(step.method)
         value = self.say(f"method.{method.value}")
         help_ = self.say("experiment.method help")
         return (self.choice("method", value, is_enabled=step is None, help=help_),)
@@ -249,11 +250,11 @@ class ScenarioPage(SessionPage):
             self.back()
             return
         self._wanted = item.removeprefix(_PREFIX)
-        self.session.use_scenario(self._wanted)
+        self.session.setting_up.use_scenario(self._wanted)
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
         """Go back when the head that was chosen is there; stay where it was refused."""
-        if not self._wanted or self.session.is_being_set_up:
+        if not self._wanted or self.session.setting_up.is_under_way:
             return
         is_there = self.session.scenario.name == self._wanted
         self._wanted = ""
@@ -262,7 +263,7 @@ class ScenarioPage(SessionPage):
 
     def _item(self, entry: ListedScenario) -> MenuItem:
         is_present = entry.name == self.session.scenario.name
-        is_loading = self.session.is_being_set_up
+        is_loading = self.session.setting_up.is_under_way
         value = "scenario.loading" if entry.name == self._wanted and is_loading else ""
         value = "scenario.present" if is_present and not value else value
         return MenuItem(

@@ -76,7 +76,7 @@ class PinPage(SessionPage):
             return
         self._pin = ""
         if answer.is_right:
-            session.notice(self.say("pin.unlocked"))
+            session.notices.add(self.say("pin.unlocked"))
             self.back()
         elif answer.wait_s > 0.0:
             session.complain(self.say("pin.wait", seconds=math.ceil(answer.wait_s)))

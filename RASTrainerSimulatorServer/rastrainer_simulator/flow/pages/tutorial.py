@@ -6,6 +6,7 @@ from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import ControlsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.chosen_trial import start_task
 from rastrainer_simulator.flow.session.obstacles import obstacle, tutorial_rule
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.control_name import ControlName
@@ -91,7 +92,7 @@ class TutorialDonePage(SessionPage):
     def accept(self, item: str) -> None:
         """Begin the trial run, do the tutorial again, or go to the menu."""
         if item == "trial-run":
-            self.session.start_task(TRIAL_RUN)
+            start_task(self.session, TRIAL_RUN)
         elif item == "again":
             self.session.begin_tutorial()
         else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer_simulator.ops.texts.texts import Texts
@@ -38,6 +38,18 @@ class Curricula:
     def of(self, trainee: str) -> ToldCurriculum | None:
         """Return where a trainee stands; None for who has no curriculum."""
         return self._told.get(trainee)
+
+
+def newly_reached(
+    before: ToldCurriculum | None, now: ToldCurriculum | None
+) -> Iterator[ToldAssignment]:
+    """Yield the assignments that a trainee has reached since Slicer told of them before."""
+    if before is None or now is None or before is now or before.trainee != now.trainee:
+        return
+    for each in now.assignments:
+        earlier = before.find(each.name)
+        if each.is_reached and earlier is not None and not earlier.is_reached:
+            yield each
 
 
 class AssignmentWords:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rastrainer.protocol import TRIAL_RUN, StepKind, TutorialRule
 from rastrainer.scenario.method_task import playable_methods
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment
+from rastrainer_simulator.flow.session.chosen_trial import procedure_of, registration_method
 from rastrainer_simulator.flow.session.session import TrainingSession
 
 
@@ -20,7 +21,8 @@ def obstacle(session: TrainingSession, task: str) -> str:
             return session.texts.say("experiment.study", step=session.step_sentence(step))
         return _tutorial_first(session, task)
     told = session.curriculum
-    played_as = (session.mode, session.method_of(task).value, session.procedure_of(task))
+    method, procedure = registration_method(session, task).value, procedure_of(session, task)
+    played_as = (session.mode, method, procedure)
     assigned = () if told is None else told.assignments
     head = session.scenario.name
     own = [each for each in assigned if each.is_played_as(head, task, *played_as)]
@@ -94,7 +96,7 @@ def _unready(session: TrainingSession) -> str:
     """Return why nothing can begin yet; "" where trainee and robot are ready."""
     if not session.trainee.strip():
         return session.texts.say("experiment.no trainee")
-    return session.texts.say("experiment.being set up") if session.is_being_set_up else ""
+    return session.texts.say("experiment.being set up") if session.setting_up.is_under_way else ""
 
 
 def tutorial_rule(session: TrainingSession) -> TutorialRule:

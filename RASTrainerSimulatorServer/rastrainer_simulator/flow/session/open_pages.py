@@ -195,10 +195,14 @@ class OpenPages:
             self._focus[-1] = name
             page.write(name, value)
 
-    def text_item(self) -> MenuItem | None:
-        """Return the text item that has the focus, None where it is another."""
-        item = self._focused_item()
-        return item if item is not None and item.kind is ItemKind.TEXT else None
+    def typed(self, code: str, text: str) -> tuple[str, str] | None:
+        """Return the text item that has the focus, and its value after a key; None without one."""
+        item, is_deleting = self._focused_item(), code == "Backspace"
+        if item is None or item.kind is not ItemKind.TEXT:
+            return None
+        if not is_deleting and (len(text) != 1 or not text.isprintable()):
+            return None
+        return item.name, item.value[:-1] if is_deleting else item.value + text
 
     def _step(self, direction: int) -> None:
         page, item = self.top, self._focused_item()

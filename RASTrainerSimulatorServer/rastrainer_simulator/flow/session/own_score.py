@@ -11,6 +11,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,8 +29,7 @@ from rastrainer.trial.submission import registration_arguments, score_arguments
 from rastrainer.trial.touch_registration import register_trial
 from rastrainer.trial.trainee_progress import PastTrial
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.flow.session.commands import Submit
-from rastrainer_simulator.state import TrainingState
+from rastrainer_simulator.state import Answer, TrainingState
 
 SENDER = "simulator"
 OWN_SCORE = "isOwnScore"
@@ -39,6 +39,7 @@ RETURN_S = 5.0
 ANSWER_S = 60.0
 _REST_S = 0.001
 
+Submit = Callable[[str, Mapping[str, Any], str], "Future[Answer]"]
 Ask = Callable[[str, Mapping[str, Any]], Mapping[str, Any]]
 
 _log = logging.getLogger(__name__)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,30 +12,27 @@ from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, GhostRule, Guidance, Mode
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode
 from rastrainer.registration.methods import RegistrationMethod
-from rastrainer.scenario.library import ListedScenario
-from rastrainer.scenario.method_task import method_of, playable_methods
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.flow.session.commands import Commands
-from rastrainer_simulator.flow.session.curricula import AssignmentWords, Curricula
+from rastrainer_simulator.flow.session.curricula import AssignmentWords, newly_reached
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
+from rastrainer_simulator.flow.session.notices import Notices
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice
 from rastrainer_simulator.flow.session.own_score import OwnScore
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     Preferences,
-    faded_guidance,
     write_preferences,
 )
 from rastrainer_simulator.flow.session.screen_sticks import ScreenSticks
-from rastrainer_simulator.flow.session.study_steps import StudySteps, step_sentence
+from rastrainer_simulator.flow.session.services import FlowServices, SettingUp
+from rastrainer_simulator.flow.session.study_steps import step_sentence
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import (
     DoneTasks,
@@ -54,9 +49,8 @@ from rastrainer_simulator.input.bindings import (
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
-from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
+from rastrainer_simulator.net.views.screen import Tone
 from rastrainer_simulator.operator_input import OperatorInput
-from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
@@ -65,47 +59,10 @@ from rastrainer_simulator.state import Answer, SimulationState, TrainingState
 from rastrainer_simulator.vectors import Vector, vector
 from rastrainer_simulator.viewpoint.orbit import Orbit
 
-NOTICE_S = 5.0
 REACHED_S = 20.0
 """How long a reached assignment is shown: it comes while the result is read."""
-SET_UP_AFTER_S = 1.0
-"""A simulation takes a second to make: who steps through the options shall not wait for each."""
 TUTORIAL_VIEW = Orbit(zoom=1.7)
 """From farther away than a trial: the tip is seen where it starts, above the head."""
-
-
-@dataclass(frozen=True)
-class FlowServices:
-    """What the flow needs of the process that it runs in.
-
-    Attributes:
-        config: folder of the settings files.
-        records: folder of the trials' journals.
-        use_settings: has the simulation continue with other settings, between two trials.
-        list_scenarios: lists the scenarios that `use_scenario` takes by their names.
-        use_scenario: has the simulation continue with another scenario, between two trials.
-        is_slicer_connected: says whether a client that registers and scores is connected.
-        quit: ends the process.
-        study: knows what a study that Slicer leads asks of the trainees.
-        curricula: knows where trainees stand in their curricula.
-        scores_alone: whether a trial outside of a study is scored here where no Slicer is
-            connected.
-        pin: the instructor's; None where there is never one.
-        languages: tags of those that can be chosen: the window may lack the letters of others.
-    """
-
-    config: Path
-    records: Path
-    use_settings: Callable[[SimulationSettings], Future[Answer]]
-    list_scenarios: Callable[[], Future[list[ListedScenario]]]
-    use_scenario: Callable[[str], Future[Answer]]
-    is_slicer_connected: Callable[[], bool]
-    quit: Callable[[], None]
-    study: StudySteps = field(default_factory=StudySteps)
-    curricula: Curricula = field(default_factory=Curricula)
-    scores_alone: bool = False
-    pin: PinGuesses | None = None
-    languages: Sequence[str] = tuple(LANGUAGES)
 
 
 class TrainingSession:
@@ -134,6 +91,8 @@ class TrainingSession:
         tutorials: who has finished one, and with which device.
         screen_sticks: those that views draw for a mouse.
         lock: what needs the instructor's PIN.
+        notices: what is said beside the instruction.
+        setting_up: has the simulation continue with other settings, or on another head.
         languages: those that can be chosen.
     """
 
@@ -178,15 +137,12 @@ class TrainingSession:
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
         self.study = services.study
+        self.setting_up = SettingUp(services, self.complain)
         self._services = services
         self._control_loop = control_loop
         self._controls = controls
-        self._commands = Commands(control_loop.submit, self._refused)
-        self._wanted_settings: SimulationSettings | None = None
-        self._set_up_in = 0.0
-        self._setting_up: Future[Answer] | None = None
-        self._time = 0.0
-        self._notices: list[tuple[float, ScreenMessage]] = []
+        self._asked: list[tuple[str, Future[Answer]]] = []
+        self.notices = Notices()
         self._told: ToldCurriculum | None = None
         self.state: SimulationState = control_loop.latest
 
@@ -231,11 +187,6 @@ class TrainingSession:
         return OperatorDevice(self._controls, self.texts, self.mode, self.screen_sticks.is_shown)
 
     @property
-    def is_being_set_up(self) -> bool:
-        """Whether other settings of the simulation, or another scenario, are on their way."""
-        return self._setting_up is not None or self._wanted_settings is not None
-
-    @property
     def curriculum(self) -> ToldCurriculum | None:
         """Where the trainee stands in a curriculum.
 
@@ -257,22 +208,9 @@ class TrainingSession:
         """What says of assignments what trainees read."""
         return AssignmentWords(self.texts, self.task_title, self.procedure_title)
 
-    @property
-    def does_view_follow(self) -> bool:
-        """Whether the view goes automatically to the best view of each next point."""
-        if (self.training if self.tutorial is None else self.tutorial).mode == Mode.HMD.value:
-            # In a headset one looks around with the head.
-            return False
-        if self.tutorial is not None and not self.tutorial.has_learned_view:
-            return False
-        choice = self.preferences.view
-        trainee = self.training.trainee if self.tutorial is None else self.tutorial.trainee
-        is_led = self.study.step_of(trainee) is not None
-        return choice == "always" or (choice == "practice" and not is_led)
-
     def advance(self, dt: float, state: SimulationState) -> None:
         """Take the newest state, and what has been answered within `dt` seconds."""
-        self._time += dt
+        self.notices.advance(dt)
         self.state = state
         self.places.advance(dt, state)
         trial_id = self.training.trial_id
@@ -280,27 +218,20 @@ class TrainingSession:
         if self.own_score is not None:
             is_in_study = self.study.step_of(self.training.trainee) is not None
             self.own_score.advance(dt, self.training, self.scenario, is_in_study)
-        self._commands.poll()
+        self._take_answers()
         self._note_reached()
-        self._set_up_in -= dt
-        if self._setting_up is not None and self._setting_up.done():
-            answer = self._setting_up.result()
-            self._setting_up = None
-            if not answer.ok:
-                self.complain(answer.message)
-        may_set_up = self._setting_up is None and self._set_up_in <= 0.0
-        if self._wanted_settings is not None and may_set_up and not self.has_open_trial:
-            self._setting_up = self._services.use_settings(self._wanted_settings)
-            self._wanted_settings = None
+        self.setting_up.advance(dt, self.has_open_trial)
 
     def do(self, command: str, arguments: Mapping[str, Any] | None = None) -> None:
         """Have a command carried out."""
         holder = self._controls.holder
         sender = "" if holder is None else holder.kind.value
         try:
-            self._commands.do(command, sender, arguments or {})
+            checked = check_arguments(command, arguments or {})
         except InputError as error:
             self.complain(str(error))
+        else:
+            self._asked.append((command, self._control_loop.submit(command, checked, sender)))
 
     def begin_tutorial(self) -> None:
         """Open the tutorial, in place of any page."""
@@ -328,52 +259,12 @@ class TrainingSession:
         self._save(lambda: self.tutorials.keep(outcome))
         return outcome
 
-    def start_task(self, task: str) -> None:
-        """Have a trial of a task begun by the trainee, in the chosen mode."""
-        trainee = self.trainee.strip()
-        start = {"task": task, "trainee": trainee, "mode": self.mode}
-        chosen = {"procedure": self.procedure_of(task), "method": self.method_of(task).value}
-        step = self.study.step_of(trainee)
-        skin = {"skin": dict(step.skin)} if step is not None and step.skin else {}
-        self.do(CommandName.START_TASK, {**start, **chosen, **skin})
-
-    def procedure_of(self, task: str) -> str:
-        """Return the name of the procedure that follows the touches of a task; "" for none.
-
-        A study says which; else it is the one that the trainee has chosen. The trial run has none.
-        """
-        step = self.study.step_of(self.trainee.strip())
-        if step is not None:
-            return step.procedure
-        names = [each.name for each in self.scenario.procedures]
-        return self.procedure if self.procedure in names and task != TRIAL_RUN else ""
-
-    def method_of(self, task: str) -> RegistrationMethod:
-        """Return by what a trial of a task is registered.
-
-        A study says which; else it is what the trainee has chosen, if the head allows that. In the
-        trial run it is fiducials.
-        """
-        step = self.study.step_of(self.trainee.strip())
-        if step is not None:
-            return method_of(step.method)
-        return self.offered_method if task != TRIAL_RUN else RegistrationMethod.FIDUCIALS
-
-    @property
-    def offered_method(self) -> RegistrationMethod:
-        """The chosen method; fiducials where the head does not allow it."""
-        is_offered = self.method in playable_methods(self.scenario)
-        return self.method if is_offered else RegistrationMethod.FIDUCIALS
-
     def prefer(self, preferences: Preferences) -> None:
         """Take on other preferences and save them."""
         before = self._control_loop.setup.settings
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
-        wanted = preferences.applied_to(before)
-        is_needed = wanted != before or self._setting_up is not None
-        self._wanted_settings = wanted if is_needed else None
-        self._set_up_in = SET_UP_AFTER_S
+        self.setting_up.want(before, preferences.applied_to(before))
         path = self._services.config / PREFERENCES_FILE
         self._save(lambda: write_preferences(path, preferences))
 
@@ -392,11 +283,6 @@ class TrainingSession:
         assert procedure is not None, "the trial has a procedure"
         return self._control_loop.planned_bone.get(procedure.name, ())
 
-    def use_scenario(self, name: str) -> None:
-        """Continue with another scenario, as soon as it is loaded."""
-        if not self.is_being_set_up:
-            self._setting_up = self._services.use_scenario(name)
-
     def load_trial(self) -> TrialLoading:
         """Begin to load the present trial from its journal.
 
@@ -408,27 +294,6 @@ class TrainingSession:
             raise InputError(self.texts.say("replay.no journal"))
         return TrialLoading(found[0], self._control_loop.setup)
 
-    def guidance(self) -> Guidance:
-        """Return how the trainee is guided in the present trial, by the study or the setting."""
-        training, step = self.training, self.study.step_of(self.training.trainee)
-        choice = step.guidance if step is not None and step.guidance else self.preferences.guidance
-        order = [task.name for task in self.scenario.tasks]
-        return faded_guidance(choice, training.task, order)
-
-    def begin_ghost(self, head_to_world: np.ndarray) -> None:
-        """Begin to load the ghost of the present trial; in a study only where its protocol has one.
-
-        HeadToWorld is that of the trial, (4, 4) float, mm.
-        """
-        training, step = self.training, self.study.step_of(self.training.trainee)
-        choice = self.preferences.ghost if step is None else step.ghost
-        # Trial runs are not scored: there is no best one. Elsewhere, a ghost would lead to points.
-        is_none = not choice or training.task == TRIAL_RUN or not training.is_marked
-        rule = GhostRule.OFF if is_none else GhostRule(choice)
-        who = training.trainee if rule is GhostRule.OWN else self.preferences.expert
-        journals = () if rule is GhostRule.OFF else self.history.best(who, training.task)
-        self.ghost.begin(rule, journals, training.trial_id, self.setup, head_to_world)
-
     def note_done(self) -> None:
         """Count the present trial's task as done."""
         self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
@@ -439,20 +304,10 @@ class TrainingSession:
         path = self._services.config / BINDINGS_FILE
         self._save(lambda: write_bindings(path, bindings))
 
-    def notice(self, text: str, tone: Tone = Tone.PLAIN, seconds: float = NOTICE_S) -> None:
-        """Show a sentence for some seconds."""
-        self._notices = [each for each in self._notices if each[1].text != text]
-        self._notices.append((self._time + seconds, ScreenMessage(text, tone)))
-
     def complain(self, text: str) -> None:
         """Say what went wrong."""
-        self.notice(self.texts.again(text), Tone.ERROR)
+        self.notices.add(self.texts.again(text), Tone.ERROR)
         self.happened(FeedbackEvent.ERROR)
-
-    def notices(self) -> tuple[ScreenMessage, ...]:
-        """Return the sentences that are still to be shown."""
-        self._notices = [each for each in self._notices if each[0] > self._time]
-        return tuple(message for _, message in self._notices)
 
     def task_title(self, name: str) -> str:
         """Return what people call a task."""
@@ -480,14 +335,10 @@ class TrainingSession:
     def _note_reached(self) -> None:
         """Say which assignment the trainee has reached since Slicer told of it before."""
         before, self._told = self._told, self.curriculum
-        if before is None or self._told is None or before is self._told:
-            return
-        for each in self._told.assignments:
-            earlier = before.find(each.name) if before.trainee == self._told.trainee else None
-            if each.is_reached and earlier is not None and not earlier.is_reached:
-                title = self.assignment_words.title(each)
-                said = self.texts.say("assignments.just reached", assignment=title)
-                self.notice(said, Tone.GOOD, REACHED_S)
+        for each in newly_reached(before, self._told):
+            title = self.assignment_words.title(each)
+            said = self.texts.say("assignments.just reached", assignment=title)
+            self.notices.add(said, Tone.GOOD, REACHED_S)
 
     def _save(self, write: Callable[[], None]) -> None:
         try:
@@ -495,7 +346,12 @@ class TrainingSession:
         except InputError as error:
             self.complain(str(error))
 
-    def _refused(self, command: str, sentence: str) -> None:
-        # A touch that does not count comes as an event of its own, with its own sound.
-        if command != CommandName.CAPTURE:
-            self.complain(sentence)
+    def _take_answers(self) -> None:
+        """Say why commands were refused, of those that have been answered."""
+        asked, self._asked = self._asked, []
+        for command, answer in asked:
+            if not answer.done():
+                self._asked.append((command, answer))
+            # A touch that does not count comes as an event of its own, with its own sound.
+            elif not answer.result().ok and command != CommandName.CAPTURE:
+                self.complain(answer.result().message)

@@ -11,6 +11,7 @@ from rastrainer.scenario.scenario import Camera, Scenario
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.teleoperation.axes import AxesChoice
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.viewpoint.best_view import BestView
@@ -103,13 +104,20 @@ class TrialView:
         beside = along_skin(view.beside, view.fiducial, view.normal, tip)
         return Pictures(main, beside, self.yaw_deg)
 
-    def look_along(self, camera: Camera, yaw_deg: float | None) -> None:
-        """Have the sticks follow the picture, or eyes that look to `yaw_deg` from World's x."""
+    def turned(
+        self, sticks: OperatorInput, camera: Camera, axes: AxesChoice, yaw_deg: float | None
+    ) -> OperatorInput:
+        """Return what the sticks mean to the simulation, whose axes are its own camera's.
+
+        They follow the picture, or eyes that look to `yaw_deg` from World's x. They are turned
+        here, before they are recorded: a trial is simulated again as it was.
+        """
         self.yaw_deg = yaw_deg
         if yaw_deg is None:
             self.stick_turn_deg = self.control.orbit.azimuth_deg
         else:
             self.stick_turn_deg = yaw_deg - heading_deg(camera)
+        return turned(sticks, self.stick_turn_deg) if axes is AxesChoice.CAMERA else sticks
 
     def _view_of(self, state: SimulationState) -> BestView | None:
         training = state.training

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
+from rastrainer_simulator.net.views.presenter import Feedback
 from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
 from rastrainer_simulator.training.feed import FeedLayer
 
@@ -67,6 +68,13 @@ FEEDBACK_EFFECTS: Mapping[FeedbackEvent, FeedbackEffect] = {
     FeedbackEvent.THROUGH: FeedbackEffect("contact", 1.0, 0.4),
     FeedbackEvent.BLOCKED: FeedbackEffect("error", 0.7, 0.3),
 }
+
+
+def feedback_of(what: FeedbackEvent, number: int, volume: float = 1.0) -> Feedback:
+    """Return what is heard and felt of an event, as the `number`-th one; `volume` is 0 to 1."""
+    effect = FEEDBACK_EFFECTS[what]
+    data = {"rumbleMs": round(1000.0 * effect.seconds)}
+    return Feedback(number, what.value, effect.sound, volume, effect.rumble, data)
 
 
 _OF_A_LAYER = {

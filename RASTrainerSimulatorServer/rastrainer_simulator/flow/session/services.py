@@ -1,0 +1,94 @@
+"""What the flow needs of the process that it runs in, and how it awaits another simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rastrainer.scenario.library import ListedScenario
+from rastrainer_simulator.core.settings import SimulationSettings
+from rastrainer_simulator.flow.session.curricula import Curricula
+from rastrainer_simulator.flow.session.study_steps import StudySteps
+from rastrainer_simulator.ops.instructor_pin import PinGuesses
+from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.state import Answer
+
+SET_UP_AFTER_S = 1.0
+"""A simulation takes a second to make: who steps through the options shall not wait for each."""
+
+
+@dataclass(frozen=True)
+class FlowServices:
+    """What the flow needs of the process that it runs in.
+
+    Attributes:
+        config: folder of the settings files.
+        records: folder of the trials' journals.
+        use_settings: has the simulation continue with other settings, between two trials.
+        list_scenarios: lists the scenarios that `use_scenario` takes by their names.
+        use_scenario: has the simulation continue with another scenario, between two trials.
+        is_slicer_connected: says whether a client that registers and scores is connected.
+        quit: ends the process.
+        study: knows what a study that Slicer leads asks of the trainees.
+        curricula: knows where trainees stand in their curricula.
+        scores_alone: whether a trial outside of a study is scored here where no Slicer is
+            connected.
+        pin: the instructor's; None where there is never one.
+        languages: tags of those that can be chosen: the window may lack the letters of others.
+    """
+
+    config: Path
+    records: Path
+    use_settings: Callable[[SimulationSettings], Future[Answer]]
+    list_scenarios: Callable[[], Future[list[ListedScenario]]]
+    use_scenario: Callable[[str], Future[Answer]]
+    is_slicer_connected: Callable[[], bool]
+    quit: Callable[[], None]
+    study: StudySteps = field(default_factory=StudySteps)
+    curricula: Curricula = field(default_factory=Curricula)
+    scores_alone: bool = False
+    pin: PinGuesses | None = None
+    languages: Sequence[str] = tuple(LANGUAGES)
+
+
+class SettingUp:
+    """Has the simulation continue with other settings, or on another head, between two trials."""
+
+    def __init__(self, services: FlowServices, complain: Callable[[str], None]) -> None:
+        """`complain` is called with why that could not be done."""
+        self._services = services
+        self._complain = complain
+        self._wanted: SimulationSettings | None = None
+        self._begins_in_s = 0.0
+        self._answer: Future[Answer] | None = None
+
+    @property
+    def is_under_way(self) -> bool:
+        """Whether other settings of the simulation, or another scenario, are on their way."""
+        return self._answer is not None or self._wanted is not None
+
+    def want(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
+        """Continue with other settings than the present ones, once they stay for a while."""
+        is_needed = wanted != present or self._answer is not None
+        self._wanted = wanted if is_needed else None
+        self._begins_in_s = SET_UP_AFTER_S
+
+    def use_scenario(self, name: str) -> None:
+        """Continue with another scenario, as soon as it is loaded."""
+        if not self.is_under_way:
+            self._answer = self._services.use_scenario(name)
+
+    def advance(self, dt: float, has_open_trial: bool) -> None:
+        """Advance by `dt` seconds; what an open trial has to wait for begins after it."""
+        self._begins_in_s -= dt
+        if self._answer is not None and self._answer.done():
+            answer = self._answer.result()
+            self._answer = None
+            if not answer.ok:
+                self._complain(answer.message)
+        may_begin = self._answer is None and self._begins_in_s <= 0.0
+        if self._wanted is not None and may_begin and not has_open_trial:
+            self._answer = self._services.use_settings(self._wanted)
+            self._wanted = None
