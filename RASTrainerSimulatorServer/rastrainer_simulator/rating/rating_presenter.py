@@ -26,8 +26,7 @@ from rastrainer_simulator.net.views.presenter import (
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
-from rastrainer_simulator.rating.shown_playback import ShownPlayback
-from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.replay.playback import Playback, ShownPlayback
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.view_control import Pictures

@@ -1,4 +1,4 @@
-"""What the views show: the arm as it is, the tutorial's points on the head, or a recorded trial."""
+"""What the views show: the arm as it is, the tutorial's points on the head, or recorded trials."""
 
 from __future__ import annotations
 
@@ -167,3 +167,48 @@ class PlaybackSwitch:
             alter = self.alter
             shown = result if alter is None else replace(result, state=alter(result.state))
             self._subscribers.publish(shown)
+
+
+class ShownPlayback:
+    """A `StateSource` of the playback that is shown now, in the event loop's thread.
+
+    Attributes:
+        playback: it.
+    """
+
+    statistics = LoopStatistics()
+
+    def __init__(self, playback: Playback) -> None:
+        self.playback = playback
+        self._subscribers: Subscribers[StepResult] = Subscribers()
+        self._end = playback.subscribe(self._subscribers.publish)
+
+    @property
+    def latest(self) -> SimulationState:
+        """The state that is shown."""
+        return self.playback.latest
+
+    @property
+    def setup(self) -> SimulationSetup:
+        """Head and robot of the trial."""
+        return self.playback.setup
+
+    def subscribe(self, callback: Callable[[StepResult], None]) -> Callable[[], None]:
+        """Have `callback` called with each state; returns what ends that."""
+        return self._subscribers.add(callback)
+
+    def show(self, playback: Playback) -> None:
+        """Show another trial."""
+        self._end()
+        self.playback = playback
+        self._end = playback.subscribe(self._subscribers.publish)
+
+    async def run(self, advanced: Callable[[float], None]) -> None:
+        """Play until it is canceled; `advanced` is called with the s that have gone by."""
+        before = time.monotonic()
+        while True:
+            await asyncio.sleep(PERIOD_S)
+            now = time.monotonic()
+            self.playback.advance(now - before)
+            advanced(now - before)
+            before = now

@@ -19,7 +19,6 @@ from rastrainer_simulator.flow.pages import (
     experiment,
     introduction,
     match,
-    pin,
     procedure,
     result,
     start,
@@ -27,11 +26,11 @@ from rastrainer_simulator.flow.pages import (
     trial,
     tutorial,
 )
+from rastrainer_simulator.flow.pages.match import MatchReport
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
-from rastrainer_simulator.flow.session.match_report import MatchReport
 from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.screen import Screen, without_secrets
@@ -197,7 +196,7 @@ def _pages(session) -> Iterator[SessionPage]:
     keys, touch = InputDevice.KEYBOARD, ControlName.TOUCH
     for simple in (start.StartPage, start.QuitPage, start.SettingsPage):
         yield simple(session)
-    yield pin.PinPage(session)
+    yield start.PinPage(session)
     yield introduction.IntroductionPage(session)
     yield introduction.ControlsPage(session)
     yield introduction.PadTestPage(session)

@@ -8,7 +8,7 @@ from rastrainer.protocol import Phase
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.touch_registration import register_trial
-from rastrainer_simulator.flow.session.match_report import match_report
+from rastrainer_simulator.flow.pages.match import match_report
 from rastrainer_simulator.registration_state import TouchState, TracedPoint, TraceState
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.registered_trial import given

@@ -9,9 +9,8 @@ import pytest
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase
 from rastrainer.registration.trace_guidance import COVERED_MM
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.pages.match import MatchPage
+from rastrainer_simulator.flow.pages.match import MatchPage, MatchReport
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
-from rastrainer_simulator.flow.session.match_report import MatchReport
 from rastrainer_simulator.net.views.presenter import TraceGuidance
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 

@@ -1,13 +1,27 @@
-"""Set text in lines: how wide it is, where it breaks, and where it stands."""
+"""Set text in lines: how wide it is, where it breaks, where it stands, and its letters.
+
+VTK's FreeType sets them, in its own font, the same on every system. That has no Chinese characters;
+these are set in a font of this computer.
+"""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import vtkmodules.vtkRenderingFreeType  # noqa: F401  (registers the text renderer)
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import VTK_FONT_FILE
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from rastrainer_simulator.desktop.panels.canvas import Canvas, Letters
-from rastrainer_simulator.desktop.panels.letters import set_line
-from rastrainer_simulator.desktop.panels.line_breaks import pieces
+from rastrainer_simulator.desktop.panels.line_breaks import WIDE, pieces
 from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
+from rastrainer_simulator.ops.chinese_font import chinese_font
 
 _BASELINE_SHARE = 0.70
 
@@ -80,3 +94,89 @@ class Brush:
 
     def _pixels(self, style: TextStyle) -> int:
         return max(1, round(style.size * self.scale))
+
+
+_DPI = 72
+_MEASURE_HEIGHT = "x"
+_BOLD_SHARE = 1 / 24
+"""How much thicker a bold stroke is, of the size: a font file has one weight."""
+_IN_THE_FONT = str.maketrans({"\u202f": "\u00a0"})
+"""What stands for what the font lacks: for the narrow no-break space, the wide one."""
+_RUNS = re.compile(f"([{WIDE}]+)")
+
+
+@lru_cache(maxsize=2000)
+def set_line(text: str, pixels: int, is_bold: bool) -> Letters:
+    """Return a line of a size in pixels; what no font has stays empty."""
+    runs = filter(None, _RUNS.split(text.translate(_IN_THE_FONT)))
+    return _beside([_set_run(run, pixels, is_bold) for run in runs])
+
+
+def _set_run(text: str, pixels: int, is_bold: bool) -> Letters:
+    """Set characters of one font."""
+    if not _RUNS.match(text):
+        return Letters(_coverage(text, pixels, is_bold, None), _descent(pixels, is_bold, None))
+    font = chinese_font()
+    if font is None:
+        return Letters(np.zeros((pixels, 0), np.uint8), 0)
+    coverage = _coverage(text, pixels, False, font)
+    if is_bold:
+        coverage = _thickened(coverage, _BOLD_SHARE * pixels)
+    return Letters(coverage, _descent(pixels, False, font))
+
+
+def _thickened(coverage: np.ndarray, by: float) -> np.ndarray:
+    """Return letters whose strokes are wider to the right, by a number of pixels."""
+    whole, rest = divmod(by, 1.0)
+    for share in (*(1.0,) * int(whole), rest):
+        beside = (share * coverage[:, :-1]).astype(np.uint8)
+        coverage[:, 1:] = np.maximum(coverage[:, 1:], beside)
+    return coverage
+
+
+def _beside(runs: list[Letters]) -> Letters:
+    """Return runs one after the other on one baseline."""
+    if len(runs) == 1:
+        return runs[0]
+    descent = max((run.descent for run in runs), default=0)
+    ascent = max((run.coverage.shape[0] - run.descent for run in runs), default=0)
+    padded = [
+        np.pad(
+            run.coverage,
+            ((ascent - run.coverage.shape[0] + run.descent, descent - run.descent), (0, 0)),
+        )
+        for run in runs
+    ]
+    return Letters(np.hstack(padded) if padded else np.zeros((0, 0), np.uint8), descent)
+
+
+@lru_cache(maxsize=100)
+def _descent(pixels: int, is_bold: bool, font: Path | None) -> int:
+    """Return how far a line's picture reaches below the baseline, in pixels."""
+    coverage = _coverage(_MEASURE_HEIGHT, pixels, is_bold, font)
+    return coverage.shape[0] - 1 - int(np.flatnonzero((coverage > 127).any(axis=1))[-1])
+
+
+def _coverage(text: str, pixels: int, is_bold: bool, font: Path | None) -> np.ndarray:
+    style = vtkTextProperty()
+    style.SetFontFamilyToArial()
+    if font is not None:
+        style.SetFontFamily(VTK_FONT_FILE)
+        style.SetFontFile(str(font))
+    style.SetFontSize(pixels)
+    style.SetBold(is_bold)
+    style.SetColor(1.0, 1.0, 1.0)
+    # Not the tight box: all lines of a size then reach equally far below their baseline.
+    style.SetUseTightBoundingBox(False)
+    renderer = vtkTextRenderer.GetInstance()
+    renderer.SetScaleToPowerOfTwo(False)
+    # A dollar sign would begin a formula.
+    backend = vtkTextRenderer.FreeType
+    image = vtkImageData()
+    if not renderer.RenderString(style, text, image, [0, 0], _DPI, backend):
+        return np.zeros((pixels, 0), np.uint8)
+    width, height, _ = image.GetDimensions()
+    scalars = image.GetPointData().GetScalars()
+    if scalars is None or width * height == 0:
+        return np.zeros((pixels, 0), np.uint8)
+    return vtk_to_numpy(scalars).reshape(height, width, -1)[::-1, :, 3].copy()
