@@ -401,3 +401,19 @@ def test_a_hostile_message_is_refused(told):
 def test_what_is_no_list_of_assignments_is_refused(assignments):
     with pytest.raises(InputError):
         check_arguments(CommandName.CURRICULUM, {"trainee": "A", "assignments": assignments})
+
+
+def test_an_assignment_says_when_it_was_reached_and_never_before_its_gate():
+    def on(day: int, **changes) -> CountedTrial:
+        return replace(PASSED, started_utc=f"2026-05-{day:02}T09:00:00Z", **changes)
+
+    second = on(1, task="task-2")
+    found = stand([second, on(2), replace(FAILED, started_utc=on(3).started_utc), on(4), on(5)])
+    assert [each.reached_utc[8:10] for each in found.standings] == ["05", "05"]
+    assert [each.reached_utc for each in stand([second, on(2)]).standings] == ["", ""]
+    old = [on(day, version="2") for day in (6, 7)]
+    assert stand([*old, on(8), on(9)]).standings[0].reached_utc == on(7).started_utc
+    competent = replace(ONE, goal=GoalKind.COMPETENT, trials=0)
+    days = [on(day) for day in range(1, 29)]
+    counts = [count for count in range(29) if stand(days[:count], competent).reached]
+    assert stand(days, competent).standings[0].reached_utc == days[counts[0] - 1].started_utc

@@ -34,6 +34,7 @@ class CountedTrial:
         parts: Desirability of each part of the score, 0 to 1.
         is_aborted: Whether it was aborted after a touch.
         is_in_procedure: Whether it was aborted in a procedure.
+        started_utc: ISO 8601.
     """
 
     task: str
@@ -47,6 +48,7 @@ class CountedTrial:
     parts: Mapping[str, float] = field(default_factory=dict, hash=False)
     is_aborted: bool = False
     is_in_procedure: bool = False
+    started_utc: str = ""
 
     def counts_for(self, assignment: Assignment) -> bool:
         """Return whether it was played as an assignment asks."""
@@ -77,7 +79,7 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
         (pseudonym, TRIAL_RUN),
     )
     timed = [
-        (moment(started), stored, _scored(task, mode, scenario, score, outcome))
+        (moment(started), stored, _scored(started, task, mode, scenario, score, outcome))
         for started, stored, task, mode, scenario, score, outcome in rows
         if score is not None
     ]
@@ -90,7 +92,7 @@ def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial
 
 
 def _scored(
-    task: str, mode: str, scenario: str, score_json: str, outcome_json: str | None
+    started: str, task: str, mode: str, scenario: str, score_json: str, outcome_json: str | None
 ) -> CountedTrial:
     score = decoded(score_json, TrialScore.from_json)
     method = method_of_version(score.version)
@@ -110,6 +112,7 @@ def _scored(
         found.acceptable,
         found.version,
         parts,
+        started_utc=started,
     )
 
 
@@ -121,4 +124,5 @@ def _aborted(record: AbortedTrial) -> CountedTrial:
         record.method.value,
         is_aborted=True,
         is_in_procedure=record.phase in {phase.value for phase in PROCEDURE_PHASES},
+        started_utc=record.started_utc,
     )

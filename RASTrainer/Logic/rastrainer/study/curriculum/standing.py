@@ -8,7 +8,7 @@ reached when a newer version follows. An aborted trial with a touch fails in eac
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
@@ -17,6 +17,7 @@ from rastrainer.protocol import AssignmentState, GoalKind
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.curriculum.counted_trials import CountedTrial
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
+from rastrainer.study.database.values import moment
 from rastrainer.trial.scoring import passes, score_version
 from rastrainer.trial.trainee_progress import competence_of
 
@@ -41,6 +42,8 @@ class AssignmentStanding:
         mean: Of the latest scores of the present version; None before the first.
         missing: Names of the assignments that it waits for.
         weakest: Part of the score that cost most in the latest trials; "" before the first.
+        reached_utc: Start of the trial by which it was reached, ISO 8601; of a gate's where that
+            was later, "" until then.
     """
 
     assignment: Assignment
@@ -52,6 +55,7 @@ class AssignmentStanding:
     mean: float | None = None
     missing: tuple[str, ...] = ()
     weakest: str = ""
+    reached_utc: str = ""
 
     @property
     def shortfall(self) -> float:
@@ -107,14 +111,13 @@ def standing_in(
         trials: Of the trainee, in order of starting.
         pass_mark_of: The study's pass mark, for goals without a mark of their own.
     """
-    reached: set[str] = set()
+    reached: dict[str, str] = {}
     standings = []
     for assignment in curriculum.assignments:
         own = [trial for trial in trials if trial.counts_for(assignment)]
-        missing = tuple(name for name in assignment.after if name not in reached)
-        standing = _standing(assignment, own, missing, pass_mark_of)
+        standing = _standing(assignment, own, reached, pass_mark_of)
         if standing.state is AssignmentState.REACHED:
-            reached.add(assignment.name)
+            reached[assignment.name] = standing.reached_utc
         standings.append(standing)
     played = sum(
         any(_is_comparable(trial, each) for each in curriculum.assignments) for trial in trials
@@ -131,24 +134,28 @@ def _is_comparable(trial: CountedTrial, assignment: Assignment) -> bool:
 def _standing(
     assignment: Assignment,
     own: Sequence[CountedTrial],
-    missing: tuple[str, ...],
+    reached: Mapping[str, str],
     pass_mark_of: PassMarkOf,
 ) -> AssignmentStanding:
+    """Return where a trainee stands; `reached` has when those before it were reached, by name."""
     present = _present_version(assignment)
 
     def of_version(version: str) -> list[CountedTrial]:
         return [trial for trial in own if trial.is_aborted or trial.version == version]
 
-    def progress(version: str) -> tuple[bool, int]:
+    def progress(version: str) -> tuple[CountedTrial | None, int]:
         mark = mark_of(version)
-        return (False, 0) if mark is None else _progress(assignment, of_version(version), mark)
+        return (None, 0) if mark is None else _progress(assignment, of_version(version), mark)
 
     def mark_of(version: str) -> float | None:
         return pass_mark_of(version) if assignment.mark is None else assignment.mark
 
     earlier = {trial.version for trial in own} - {present, ""}
-    is_reached, done = progress(present)
-    is_reached = is_reached or any(progress(version)[0] for version in earlier)
+    reaching, done = progress(present)
+    reachings = [reaching, *(progress(version)[0] for version in earlier)]
+    times = [trial.started_utc for trial in reachings if trial is not None]
+    is_reached = bool(times)
+    missing = tuple(name for name in assignment.after if name not in reached)
     comparable = of_version(present)
     recent = comparable[-RECENT:]
     needed = assignment.trials if assignment.goal is GoalKind.SCORE else WHOLE_WAY
@@ -163,6 +170,9 @@ def _standing(
         fmean(trial.score for trial in recent) if recent else None,
         missing,
         _weakest([trial for trial in comparable if not trial.is_aborted][-RECENT:]),
+        _reached_utc(times, [reached[name] for name in assignment.after])
+        if is_reached and not missing
+        else "",
     )
 
 
@@ -174,19 +184,27 @@ def _present_version(assignment: Assignment) -> str:
 
 def _progress(
     assignment: Assignment, trials: Sequence[CountedTrial], mark: float
-) -> tuple[bool, int]:
-    """Return whether trials of one version reach the goal, and how far they are now."""
+) -> tuple[CountedTrial | None, int]:
+    """Return which of the trials of one version reaches the goal, and how far they are now."""
     passed = [passes(trial.score, trial.acceptable, mark) for trial in trials]
     if assignment.goal is GoalKind.COMPETENT:
         chart = competence_of([not each for each in passed])
         share = chart.scores[-1] / chart.limit if chart.scores else 0.0
         # Rounded down: the whole way is shown only at competence.
-        return chart.competent_at is not None, min(int(WHOLE_WAY * share), WHOLE_WAY - 1)
-    longest = row = 0
-    for each in passed:
-        row = row + 1 if each else 0
-        longest = max(longest, row)
-    return longest >= assignment.trials, min(row, assignment.trials)
+        done = min(int(WHOLE_WAY * share), WHOLE_WAY - 1)
+        return None if chart.competent_at is None else trials[chart.competent_at - 1], done
+    reaching, row = None, 0
+    for trial, has_passed in zip(trials, passed, strict=True):
+        row = row + 1 if has_passed else 0
+        if row == assignment.trials and reaching is None:
+            reaching = trial
+    return reaching, min(row, assignment.trials)
+
+
+def _reached_utc(times: Sequence[str], gates: Sequence[str]) -> str:
+    """Return the first of `times`, or of the gates the last where that was later; "" if unknown."""
+    first = min(filter(None, times), key=moment, default="")
+    return max(filter(None, (first, *gates)), key=moment, default="")
 
 
 def _weakest(trials: Sequence[CountedTrial]) -> str:
