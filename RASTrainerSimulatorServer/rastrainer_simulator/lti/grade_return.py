@@ -18,8 +18,8 @@ from rastrainer_simulator.lti.course_study import CourseStudy, DueGrade
 from rastrainer_simulator.lti.launch_message import SCORE_SCOPE
 from rastrainer_simulator.lti.platform_client import PlatformAwayError, PlatformClient
 from rastrainer_simulator.lti.settings import LearningPlatform, LtiSettings
-from rastrainer_simulator.lti.study_thread import StudyThread
 from rastrainer_simulator.lti.tool_key import ToolKey
+from rastrainer_simulator.ops.study_thread import StudyThread
 
 _log = logging.getLogger(__name__)
 ROUND_S = 5.0
@@ -41,7 +41,7 @@ class GradeReturn:
         settings: LtiSettings,
         key: ToolKey,
         client: PlatformClient,
-        study: StudyThread,
+        study: StudyThread[CourseStudy],
         clock: Callable[[], float],
     ) -> None:
         """Send nothing yet.

@@ -30,11 +30,11 @@ from rastrainer_simulator.lti.launch_page import PAGE_HEADERS, LaunchPage
 from rastrainer_simulator.lti.open_logins import VALID_S, OpenLogins, new_secret
 from rastrainer_simulator.lti.platform_client import PlatformAwayError, PlatformClient
 from rastrainer_simulator.lti.settings import KEYS, LAUNCH, LOGIN, LtiSettings
-from rastrainer_simulator.lti.study_thread import StudyThread
 from rastrainer_simulator.lti.tool_key import ToolKey
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.connections import Connections
 from rastrainer_simulator.net.views.limited_server import LimitedServer
+from rastrainer_simulator.ops.study_thread import StudyThread
 
 _log = logging.getLogger(__name__)
 
@@ -71,7 +71,7 @@ class LtiServer:
         limits = limits or ViewLimits()
         clock = asyncio.get_running_loop().time
         self._settings, self._key = settings, key
-        self._study = StudyThread(study)
+        self._study = StudyThread(lambda: CourseStudy(study))
         self._key_sets = KeySets(client, clock)
         self._logins = OpenLogins(clock)
         self._connections = Connections(limits.connections, limits.first_message_s)

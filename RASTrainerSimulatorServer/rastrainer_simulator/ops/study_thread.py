@@ -5,23 +5,30 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import TypeVar
+from typing import Generic, Protocol, TypeVar
 
-from rastrainer.study.database.address import StudyPlace
-from rastrainer_simulator.lti.course_study import CourseStudy
 
+class OpenedStudy(Protocol):
+    """What is done with a study; for one thread."""
+
+    def close(self) -> None:
+        """Close the study."""
+
+
+Opened = TypeVar("Opened", bound=OpenedStudy)
 T = TypeVar("T")
 
 
-class StudyThread:
+class StudyThread(Generic[Opened]):
     """Does one thing after the other with a study, which is opened by the first."""
 
-    def __init__(self, place: StudyPlace) -> None:
-        self._place = place
-        self._study: CourseStudy | None = None
+    def __init__(self, open_study: Callable[[], Opened]) -> None:
+        """Open nothing yet; `open_study` is called in the thread, and may raise `InputError`."""
+        self._open = open_study
+        self._study: Opened | None = None
         self._executor = ThreadPoolExecutor(1, "study")
 
-    async def do(self, work: Callable[[CourseStudy], T]) -> T:
+    async def do(self, work: Callable[[Opened], T]) -> T:
         """Return what a function returns for the study.
 
         Raises:
@@ -29,13 +36,13 @@ class StudyThread:
         """
         return await asyncio.get_running_loop().run_in_executor(self._executor, self._run, work)
 
-    def _run(self, work: Callable[[CourseStudy], T]) -> T:
+    def _run(self, work: Callable[[Opened], T]) -> T:
         if self._study is None:
-            self._study = CourseStudy(self._place)
+            self._study = self._open()
         return work(self._study)
 
     async def close(self) -> None:
         """Close the study."""
         if self._study is not None:
-            await self.do(CourseStudy.close)
+            await self.do(lambda study: study.close())
         self._executor.shutdown()
