@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from rastrainer.study.database.study import Study
+from rastrainer_simulator.board.class_reader import ClassReader
+from rastrainer_simulator.board.class_table import class_table
 from Testing.domain.trial.trial_records import gentle_score, make_record
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "example-curriculum.json"
@@ -54,7 +56,7 @@ def test_a_curriculum_is_set_for_a_trainee_shown_and_ended(panel):
         panel.press("endCurriculumButton")
 
 
-def test_a_curriculum_for_everybody_shows_the_class_and_follows_what_arrives(panel):
+def test_a_curriculum_for_everybody_shows_the_class_as_a_board_does_and_follows_what_arrives(panel):
     panel.type("curriculumPathLineEdit", str(SHIPPED))
     panel.choose("traineeComboBox", "Choose a trainee")
     with pytest.raises(AssertionError, match="Choose a trainee in the section"):
@@ -70,4 +72,14 @@ def test_a_curriculum_for_everybody_shows_the_class_and_follows_what_arrives(pan
     panel.widget.logic.session.trainees.changed.emit()
     panel.process_events()
     assert cells(panel, "assignmentsTable")[0][:2] == ["Task 1", "reached"]
-    assert cells(panel, "classTable")[0][1] == "1 / 6"
+    shown = cells(panel, "classTable")
+    assert shown[0][1] == "1 / 6"
+    reader = ClassReader(Path(panel.find("studyPathLineEdit").currentPath))
+    (table,) = class_table(reader.read(), "en")
+    reader.close()
+    assert shown == [
+        [row["trainee"], f"{row['reached']} / {len(row['cells'])}", row["next"]]
+        for row in table["trainees"]
+    ]
+    chosen = [cell["progress"].replace(" / ", " of ") for cell in table["trainees"][0]["cells"]]
+    assert chosen == [row[1] for row in cells(panel, "assignmentsTable")]

@@ -1,6 +1,7 @@
-"""Make the picture of a teacher's board: python -m Testing.web.board_pictures.
+"""Make the pictures of a teacher's board: python -m Testing.web.board_pictures.
 
-Six seats that say what a simulator says; one of them has stopped answering.
+Six seats that say what a simulator says, of which one has stopped answering, and a class of twelve
+virtual trainees.
 """
 
 from __future__ import annotations
@@ -15,6 +16,9 @@ from aiohttp import web
 from playwright.sync_api import sync_playwright
 
 from rastrainer.protocol import Phase
+from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
+from rastrainer_simulator.board.class_reader import ClassReader, ClassStanding
+from rastrainer_simulator.flow.session.curricula import AssignmentWords
 from rastrainer_simulator.net.views.messages import SUBPROTOCOL
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
 from rastrainer_simulator.net.views.presenter import Seat
@@ -22,22 +26,22 @@ from rastrainer_simulator.ops.texts.english import ENGLISH
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import TouchStage
 from Testing.free_port import free_port
+from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import BoardClient
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.web.chromium import launch
 
-PICTURE = Path(__file__).parents[2] / "docs" / "pictures" / "board.png"
-HOST, SIZE = "127.0.0.1", {"width": 1180, "height": 640}
+FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
+HOST, SIZE, WIDE = "127.0.0.1", {"width": 1180, "height": 640}, {"width": 1300, "height": 640}
 WELCOME = json.dumps({"type": "welcome", "protocol": 1, "view": 1, "bodies": []})
 KEY = "k" * 43
 SAY = Texts(ENGLISH).say
 
 
-def assignment(task: str, progress: str, reached: int) -> str:
-    """Return where a trainee stands in a curriculum of six assignments."""
-    summary = SAY("assignments.summary", reached=reached, count=6)
-    next_ = SAY("assignments.next in brief", assignment=task, progress=progress)
-    return f"{summary}. {next_}"
+def assignments(found: ClassStanding, trainee: str) -> str:
+    """Return where a trainee stands, as the seat says it."""
+    words = AssignmentWords(Texts(ENGLISH), lambda task: SAY(f"task.{task}"), str.capitalize)
+    return words.in_brief(ToldCurriculum.of(trainee, found.standings[trainee]))
 
 
 def seat(
@@ -60,13 +64,13 @@ def seat(
     )
 
 
-def seats() -> dict[str, str]:
-    """Return what each seat says, by its name."""
+def seats(found: ClassStanding) -> dict[str, str]:
+    """Return what each seat says, by its name; two say where their trainees stand."""
     far, warning = (Phase.RUNNING, TouchStage.FAR), SAY("warning.elsewhere")
     paused, scored = (Phase.PAUSED, TouchStage.FAR), (Phase.SCORED, TouchStage.FAR)
-    first, fifth = assignment("Task 2", "1 / 2", 1), assignment("Task 5", "2 / 3", 4)
+    first, fifth = assignments(found, "T004"), assignments(found, "T002")
     return {
-        "Window 1": seat("T004", "Task 2", (*far, 9, 71), score=82.0, assignments=first),
+        "Window 1": seat("T004", "Task 4", (*far, 9, 71), score=82.0, assignments=first),
         "Window 2": seat(
             "T011",
             "Task 4",
@@ -76,7 +80,7 @@ def seats() -> dict[str, str]:
         ),
         "Window 3": seat("T007", "Task 1", (*paused, 12, 95), screen="Task 1"),
         "Headset": seat(
-            "T002", "", (*scored, 0, 0), score=91.0, screen="T002: Task 5", assignments=fifth
+            "T002", "", (*scored, 0, 0), score=91.0, screen="T002: Task 4", assignments=fifth
         ),
         "Seminar room": seat(
             "", "", (Phase.IDLE, TouchStage.FAR, 0, 0), slicer=False, screen=SAY("start.title")
@@ -115,20 +119,32 @@ def take_picture(board: BoardClient, stopped: Iterable[web.AppRunner]) -> None:
         page = browser.new_page(viewport=SIZE, device_scale_factor=1)
         page.goto(f"{board.url}/#code={board.server.code.code}")
         page.wait_for_selector("#seats > li:nth-child(6)")
-        page.get_by_text("T009").wait_for()
+        page.locator("#seats").get_by_text("T009").wait_for()
         for runner in stopped:
             board.thread.run(runner.cleanup())
         page.get_by_text("does not answer").first.wait_for()
-        page.screenshot(path=PICTURE, full_page=True)
+        page.get_by_role("cell", name="Window 1").wait_for()
+        top = page.locator("#class").bounding_box()["y"]
+        clip = {"x": 0, "y": 0, "width": SIZE["width"], "height": top - 16}
+        page.screenshot(path=FOLDER / "board.png", full_page=True, clip=clip)
+        page.set_viewport_size(WIDE)
+        box = page.locator("#class").bounding_box()
+        clip = {"x": 0, "y": box["y"] - 16, "width": WIDE["width"], "height": box["height"] + 32}
+        page.screenshot(path=FOLDER / "class.png", full_page=True, clip=clip)
         browser.close()
 
 
 def main() -> None:
-    """Make the picture."""
+    """Make the pictures."""
     with tempfile.TemporaryDirectory() as folder, LoopThread() as thread:
-        board = BoardClient(thread, Path(folder) / "teacher")
+        study = Path(folder) / "study.db"
+        play_class(study, [f"T{number:03}" for number in range(1, 13)], 30)
+        reader = ClassReader(study)
+        found = reader.read()
+        reader.close()
+        board = BoardClient(thread, Path(folder) / "teacher", study)
         runners = []
-        for name, text in seats().items():
+        for name, text in seats(found).items():
             runner, port = thread.run(serve(text))
             runners.append(runner)
             values = {"name": name, "address": f"http://{HOST}:{port}", "code": "000000"}

@@ -7,6 +7,7 @@ import pytest
 from rastrainer_simulator.net.views.presenter import Seat
 from rastrainer_simulator.net.views.screen import Screen, ScreenMessage
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
+from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import PIN, BoardClient, WatchedSimulator
 from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import PATIENCE_MS, accessibility_checker, draw_nothing, wait_for
@@ -14,7 +15,7 @@ from Testing.web.test_page_access import SIZES, VIOLATIONS
 
 AT_WORK = Seat("P07", "Task 2", 15, instruction="Touch 3", score=71.5, holder="gamepad")
 LONG = Seat(
-    "A-trainee-whose-pseudonym-is-as-long-as-one-may-be-0123456789012345",
+    "A-trainee-whose-pseudonym-is-as-long-as-one-may-be-0123456789012",
     "Zielpunkte am Hinterkopf und an der Schläfe",
     15,
     warnings=("Die Verbindung zu 3D Slicer ist unterbrochen; alles wird nachgeliefert.",),
@@ -25,10 +26,25 @@ LONG = Seat(
 )
 CUT_OFF = """() => [...document.querySelectorAll("body *")]
   .filter((part) => part.checkVisibility() && part.clientWidth > 0)
-  .filter((part) => part.matches(":not(input)") && getComputedStyle(part).display !== "inline")
+  .filter((part) => part.matches(":not(input, .scroller, .scroller table, .scroller table *)"))
+  .filter((part) => getComputedStyle(part).display !== "inline")
   .filter((part) => part.scrollWidth > part.clientWidth + 1
     || part.getBoundingClientRect().right > innerWidth + 1)
   .map((part) => `${part.tagName} ${part.textContent} is cut off`)"""
+CELLS = """() => {
+  const scroller = document.querySelector(".scroller");
+  const found = [...scroller.querySelectorAll("th, td, button")]
+    .filter((part) => part.scrollWidth > part.clientWidth + 1)
+    .map((part) => `${part.tagName} ${part.textContent} is cut off`);
+  scroller.scrollLeft = 10000;
+  const { left } = scroller.querySelector("tbody th").getBoundingClientRect();
+  const { left: edge } = scroller.getBoundingClientRect();
+  if (Math.abs(left - edge) > 2) found.push("trainees are scrolled away");
+  if (document.documentElement.scrollWidth > innerWidth + 1) found.push("the page scrolls");
+  scroller.scrollLeft = 0;
+  return found;
+}"""
+"""The table scrolls in its region, beside the trainees' names."""
 
 
 @pytest.fixture
@@ -41,9 +57,17 @@ def simulator(loop, loop_thread, tmp_path):
     served.close()
 
 
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """A class of virtual trainees, one of whom sits at the seat."""
+    path = tmp_path_factory.mktemp("class") / "study.db"
+    play_class(path, ["T2", "T10", "T1", LONG.trainee], 12)
+    return path
+
+
 @pytest.fixture
-def board(loop_thread, tmp_path):
-    board = BoardClient(loop_thread, tmp_path / "teacher")
+def board(loop_thread, tmp_path, study):
+    board = BoardClient(loop_thread, tmp_path / "teacher", study)
     yield board
     board.close()
 
@@ -148,6 +172,7 @@ def test_the_board_breaks_no_rule_of_accessibility_and_fits_every_size_in_its_ow
         board.add(simulator, name)
     page = open_board(browser, board, locale)
     page.wait_for_selector("#seats > li[data-link=watching]")
+    page.wait_for_selector("#class td:has-text('A place whose name')")
     page.evaluate(accessibility_checker())
     written = "zh-Hans" if locale == "zh-CN" else locale[:2]
     assert page.locator("html").get_attribute("lang") == written
@@ -157,7 +182,7 @@ def test_the_board_breaks_no_rule_of_accessibility_and_fits_every_size_in_its_ow
     def look(what: str) -> None:
         for size, (width, height) in SIZES.items():
             page.set_viewport_size({"width": width, "height": height})
-            wrong = page.evaluate(CUT_OFF)
+            wrong = page.evaluate(CUT_OFF) + page.evaluate(CELLS)
             wrong += page.evaluate(VIOLATIONS) if size in ("narrowest", "laptop") else []
             found.extend(f"{what}, {size}: {each}" for each in wrong)
 

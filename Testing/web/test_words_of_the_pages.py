@@ -55,3 +55,10 @@ def test_what_a_drawing_colors_has_the_name_that_the_menus_have_for_it(language)
     page, table = tables(language)[0], LANGUAGES[language]
     for part, name in DRAWN.items():
         assert f"{table[name]} ".startswith(f"{page[part]} "), part
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_board_explains_the_states_by_the_words_that_trainees_read(language):
+    board, table = tables(language)[1], LANGUAGES[language]
+    for state in ("reached", "locked"):
+        assert board[f"legend.{state}"].startswith(table[f"assignments.{state}"])

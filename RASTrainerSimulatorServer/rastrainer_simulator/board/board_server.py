@@ -15,7 +15,9 @@ from aiohttp import hdrs, web
 from rastrainer.command_arguments import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.json_checks import accepted, one_of, text
+from rastrainer.study.database.address import StudyPlace
 from rastrainer_simulator.assets import NOT_BUILT, page_folder
+from rastrainer_simulator.board.class_watch import ClassWatch
 from rastrainer_simulator.board.live_view import SEAT_PATH, LiveView
 from rastrainer_simulator.board.seat_client import RefusedError, SeatClient
 from rastrainer_simulator.board.seat_list import (
@@ -54,8 +56,16 @@ class BoardServer:
         client: SeatClient,
         on_new_code: Callable[[str], None],
         limits: ViewLimits | None = None,
+        study: StudyPlace | None = None,
     ) -> None:
         """Watch the seats that the folder of settings lists; in the event loop's thread.
+
+        Args:
+            config: Folder of settings.
+            client: Talks to the seats.
+            on_new_code: Called with each new code for browsers.
+            limits: What connections may cost.
+            study: Whose trainees are the class; None for a board of seats alone.
 
         Raises:
             InputError: the list cannot be read.
@@ -66,6 +76,7 @@ class BoardServer:
         self._pages: set[asyncio.Event] = set()
         self._seats = {entry.id: self._watched(entry) for entry in self._list}
         self._pins: dict[str, str] = {}
+        self._class = ClassWatch(study)
         self._page = page_folder()
         sessions = Sessions(dict.fromkeys(ViewRole, MOST_TEACHERS))
         self.code = PairingCode(asyncio.get_running_loop().time, on_new_code)
@@ -77,8 +88,9 @@ class BoardServer:
         """Listen and return the port; 0 is any free one.
 
         Raises:
-            InputError: the port cannot be listened on.
+            InputError: the study cannot be read, or the port not be listened on.
         """
+        await self._class.begin()
         return await self._http.listen(host, port)
 
     async def close(self) -> None:
@@ -86,12 +98,14 @@ class BoardServer:
         self._http.stop_listening()
         await asyncio.gather(*(seat.close() for seat in self._seats.values()))
         await self._http.close()
+        await self._class.close()
 
     def _routes(self) -> list[web.RouteDef]:
         live = LiveView(self._entry, self._client)
         return [
             web.get("/", self._send_page),
             web.get("/tiles", self._send_tiles),
+            web.get("/class", self._class.send),
             web.get("/paired", _say_paired),
             web.post("/seats", self._add),
             web.delete(SEAT_PATH, self._remove),

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
+from rastrainer.study.database.address import StudyPlace
+from rastrainer_simulator.cli.shared import STUDY_HELP, add_study
 
 DEFAULT_BOARD_PORT = 18955
 
@@ -19,9 +21,15 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="watch several simulators in one page of live tiles",
         description=(
             "Serves a teacher's board to browsers on this computer until Ctrl-C: who trains where, "
-            "task, point, time, contact and last score of each seat, and each seat's scene. The "
-            "seats' addresses and keys stay on this computer."
+            "task, point, time, contact and last score of each seat, and each seat's scene; with "
+            "a study, also where every trainee stands in the curriculum. The seats' addresses and "
+            "keys stay on this computer."
         ),
+    )
+    add_study(
+        parser,
+        "--study",
+        help_text=f"show the class, too; only read: {STUDY_HELP}",
     )
     parser.add_argument(
         "--port",
@@ -39,17 +47,18 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve the board until it is stopped, and return the exit status.
 
     Raises:
-        InputError: the list of seats cannot be read, or the port cannot be listened on.
+        InputError: the list of seats or the study cannot be read, or the port not listened on.
     """
     if not 0 <= arguments.port < 65536:
         raise InputError("--port must be a number from 0 to 65535.")
     from rastrainer_simulator.ops.folders import config_folder
 
-    asyncio.run(_serve(arguments.config or config_folder(), arguments.port))
+    config = arguments.config or config_folder()
+    asyncio.run(_serve(config, arguments.port, arguments.study))
     return 0
 
 
-async def _serve(config: Path, port: int) -> None:
+async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
     from rastrainer_simulator.board.board_server import BoardServer
     from rastrainer_simulator.board.seat_client import SeatClient
     from rastrainer_simulator.server.server import stop_on_signals
@@ -57,7 +66,10 @@ async def _serve(config: Path, port: int) -> None:
     stop = asyncio.Event()
     async with SeatClient() as client:
         board = BoardServer(
-            config, client, lambda code: _tell(f"has a new pairing code for browsers: {code}")
+            config,
+            client,
+            lambda code: _tell(f"has a new pairing code for browsers: {code}"),
+            study=study,
         )
         try:
             with stop_on_signals(asyncio.get_running_loop(), stop):

@@ -42,12 +42,12 @@ class WatchedSimulator:
 class BoardClient:
     """A board, and a teacher's browser that is paired with it."""
 
-    def __init__(self, thread, config):
+    def __init__(self, thread, config, study=None):
         self.thread, self.config = thread, config
         self.client = thread.call(SeatClient)
         self._is_closed = False
         self.codes = []
-        self.server = thread.call(BoardServer, config, self.client, self.codes.append)
+        self.server = thread.call(BoardServer, config, self.client, self.codes.append, study=study)
         self.url = f"http://{HOST}:{thread.run(self.server.listen(HOST, 0))}"
         self.key = self.paired()
 
@@ -122,8 +122,8 @@ def open_board(loop_thread, tmp_path):
     """Open a board; another one with the same settings is one that was started again."""
     opened = []
 
-    def start() -> BoardClient:
-        opened.append(BoardClient(loop_thread, tmp_path / "teacher"))
+    def start(study=None) -> BoardClient:
+        opened.append(BoardClient(loop_thread, tmp_path / "teacher", study))
         return opened[-1]
 
     yield start

@@ -322,7 +322,7 @@ _TABLE: Mapping[str, str] = {
     "assignments.percent": "{done} %",
     "assignments.one trial": "一次试验得 {mark:g} 分或以上且不超出任何限值，即达成。",
     "assignments.trials": "连续 {needed} 次试验得 {mark:g} 分或以上且不超出任何限值，即达成。",
-    "assignments.competent": "您的试验显示出胜任能力 (LC-CUSUM) 时达成；"
+    "assignments.competent": "试验显示出胜任能力 (LC-CUSUM) 时达成；"
     "一次试验得 {mark:g} 分或以上为及格。",
     "assignments.no mark": "此得分没有设定及格线：请询问指导教师。",
     "assignments.gate": "未解锁。请先达成：{assignments}。",

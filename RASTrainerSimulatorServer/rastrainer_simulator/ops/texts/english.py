@@ -267,7 +267,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "limits.",
         "assignments.trials": "Reached when {needed} trials in a row have {mark:g} points or "
         "more, within all limits.",
-        "assignments.competent": "Reached when your trials show competence (LC-CUSUM); a trial "
+        "assignments.competent": "Reached when the trials show competence (LC-CUSUM); a trial "
         "passes with {mark:g} points or more.",
         "assignments.no mark": "No pass mark is set for its score: ask your instructor.",
         "assignments.gate": "Locked. First reach: {assignments}.",

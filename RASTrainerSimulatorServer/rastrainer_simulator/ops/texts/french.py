@@ -381,7 +381,7 @@ _TABLE: Mapping[str, str] = {
     "dépasser aucune limite.",
     "assignments.trials": "Atteint quand {needed} essais de suite obtiennent {mark:g} points ou "
     "plus, sans dépasser aucune limite.",
-    "assignments.competent": "Atteint quand vos essais montrent la compétence (LC-CUSUM) ; un "
+    "assignments.competent": "Atteint quand les essais montrent la compétence (LC-CUSUM) ; un "
     "essai est réussi à partir de {mark:g} points.",
     "assignments.no mark": "Il n'y a pas de seuil de réussite pour le score actuel : demandez à "
     "votre formateur.",

@@ -381,7 +381,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "innerhalb aller Grenzen.",
         "assignments.trials": "Erreicht, wenn {needed} Versuche in Folge mindestens {mark:g} "
         "Punkte haben, innerhalb aller Grenzen.",
-        "assignments.competent": "Erreicht, wenn deine Versuche Kompetenz zeigen (LC-CUSUM); ein "
+        "assignments.competent": "Erreicht, wenn die Versuche Kompetenz zeigen (LC-CUSUM); ein "
         "Versuch ist ab {mark:g} Punkten bestanden.",
         "assignments.no mark": "Für diese Punktzahl ist keine Marke zum Bestehen gesetzt: Frag die "
         "Kursleitung.",

@@ -376,7 +376,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "de todos los límites.",
         "assignments.trials": "Se alcanza cuando {needed} ensayos seguidos tienen {mark:g} puntos "
         "o más, dentro de todos los límites.",
-        "assignments.competent": "Se alcanza cuando sus ensayos muestran competencia (LC-CUSUM); "
+        "assignments.competent": "Se alcanza cuando los ensayos muestran competencia (LC-CUSUM); "
         "un ensayo se aprueba con {mark:g} puntos o más.",
         "assignments.no mark": "No hay umbral de aprobado para la puntuación actual: pregunte a "
         "su instructor.",

@@ -3,6 +3,7 @@
 import { byId } from "../elements";
 import { exchangeCode, type CodeRefusal } from "../pairing";
 import { streamUrl } from "../served";
+import { ClassSection } from "./class_section";
 import { ask } from "./dialogs";
 import { say } from "./texts";
 import { isTraining, Tile, type Order, type TileNews } from "./tiles";
@@ -13,6 +14,7 @@ const NOTICE_MS = 8000;
 
 class Board {
   private readonly tiles = new Map<string, Tile>();
+  private readonly classSection = new ClassSection();
   private hiding = 0;
 
   constructor() {
@@ -28,6 +30,7 @@ class Board {
     await pairIfNeeded();
     byId("add").hidden = false;
     this.join();
+    void this.classSection.begin();
   }
 
   private join(): void {
@@ -70,6 +73,7 @@ class Board {
       } else tile.show(news);
       if (list.children[place] !== tile.element) list.insertBefore(tile.element, list.children[place] ?? null);
     });
+    this.classSection.showSeats(seats);
     byId("empty").hidden = seats.length > 0;
     const watching = seats.filter(({ seat }) => seat !== null).length;
     const values = { watching: String(watching), all: String(seats.length), running: String(seats.filter(isTraining).length) };

@@ -140,6 +140,23 @@ export const BOARD = {
   removeAsk: "Remove {name} from the board? Its key is deleted; to watch it again, pair anew.",
   failed: "{name}: {reason}",
   done: "{name}: done.",
+  class: "The class",
+  classHow: "To see where each trainee stands, start the board with the study of the class: rastrainer board --study STUDY",
+  classEmpty: "The study has no active trainees yet.",
+  classNoCurriculum: "No trainee of this study follows a curriculum. Set one in 3D Slicer, Study, Curriculum, or by rastrainer curriculum.",
+  classWithout: "Without a curriculum: {names}",
+  classProblem: "The study cannot be read now. {reason}",
+  classAsOf: "As of {time}",
+  classOld: "The table is as of {time} ({age}).",
+  trainee: "Trainee",
+  reached: "Reached",
+  allReached: "all reached",
+  nextTask: "Next",
+  seat: "Seat",
+  goal: "{label} ({name}): {goal}",
+  "legend.reached": "reached, with the day",
+  "legend.open": "open: trials in a row that pass, or percent of the way to competence",
+  "legend.locked": "locked: others come first",
 };
 
 export type PageTexts = typeof PAGE;

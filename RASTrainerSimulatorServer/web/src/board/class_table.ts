@@ -1,0 +1,157 @@
+/** The class: a table for each curriculum, trainees by assignments, which is sorted by the buttons in its head. */
+
+import { element } from "../elements";
+import { standingMark, type StandingState } from "./standing_mark";
+import { date, say } from "./texts";
+
+/** What the board sends of a class; docs/views.md says what each member is. */
+export interface ClassNews {
+  hasStudy: boolean;
+  problem: string;
+  asOf: string;
+  curricula: readonly CurriculumNews[];
+  without: readonly string[];
+}
+
+export interface CurriculumNews {
+  title: string;
+  assignments: readonly { name: string; label: string; goal: string }[];
+  trainees: readonly TraineeNews[];
+}
+
+export interface TraineeNews {
+  trainee: string;
+  reached: number;
+  next: string;
+  cells: readonly CellNews[];
+}
+
+export interface CellNews {
+  state: StandingState;
+  progress: string;
+  done: number;
+  needed: number;
+  reachedUtc: string;
+}
+
+export type SortKey = "trainee" | "reached";
+const KEYS: readonly SortKey[] = ["trainee", "reached"];
+const byName = new Intl.Collator(undefined, { numeric: true });
+
+/** A table that keeps its head, so that the focus stays on its buttons, and gets new rows. */
+export class ClassTable {
+  readonly element = document.createElement("div");
+  private readonly body = document.createElement("tbody");
+  private readonly heads: Record<SortKey, HTMLTableCellElement>;
+  private readonly sort: { key: SortKey; isDown: boolean } = { key: "trainee", isDown: false };
+  private seats: ReadonlyMap<string, string> = new Map();
+
+  constructor(
+    private news: CurriculumNews,
+    number: number,
+  ) {
+    const caption = element("caption", news.title);
+    caption.id = `class-${number}`;
+    this.heads = { trainee: this.sortable("trainee"), reached: this.sortable("reached") };
+    const row = document.createElement("tr");
+    row.append(...KEYS.map((key) => this.heads[key]), head(say("nextTask")), head(say("seat")));
+    row.append(...news.assignments.map(({ label, name }) => head(label, name)));
+    const top = document.createElement("thead");
+    top.append(row);
+    const table = document.createElement("table");
+    table.append(caption, top, this.body);
+    const scroller = document.createElement("div");
+    scroller.className = "scroller";
+    scroller.tabIndex = 0;
+    scroller.setAttribute("role", "region");
+    scroller.setAttribute("aria-labelledby", caption.id);
+    scroller.append(table);
+    const goals = document.createElement("ul");
+    goals.append(...news.assignments.map(({ label, name, goal }) => element("li", say("goal", { label, name, goal }))));
+    this.element.append(scroller, goals);
+    this.fill();
+  }
+
+  /** Show news of the same assignments; return false for another curriculum, which needs another table. */
+  show(news: CurriculumNews): boolean {
+    const { title, assignments } = this.news;
+    if (JSON.stringify([title, assignments]) !== JSON.stringify([news.title, news.assignments])) return false;
+    if (JSON.stringify(this.news) !== JSON.stringify(news)) {
+      this.news = news;
+      this.fill();
+    }
+    return true;
+  }
+
+  /** Show at which seat each trainee is; `seats` has their names by the trainee. */
+  showSeats(seats: ReadonlyMap<string, string>): void {
+    this.seats = seats;
+    for (const row of this.body.rows) {
+      const [name, , , seat] = row.cells;
+      const place = seats.get(name!.textContent!) ?? say("none");
+      if (seat!.textContent !== place) seat!.textContent = place;
+    }
+  }
+
+  private sortable(key: SortKey): HTMLTableCellElement {
+    const made = head("");
+    const button = element("button", say(key));
+    button.type = "button";
+    button.onclick = () => {
+      const { sort } = this;
+      sort.isDown = sort.key === key ? !sort.isDown : key === "reached";
+      sort.key = key;
+      this.fill();
+    };
+    made.replaceChildren(button);
+    return made;
+  }
+
+  private fill(): void {
+    const { key, isDown } = this.sort;
+    for (const name of KEYS) {
+      if (name === key) this.heads[name].setAttribute("aria-sort", isDown ? "descending" : "ascending");
+      else this.heads[name].removeAttribute("aria-sort");
+    }
+    const sign = isDown ? -1 : 1;
+    const sorted = [...this.news.trainees].sort((one, other) => {
+      const names = byName.compare(one.trainee, other.trainee);
+      return key === "trainee" ? sign * names : sign * (progressOf(one) - progressOf(other)) || names;
+    });
+    this.body.replaceChildren(...sorted.map((trainee) => rowOf(trainee)));
+    this.showSeats(this.seats);
+  }
+}
+
+/** How far a trainee is: assignments that are reached, and shares of the open ones. */
+function progressOf({ cells }: TraineeNews): number {
+  return cells.reduce((sum, { state, done, needed }) => sum + (state === "locked" ? 0 : done / needed), 0);
+}
+
+function rowOf({ trainee, reached, next, cells }: TraineeNews): HTMLTableRowElement {
+  const row = document.createElement("tr");
+  const name = element("th", trainee);
+  name.scope = "row";
+  const places = [`${reached} / ${cells.length}`, next || say("allReached"), say("none")].map((text) => element("td", text));
+  row.append(name, ...places, ...cells.map(cellOf));
+  return row;
+}
+
+function cellOf({ state, progress, done, needed, reachedUtc }: CellNews): HTMLTableCellElement {
+  const cell = document.createElement("td");
+  cell.dataset.state = state;
+  cell.append(standingMark(state, done / needed), element("span", progress));
+  if (reachedUtc !== "") {
+    const when = element("time", date(new Date(reachedUtc)));
+    when.dateTime = reachedUtc;
+    cell.append(when);
+  }
+  return cell;
+}
+
+function head(text: string, name = ""): HTMLTableCellElement {
+  const made = element("th", text);
+  made.scope = "col";
+  if (name !== "") made.append(element("small", name));
+  return made;
+}

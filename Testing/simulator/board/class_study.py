@@ -1,0 +1,75 @@
+"""A study of virtual trainees who practice what their curriculum says comes next."""
+
+from __future__ import annotations
+
+import random
+import uuid
+from dataclasses import replace
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+
+from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.study.curriculum.counted_trials import counted_trials
+from rastrainer.study.curriculum.curriculum import Assignment, Curriculum, read_curriculum
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
+from rastrainer.study.curriculum.standing import standing_in
+from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.study import Study
+from rastrainer.trial.record import TrialRecord
+from rastrainer.trial.scoring import PASS_MARK, score_version
+from Testing.domain.trial.trial_records import gentle_score, make_record
+
+SHIPPED = Path(__file__).parents[3] / "assets" / "studies" / "example-curriculum.json"
+FIRST_DAY = datetime(2026, 11, 2, 9, 0, tzinfo=timezone.utc)
+
+
+def play_class(
+    path: Path, names: list[str], trials: int, curriculum: Curriculum | None = None
+) -> None:
+    """Have each trainee practice up to so many trials, from a tempo of their own, by a seed."""
+    rng, follows = random.Random(23), curriculum or read_curriculum(SHIPPED)
+    with Study.open(path) as study:
+        CurriculumStore(study).choose(follows)
+        # In one transaction: a trial alone costs a sync of the disk.
+        with study.database.writing() as connection:
+            for name in names:
+                study_trainees.create(connection, name, consent=True)
+                _practice(connection, name, follows, rng.randint(0, trials), rng)
+
+
+def _practice(
+    connection: Connection, name: str, follows: Curriculum, trials: int, rng: random.Random
+) -> None:
+    tempo_s = rng.uniform(90.0, 190.0)
+    for number in range(trials):
+        standing = standing_in(follows, counted_trials(connection, name), lambda _: PASS_MARK)
+        best = standing.next_best
+        if best is None or best.assignment.procedure:
+            return
+        seconds = tempo_s * (number + 1) ** -0.3 * rng.uniform(0.8, 1.25)
+        _play(connection, name, best.assignment, seconds, number, rng)
+
+
+def _play(
+    connection: Connection,
+    name: str,
+    assignment: Assignment,
+    seconds: float,
+    number: int,
+    rng: random.Random,
+) -> None:
+    """Store a scored trial, the trainee's `number`-th; three are played on each second day."""
+    started = (FIRST_DAY + timedelta(days=2 * (number // 3), minutes=4 * (number % 3))).isoformat()
+    told = make_record(
+        trialId=str(uuid.UUID(int=rng.getrandbits(128))),
+        trainee=name,
+        task=assignment.task,
+        startedUtc=started,
+        completedUtc=started,
+    )
+    version = score_version(RegistrationMethod(assignment.method))
+    score = replace(gentle_score(seconds, 0.25), version=version)
+    record = TrialRecord.from_json(told)
+    study_trials.add(connection, record, told)
+    study_trials.add_results(connection, record.trial_id, (), {}, score)

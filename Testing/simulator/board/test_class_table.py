@@ -1,0 +1,237 @@
+"""The table of a class shows what report and Slicer show, follows the study, and outlives it."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from rastrainer.errors import InputError
+from rastrainer.report.sections.curricula import curricula
+from rastrainer.study.curriculum.curriculum import read_curriculum
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
+from rastrainer.study.database.database import LockWait, StudyBusyError
+from rastrainer.study.database.study import Study
+from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.board import class_reader, class_watch
+from rastrainer_simulator.board.class_reader import ClassReader
+from rastrainer_simulator.board.class_table import class_table
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+from Testing.domain.study.old_study import write_old_study
+from Testing.simulator.board.class_study import SHIPPED, play_class
+from Testing.simulator.net.views.served import request
+
+PAGE = Path(__file__).parents[3] / "RASTrainerSimulatorServer" / "web" / "src" / "board"
+NAMES = ["T001", "T002", "T003", "T004"]
+
+
+@pytest.fixture(scope="module")
+def played(tmp_path_factory) -> Path:
+    """Return a study of four virtual trainees, which nothing changes."""
+    path = tmp_path_factory.mktemp("class") / "study.db"
+    play_class(path, NAMES, 12)
+    return path
+
+
+@pytest.fixture
+def study(played, tmp_path) -> Path:
+    return Path(shutil.copy(played, tmp_path / "study.db"))
+
+
+@pytest.fixture
+def reader(study):
+    reader = ClassReader(study)
+    yield reader
+    reader.close()
+
+
+def test_the_table_is_that_of_the_report(study):
+    html = curricula(read_study_data(study))
+    report = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row) for row in html.split("<tr>")[2:]]
+    reader = ClassReader(study)
+    (table,) = class_table(reader.read(), "en")
+    reader.close()
+    assert table["title"] == "First steps"
+    states = {cell["state"] for row in table["trainees"] for cell in row["cells"]}
+    assert states == {"locked", "open", "reached"}
+    shown = [
+        [
+            row["trainee"],
+            f"{row['reached']} of {len(row['cells'])}",
+            *(cell["progress"].replace(" / ", " of ") for cell in row["cells"]),
+        ]
+        for row in table["trainees"]
+    ]
+    assert shown == [[name, reached, *cells] for name, _n, reached, *cells in report]
+
+
+def test_a_cell_says_when_it_was_reached_and_how_far_an_open_one_is(reader):
+    (table,) = class_table(reader.read(), "en")
+    for row in table["trainees"]:
+        assert row["reached"] == sum(cell["state"] == "reached" for cell in row["cells"])
+        for cell in row["cells"]:
+            assert (cell["state"] == "reached") == bool(cell["reachedUtc"])
+            assert 0 <= cell["done"] <= cell["needed"]
+    days = {cell["reachedUtc"][:8] for row in table["trainees"] for cell in row["cells"]}
+    assert days == {"", "2026-11-"}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_table_is_in_the_words_that_trainees_read(reader, language):
+    say = Texts(LANGUAGES[language]).say
+    (table,) = class_table(reader.read(), language)
+    words = {
+        cell["state"]: cell["progress"]
+        for row in table["trainees"]
+        for cell in row["cells"]
+        if cell["state"] != "open"
+    }
+    assert words == {
+        "reached": say("assignments.reached"),
+        "locked": say("assignments.locked"),
+    }
+    labels = [column["label"] for column in table["assignments"]]
+    assert labels[0] == say("task.task-1")
+    assert labels[3] == f"{say('task.task-3')} · {say('method.surface')}"
+    assert all(column["goal"] for column in table["assignments"])
+
+
+def members(interface: str) -> set[str]:
+    """Return the members that the page's source says a part of the message has."""
+    source = (PAGE / "class_table.ts").read_text(encoding="utf-8")
+    (body,) = re.findall(rf"interface {interface} {{\n(.*?)\n}}", source, re.DOTALL)
+    return set(re.findall(r"^  (\w+):", body, re.MULTILINE))
+
+
+def test_page_and_board_agree_on_the_message(open_board, study):
+    status, found = open_board(study).ask("/class?language=en")
+    assert status == 200
+    (table,) = found["curricula"]
+    row = table["trainees"][0]
+    parts = (found, table, row, row["cells"][0])
+    names = ("ClassNews", "CurriculumNews", "TraineeNews", "CellNews")
+    for part, name in zip(parts, names, strict=True):
+        assert set(part) == members(name)
+    assert set(table["assignments"][0]) == {"name", "label", "goal"}
+
+
+def test_it_is_read_again_only_when_something_is_new(reader, study):
+    first = reader.read()
+    assert reader.read() is first
+    with Study.open(study) as opened:
+        opened.create_trainee("T099")
+    second = reader.read()
+    assert list(second.standings) == [*NAMES, "T099"]
+    with Study.open(study) as opened:
+        CurriculumStore(opened).choose(None)
+    assert reader.read().without == (*NAMES, "T099")
+
+
+def test_another_file_in_its_place_is_noticed(reader, study, tmp_path):
+    reader.read()
+    restored = tmp_path / "restored.db"
+    play_class(restored, ["Z"], 0)
+    restored.replace(study)
+    assert list(reader.read().standings) == ["Z"]
+
+
+def test_a_study_of_an_earlier_format_is_followed_and_not_changed_by_reading(tmp_path):
+    path = tmp_path / "old.db"
+    write_old_study(path, 8, "INSERT INTO trainees VALUES (1, 'A', 1, 0, '2026-01-01T00:00:00Z')")
+    before = path.read_bytes()
+    reader = ClassReader(path)
+    assert reader.read().without == ("A",)
+    assert path.read_bytes() == before
+    with Study.open(path) as opened:
+        opened.create_trainee("B")
+    assert reader.read().without == ("A", "B")
+    reader.close()
+
+
+def test_reading_holds_up_no_seat_and_a_seat_holds_up_no_reading(reader, study):
+    reader.read()
+    before = study.read_bytes()
+    with Study.open(study, LockWait(0.0)) as seat:
+        seat.create_trainee("T100")
+        with seat.database.writing():
+            assert "T100" in reader.read().standings
+    reader.read()
+    assert study.read_bytes() != before
+
+
+def test_a_locked_study_is_named_and_read_once_it_is_free(study, monkeypatch):
+    monkeypatch.setattr(class_reader, "LOCK_WAIT_S", 0.01)
+    reader, other = ClassReader(study), sqlite3.connect(study, isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(StudyBusyError, match="has the study"):
+        reader.read()
+    other.close()
+    assert list(reader.read().standings) == NAMES
+    reader.close()
+
+
+def test_more_trainees_than_a_table_shows_are_said(reader, monkeypatch):
+    monkeypatch.setattr(class_reader, "MOST_TRAINEES", 3)
+    with pytest.raises(InputError, match="4 active trainees, and a table shows at most 3: archive"):
+        reader.read()
+
+
+def until(board, is_wanted):
+    """Return what the board says of the class once it is as wanted."""
+    while True:
+        status, found = board.ask("/class?language=en")
+        assert status == 200
+        if is_wanted(found):
+            return found
+
+
+def test_while_the_study_is_away_the_last_table_stays_and_the_page_is_told(
+    open_board, study, monkeypatch
+):
+    monkeypatch.setattr(class_watch, "ROUND_S", 0.05)
+    board = open_board(study)
+    first = until(board, lambda found: found["curricula"])
+    assert first["problem"] == ""
+    away = study.rename(study.with_suffix(".away"))
+    gone = until(board, lambda found: found["problem"])
+    assert gone["problem"] == f"There is no file {study}."
+    assert gone["curricula"] == first["curricula"]
+    assert until(board, lambda found: found["problem"])["asOf"] == gone["asOf"]
+    away.rename(study)
+    assert until(board, lambda found: not found["problem"])["curricula"] == first["curricula"]
+
+
+def test_without_a_study_the_board_says_so(board):
+    nothing = {"hasStudy": False, "problem": "", "asOf": "", "curricula": [], "without": []}
+    assert board.ask("/class?language=xx") == (200, nothing)
+
+
+def test_the_table_is_for_who_is_paired_with_the_board_and_for_no_other_page(open_board, study):
+    board = open_board(study)
+    assert board.ask("/class", key="x" * 40)[0] == 401
+    headers = {"Authorization": f"Bearer {board.key}", "Origin": "https://elsewhere.example"}
+    assert request(board.url, "/class", headers=headers)[0] == 403
+    assert board.ask("/class", "POST")[0] == 405
+    assert board.ask("/class", key=board.paired("spectator"))[0] == 200
+
+
+def test_a_class_of_two_curricula_has_two_tables(study):
+    with Study.open(study) as opened:
+        own = read_curriculum(SHIPPED)
+        other = type(own)("other", "Others", own.assignments[:1])
+        CurriculumStore(opened).choose(other, "T002")
+    reader = ClassReader(study)
+    tables = class_table(reader.read(), "en")
+    reader.close()
+    assert [table["title"] for table in tables] == ["First steps", "Others"]
+    assert [row["trainee"] for row in tables[1]["trainees"]] == ["T002"]
+
+
+def test_the_command_names_what_is_no_study(tmp_path, capsys):
+    missing = tmp_path / "none.db"
+    assert main(["board", "--config", str(tmp_path), "--port", "0", "--study", str(missing)]) != 0
+    assert f"There is no file {missing}." in capsys.readouterr().err
