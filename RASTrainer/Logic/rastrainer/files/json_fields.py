@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -30,6 +30,17 @@ class Fields:
     def names(self) -> tuple[str, ...]:
         """Return the names of all fields, in order."""
         return tuple(self._values)
+
+    def check_names(self, known: Collection[str], what: str) -> None:
+        """Raise `InputError` for a field that `what`, such as "a curriculum", does not have."""
+        unknown = sorted(set(self._values) - set(known))
+        if unknown:
+            raise self.error(unknown[0][:40], f"left out; {what} has {', '.join(known)}")
+
+    def check_format(self, version: int) -> None:
+        """Raise `InputError` if `formatVersion` is not the version that is read."""
+        if self.number("formatVersion", 0, 1e9) != version:
+            raise self.error("formatVersion", f"{version}, which this version reads")
 
     def text(self, name: str, max_length: int = 200) -> str:
         """Return printable text of 1 to `max_length` characters."""
@@ -128,3 +139,14 @@ def read_fields(path: Path) -> Fields:
     if not isinstance(values, dict):
         raise InputError(f"{path} must hold one JSON object.")
     return Fields(values, path)
+
+
+def fields_of(value: Any, what: str) -> Fields:
+    """Return the fields of decoded JSON; `what` names it in errors, such as "study protocol".
+
+    Raises:
+        InputError: it is not an object.
+    """
+    if not isinstance(value, dict):
+        raise InputError(f"A {what} must be one JSON object.")
+    return Fields(value, Path(what))

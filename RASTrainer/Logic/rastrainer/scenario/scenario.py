@@ -190,8 +190,7 @@ def _load(folder: Path) -> Scenario:
     if not folder.is_dir():
         raise InputError(f"The scenario's folder {folder} does not exist.")
     fields = read_fields(folder / FILE_NAME)
-    if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
-        raise fields.error("formatVersion", f"{FORMAT_VERSION}, which this version reads")
+    fields.check_format(FORMAT_VERSION)
     target = fields.fields("target")
     return Scenario(
         folder=folder,

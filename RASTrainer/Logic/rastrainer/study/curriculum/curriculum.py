@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields, read_fields
+from rastrainer.files.json_fields import Fields, fields_of, read_fields
 from rastrainer.protocol import (
     MAX_ASSIGNMENTS,
     MAX_GATES,
@@ -114,15 +112,12 @@ def read_curriculum(path: Path | str) -> Curriculum:
 
 def curriculum_from_json(value: Any) -> Curriculum:
     """Return the curriculum of a `to_json` object; raise `InputError` if invalid."""
-    if not isinstance(value, dict):
-        raise InputError("A curriculum must be one JSON object.")
-    return _curriculum(Fields(value, Path("curriculum")))
+    return _curriculum(fields_of(value, "curriculum"))
 
 
 def _curriculum(fields: Fields) -> Curriculum:
-    _check_keys(fields, _KEYS, "a curriculum")
-    if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
-        raise fields.error("formatVersion", f"{FORMAT_VERSION}, which this version reads")
+    fields.check_names(_KEYS, "a curriculum")
+    fields.check_format(FORMAT_VERSION)
     name, title = fields.identifier("name"), fields.text("title", MAX_TITLE)
     assignments: list[Assignment] = []
     for entry in fields.list_of_fields("assignments", 1, MAX_ASSIGNMENTS):
@@ -131,7 +126,7 @@ def _curriculum(fields: Fields) -> Curriculum:
 
 
 def _assignment(fields: Fields, earlier: list[str]) -> Assignment:
-    _check_keys(fields, _ASSIGNMENT_KEYS, "an assignment")
+    fields.check_names(_ASSIGNMENT_KEYS, "an assignment")
     name, task = fields.identifier("name"), fields.identifier("task")
     if name in earlier:
         raise fields.error("name", "one that no other assignment has")
@@ -139,7 +134,7 @@ def _assignment(fields: Fields, earlier: list[str]) -> Assignment:
         raise fields.error("task", "a task that is scored; the trial run is not")
     given, goal = fields.names(), fields.fields("goal")
     kind = GoalKind(goal.one_of("kind", tuple(kind.value for kind in GoalKind)))
-    _check_keys(goal, _GOAL_KEYS[kind.value], f"the goal {kind.value}")
+    goal.check_names(_GOAL_KEYS[kind.value], f"the goal {kind.value}")
     modes, methods = (tuple(each.value for each in kinds) for kinds in (Mode, PLAYED_METHODS))
     fiducials = RegistrationMethod.FIDUCIALS.value
     after = fields.texts("after", 0, MAX_GATES) if "after" in given else ()
@@ -157,9 +152,3 @@ def _assignment(fields: Fields, earlier: list[str]) -> Assignment:
         mark=goal.number("mark", 1, 100) if "mark" in goal.names() else None,
         after=after,
     )
-
-
-def _check_keys(fields: Fields, known: Collection[str], what: str) -> None:
-    unknown = sorted(set(fields.names()) - set(known))
-    if unknown:
-        raise fields.error(unknown[0][:40], f"left out; {what} has {', '.join(known)}")

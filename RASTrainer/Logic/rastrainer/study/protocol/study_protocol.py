@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields, read_fields
+from rastrainer.files.json_fields import Fields, fields_of, read_fields
 from rastrainer.head.skin_shift import read_skin
 from rastrainer.json_checks import is_identifier
 from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, Mode, TutorialRule
@@ -158,9 +158,7 @@ def read_study_protocol(path: Path | str) -> StudyProtocol:
 
 def study_protocol_from_json(value: Any) -> StudyProtocol:
     """Return the protocol of a `to_json` object; raise `InputError` if invalid."""
-    if not isinstance(value, dict):
-        raise InputError("A study protocol must be one JSON object.")
-    return _protocol(Fields(value, Path("study protocol")))
+    return _protocol(fields_of(value, "study protocol"))
 
 
 def protocol_text(protocol: StudyProtocol) -> str:
@@ -169,11 +167,8 @@ def protocol_text(protocol: StudyProtocol) -> str:
 
 
 def _protocol(fields: Fields) -> StudyProtocol:
-    unknown = sorted(set(fields.names()) - set(_KEYS))
-    if unknown:
-        raise fields.error(unknown[0], f"left out; a protocol has {', '.join(_KEYS)}")
-    if fields.number("formatVersion", 0, 1e9) != FORMAT_VERSION:
-        raise fields.error("formatVersion", f"{FORMAT_VERSION}, which this version reads")
+    fields.check_names(_KEYS, "a protocol")
+    fields.check_format(FORMAT_VERSION)
     name = fields.identifier("name")
     modes = fields.texts("modes", 1, len(Mode), choices=tuple(mode.value for mode in Mode))
     tasks = fields.texts("tasks", 1, 20)
