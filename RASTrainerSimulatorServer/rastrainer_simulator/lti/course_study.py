@@ -9,8 +9,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.study.database import study_trainees
-from rastrainer.study.database.address import StudyPlace
-from rastrainer.study.database.companions import beside_study
+from rastrainer.study.database.address import StudyPlace, beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import LinkedAssignment, PlatformLinks

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.schema import study_tables
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.tables import study_tables
 from rastrainer_simulator.cli.main import main
 
 _MADE = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d UTC")

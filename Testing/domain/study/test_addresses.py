@@ -13,12 +13,10 @@ from rastrainer.errors import InputError
 from rastrainer.study.database import (
     postgres_connecting,
     postgres_database,
-    postgres_driver,
 )
-from rastrainer.study.database.address import PostgresAddress, study_place
-from rastrainer.study.database.companions import beside_study
+from rastrainer.study.database.address import PostgresAddress, beside_study, study_place
 from rastrainer.study.database.database import LockWait, StudyAwayError
-from rastrainer.study.database.postgres_errors import postgres_error
+from rastrainer.study.database.postgres_connecting import postgres_error
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.cli.main import main
 
@@ -103,7 +101,7 @@ def test_a_study_at_an_address_says_what_is_missing_where_the_driver_is(monkeypa
     def missing(name):
         raise ImportError(name)
 
-    monkeypatch.setattr(postgres_driver.importlib, "import_module", missing)
+    monkeypatch.setattr(postgres_connecting.importlib, "import_module", missing)
     with pytest.raises(InputError, match="needs the package psycopg, which comes with the sim"):
         Study.open("postgresql://localhost/study")
 
@@ -113,17 +111,17 @@ def test_the_driver_is_found_in_the_simulators_folder_and_nothing_else_of_it(tmp
     folder.mkdir()
     (folder / "psycopg.py").write_text("ORIGIN = 'simulator'")
     (folder / "other_of_simulator.py").write_text("")
-    monkeypatch.setattr(postgres_driver, "_folders", [])
-    for name in [name for name in postgres_driver.sys.modules if name.startswith("psycopg")]:
-        monkeypatch.delitem(postgres_driver.sys.modules, name)
-    elsewhere = [entry for entry in postgres_driver.sys.path if "site-packages" not in entry]
-    monkeypatch.setattr(postgres_driver.sys, "path", elsewhere)
-    postgres_driver.search_driver_in(folder)
-    assert postgres_driver.postgres_driver().ORIGIN == "simulator"
-    assert postgres_driver.sys.path == elsewhere
+    monkeypatch.setattr(postgres_connecting, "_folders", [])
+    for name in [name for name in postgres_connecting.sys.modules if name.startswith("psycopg")]:
+        monkeypatch.delitem(postgres_connecting.sys.modules, name)
+    elsewhere = [entry for entry in postgres_connecting.sys.path if "site-packages" not in entry]
+    monkeypatch.setattr(postgres_connecting.sys, "path", elsewhere)
+    postgres_connecting.search_driver_in(folder)
+    assert postgres_connecting.postgres_driver().ORIGIN == "simulator"
+    assert postgres_connecting.sys.path == elsewhere
     with pytest.raises(ImportError):
         __import__("other_of_simulator")
-    del postgres_driver.sys.modules["psycopg"]
+    del postgres_connecting.sys.modules["psycopg"]
 
 
 def test_what_goes_with_a_study_is_beside_its_file_or_private_by_its_address(tmp_path, monkeypatch):

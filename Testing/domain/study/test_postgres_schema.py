@@ -7,10 +7,9 @@ import sqlite3
 
 import pytest
 
-from rastrainer.study.database.postgres_statements import portable_to_postgres
-from rastrainer.study.database.schema import MIGRATIONS
+from rastrainer.study.database.postgres_sql import in_postgres, portable_to_postgres
+from rastrainer.study.database.schema import MIGRATIONS, study_tables
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.tables import in_postgres, study_tables
 
 STATEMENTS = [statement for step in MIGRATIONS for statement in step]
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.sqlite_reading import read_only_uri
+from rastrainer.study.database.sqlite_database import read_only_uri
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer_simulator.cli import export as export_command

@@ -14,10 +14,10 @@ from rastrainer.export.trainee_data import export_trainee
 from rastrainer.registration.fits import KINDS
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
+from rastrainer.study.database.schema import study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
 from rastrainer.study.database.study_trials import find
-from rastrainer.study.database.tables import study_tables
 from rastrainer.study.database.values import StoredRegistration
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import gentle_score, make_record

@@ -16,15 +16,14 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.study.database import postgres_connecting, postgres_database
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.copying import copy_study
 from rastrainer.study.database.database import LockWait, StudyAwayError, StudyBusyError
-from rastrainer.study.database.schema import MIGRATIONS
+from rastrainer.study.database.schema import MIGRATIONS, study_tables
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.tables import study_tables
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.rating.forms import FORMS
 from rastrainer.study.rating.rating_store import RatingStore
+from rastrainer_simulator.cli.copy_study import copy_study
 from rastrainer_simulator.cli.main import main
 from Testing.domain.study.played_study import STUDIES, study_with_trials
 from Testing.domain.study.study_content import rows_of, written_files
@@ -223,7 +222,7 @@ def test_a_server_that_hangs_is_given_up_by_windows_and_by_those_who_wait(
 STOPPED = """
 import os, signal, sys
 from rastrainer.study.database.study import Study
-from rastrainer.study.database.tables import study_tables
+from rastrainer.study.database.schema import study_tables
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.rating.forms import FORMS

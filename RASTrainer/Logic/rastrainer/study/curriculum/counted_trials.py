@@ -11,7 +11,7 @@ from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.curriculum.curriculum import Assignment
 from rastrainer.study.database import study_trainees
 from rastrainer.study.database.aborted_trials import stored_of
-from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded
 from rastrainer.study.database.values import StoredProcedure, moment

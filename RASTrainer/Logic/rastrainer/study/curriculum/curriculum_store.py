@@ -9,7 +9,7 @@ from rastrainer.study.curriculum.counted_trials import counted_trials
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
 from rastrainer.study.curriculum.standing import CurriculumStanding, standing_in
 from rastrainer.study.database import study_trainees
-from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text

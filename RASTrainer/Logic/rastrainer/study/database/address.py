@@ -6,6 +6,7 @@ PGPASSWORD. So none gets into settings, histories of shells, lists of processes 
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ from pathlib import Path
 from urllib.parse import parse_qsl, quote, unquote, urlencode, urlsplit
 
 from rastrainer.errors import InputError
+from rastrainer.files.writing import make_private_folder
 
 SCHEMES = ("postgresql://", "postgres://")
 EXAMPLE = "postgresql://USER@HOST/DATABASE"
@@ -133,3 +135,24 @@ def _port(text: str) -> int:
     if not text.isdecimal() or not 0 < int(text[:6]) < 65536:
         raise InputError("The port of a study is a number from 1 to 65535.")
     return int(text)
+
+
+def beside_study(place: StudyPlace) -> Path:
+    """Return the path whose name begins those of files beside a study, such as what was sent where.
+
+    That of the study's file; for a study in PostgreSQL one in the user's own folder, by its
+    address.
+
+    Raises:
+        InputError: that folder cannot be made.
+    """
+    if isinstance(place, Path):
+        return place
+    folder = Path.home() / "RASTrainer" / "studies"
+    try:
+        make_private_folder(folder)
+    except OSError as error:
+        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+    # Not by the role or the options: another one leads to the same study.
+    where = f"{place.host}:{place.port or 5432}/{place.database}"
+    return folder / hashlib.sha256(where.encode()).hexdigest()[:16]

@@ -13,7 +13,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
 from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError, check_not_deleted
 from rastrainer.study.database.study_trials import json_text

@@ -4,17 +4,43 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
+from typing import Any, Protocol
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.address import StudyPlace
-from rastrainer.study.database.connection import Connection
 
 BUSY_TIMEOUT_S = 30.0
 INTERACTIVE_TIMEOUT_S = 0.05
 """Not noticeable in a window."""
 REST_S = 1.0
+
+
+class Rows(Protocol):
+    """What a statement returns, row by row."""
+
+    def fetchone(self) -> Any:
+        """Return the next row as a tuple, or None."""
+
+    def fetchall(self) -> list[Any]:
+        """Return all further rows as tuples."""
+
+    def __iter__(self) -> Iterator[Any]: ...
+
+
+class Connection(Protocol):
+    """A connection within a transaction; `sqlite3.Connection` is one.
+
+    Statements are SQL that SQLite and PostgreSQL both know, with `?` for each parameter.
+    `json_extract(column, '$.a.b')` is the one function that differs: its value may be a text.
+    """
+
+    def execute(self, sql: str, parameters: Sequence[Any] = ..., /) -> Rows:
+        """Execute a statement."""
+
+    def executemany(self, sql: str, parameters: Iterable[Sequence[Any]], /) -> object:
+        """Execute a statement for each of several sequences of parameters."""
 
 
 class LockWait:
@@ -77,12 +103,29 @@ class StudyDatabase(ABC):
         place: where it is.
     """
 
-    name: str
-    place: StudyPlace
+    _connection: Any
 
-    @abstractmethod
+    def __init__(self, name: str, place: StudyPlace, lock_wait: LockWait | None) -> None:
+        """Connect, and make or check the tables; `lock_wait` is half a minute by default.
+
+        Raises:
+            InputError: there is no such place, or it holds something else.
+            StudyBusyError: another program has locked it.
+        """
+        self.name, self.place = name, place
+        self._lock_wait = lock_wait or LockWait()
+        with self._sentences():
+            self._connection = self._connect()
+        try:
+            with self._sentences():
+                self._prepare()
+        except BaseException:
+            self._connection.close()
+            raise
+
     def close(self) -> None:
         """Close the connection; nothing is pending outside a transaction."""
+        self._connection.close()
 
     @abstractmethod
     def reading(self) -> AbstractContextManager[Connection]:
@@ -90,7 +133,7 @@ class StudyDatabase(ABC):
 
     @abstractmethod
     def writing(self) -> AbstractContextManager[Connection]:
-        """Give the connection for changes in one transaction.
+        """Give the connection for changes in one transaction, when those of others are done.
 
         Raises:
             InputError: the study cannot be changed.
@@ -107,3 +150,15 @@ class StudyDatabase(ABC):
     @abstractmethod
     def continue_numbers(self) -> None:
         """Have new rows numbered after all copied ones, within a transaction of `writing`."""
+
+    @abstractmethod
+    def _connect(self) -> Any:
+        """Return a new connection."""
+
+    @abstractmethod
+    def _prepare(self) -> None:
+        """Make, check or migrate the tables."""
+
+    @abstractmethod
+    def _sentences(self) -> AbstractContextManager[None]:
+        """Raise what the database reports as sentences for users."""

@@ -1,17 +1,31 @@
-"""Connections to PostgreSQL that keep what was committed and notice when the other side is gone."""
+"""Psycopg, its connections to PostgreSQL, and what its errors mean.
+
+Psycopg is loaded only for a study in PostgreSQL, and installed with the simulator. Slicer's Python
+runs the simulator, so its copy fits Slicer, too, and is loaded from the simulator's private folder:
+nothing is installed into Slicer.
+
+A connection keeps what was committed, and notices when the other side is gone.
+"""
 
 from __future__ import annotations
 
+import importlib
+import math
+import sys
 import threading
 import time
 from collections.abc import Generator
 from concurrent.futures import Future, wait
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from rastrainer.errors import InputError
 from rastrainer.study.database.address import PostgresAddress
-from rastrainer.study.database.postgres_driver import postgres_driver, refuse_infinite_numbers
+from rastrainer.study.database.database import StudyAwayError, StudyBusyError
 
+_folders: list[Path] = []
+"""In which Psycopg is searched where this Python has none of its own."""
 CONNECT_TIMEOUT_S = 10
 SILENCE_S = 10
 """After which a connection is given up if the other side no longer confirms what it gets."""
@@ -38,6 +52,91 @@ _NETWORK = {"keepalives_idle": 10, "keepalives_interval": 5}
 _Waiting = Generator[Any, int, Any]
 _attempts: dict[str, Future[Any]] = {}
 """Connections that windows wait for, by address."""
+_LOCKED = ("55P03", "57014", "40P01", "40001")
+"""A lock, or a statement, that took too long; two that wait for each other."""
+_LEFT = "25P03"
+"""The server has ended a change that this program did not go on with, such as a computer asleep."""
+_OURS = ("23", "42")
+"""Classes of errors that only a mistake of ours makes."""
+_MAX_WORDS = 200
+
+_BY_STATE = {
+    "22": "The study holds a value that RASTrainer did not write, or was to store one.",
+    "25006": "The study {0} is read-only.",
+    "28": "The server of {0} refuses this user; check name, ~/.pgpass and pg_hba.conf.",
+    "3D000": "The server of {0} has no such database; its administrator creates it.",
+    "42501": "The user may not do this in {0}; make it the owner of the database.",
+    "42P01": "The study {0} is damaged; restore it from a backup.",
+    "42703": "The study {0} is damaged; restore it from a backup.",
+    "53100": "The study {0} cannot be written: the disk of its server is full.",
+    "XX": "The study {0} is damaged; restore it from a backup.",
+    "58": "The study {0} cannot be read or written: the disk of its server fails.",
+}
+_BY_WORDS = {
+    "password authentication failed": _BY_STATE["28"],
+    "no password supplied": (
+        "The server of {0} asks for a password; put it into ~/.pgpass, readable by you alone."
+    ),
+    "pg_hba.conf": _BY_STATE["28"],
+    "root certificate file": (
+        "To check the certificate of {0}, its issuer's is needed: put it into "
+        "~/.postgresql/root.crt, or name its file with sslrootcert."
+    ),
+    "certificate verify failed": (
+        "The certificate of {0} is not the one of its issuer: somebody else may be answering."
+    ),
+    "does not match host name": (
+        "The certificate of {0} is another computer's: somebody else may be answering."
+    ),
+    "does not support ssl": (
+        "The server of {0} does not offer TLS, which a study on another computer needs; its "
+        "administrator switches ssl on."
+    ),
+    '" does not exist': "The server of {0} has no such database or user.",
+    "permissions should be": (
+        "A file of keys or passwords for {0} can be read by others; make it yours with chmod 600."
+    ),
+}
+
+
+def search_driver_in(folder: Path) -> None:
+    """Have the package loaded from a private folder where this Python has none of its own."""
+    if folder not in _folders:
+        _folders.append(folder)
+
+
+def postgres_driver() -> ModuleType:
+    """Return the module `psycopg`.
+
+    Raises:
+        InputError: it is not installed.
+    """
+    searched = [str(folder) for folder in _folders if folder.is_dir()]
+    # Last, and only meanwhile: nothing else of Slicer finds what is in the simulator's folder.
+    sys.path.extend(searched)
+    try:
+        return importlib.import_module("psycopg")
+    except ImportError:
+        raise InputError(
+            "A study in PostgreSQL needs the package psycopg, which comes with the simulator: set "
+            "the simulator up first, in the section Simulator."
+        ) from None
+    finally:
+        for folder in searched:
+            sys.path.remove(folder)
+
+
+def refuse_infinite_numbers(connection: Any) -> None:
+    """Have numbers refused that SQLite and JSON cannot hold; only other programs store them."""
+    base = importlib.import_module("psycopg.types.numeric").FloatLoader
+    connection.adapters.register_loader("float8", type("FiniteLoader", (base,), {"load": _finite}))
+
+
+def _finite(_loader: Any, data: Any) -> float:
+    value = float(bytes(data))
+    if not math.isfinite(value):
+        raise InputError("The study holds a value that RASTrainer did not write.")
+    return value
 
 
 def connected(
@@ -108,3 +207,29 @@ def _impatient(driver: ModuleType, answer_s: float) -> Any:
             return end.value
 
     return type("Impatient", (driver.Connection,), {"wait": waits})
+
+
+def postgres_error(error: Any, address: PostgresAddress) -> InputError | None:
+    """Return what to tell the user of an error of psycopg; None where the mistake is ours."""
+    state, text = error.sqlstate or "", str(error).lower()
+    if state in _LOCKED:
+        return StudyBusyError(
+            f"Another program has the study {address} locked; try again when it has finished."
+        )
+    if state == _LEFT:
+        return StudyBusyError(
+            f"The study {address} waited too long for this program, and nothing has changed; try "
+            "again."
+        )
+    for sentences, found in ((_BY_STATE, state.startswith), (_BY_WORDS, text.__contains__)):
+        for key, sentence in sentences.items():
+            if found(key):
+                return InputError(sentence.format(address))
+    if state.startswith(_OURS):
+        return None
+    is_about_the_link = "OperationalError" in {each.__name__ for each in type(error).__mro__}
+    if not is_about_the_link:
+        return InputError(_BY_STATE["22"]) if "nul (0x00)" in text else None
+    return StudyAwayError(
+        f"The study {address} cannot be reached now. ({' '.join(text.split())[:_MAX_WORDS]})"
+    )

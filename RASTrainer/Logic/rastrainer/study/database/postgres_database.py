@@ -28,18 +28,17 @@ from rastrainer.study.database.postgres_connecting import (
     INTERACTIVE_PATIENCE_S,
     connected,
     connected_within,
+    postgres_driver,
+    postgres_error,
 )
-from rastrainer.study.database.postgres_driver import postgres_driver
-from rastrainer.study.database.postgres_errors import postgres_error
-from rastrainer.study.database.postgres_statements import PostgresStatements
-from rastrainer.study.database.postgres_tables import (
+from rastrainer.study.database.postgres_sql import (
     LOCKED,
+    PostgresStatements,
     check_server,
     migrate,
     stored_version,
 )
-from rastrainer.study.database.schema import MIGRATIONS
-from rastrainer.study.database.tables import study_tables
+from rastrainer.study.database.schema import MIGRATIONS, study_tables
 
 _READ = """
     BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY;
@@ -72,24 +71,11 @@ class PostgresDatabase(StudyDatabase):
                 RASTrainer, or holds no study.
             StudyAwayError: the server cannot be reached.
         """
-        self.name, self.place = address.database, address
         self._address = address
-        self._lock_wait = lock_wait or LockWait()
         self._driver = postgres_driver()
         self._own_changes = 0
-        self._may_change = may_change
-        with self._sentences():
-            self._connection = self._connect()
-        try:
-            with self._sentences():
-                self._prepare(may_create)
-        except BaseException:
-            self._connection.close()
-            raise
-
-    def close(self) -> None:
-        """Close the connection; nothing is pending outside a transaction."""
-        self._connection.close()
+        self._may_change, self._may_create = may_change, may_create
+        super().__init__(address.database, address, lock_wait)
 
     @contextmanager
     def reading(self) -> Iterator[PostgresStatements]:
@@ -170,13 +156,13 @@ class PostgresDatabase(StudyDatabase):
             self._lock_wait.note_timeout(time.monotonic() - begun)
             raise StudyAwayError(f"The study {self._address} cannot be reached now.") from None
 
-    def _prepare(self, may_create: bool) -> None:
+    def _prepare(self) -> None:
         check_server(self._connection, self._address)
         with self.reading():
             version = stored_version(self._connection, self._address)
         if version == len(MIGRATIONS):
             return
-        if version == 0 and not (self._may_change and may_create):
+        if version == 0 and not (self._may_change and self._may_create):
             raise InputError(f"The database {self._address} holds no study.")
         if not self._may_change:
             raise InputError(

@@ -1,4 +1,4 @@
-"""The tables of a study database, as the steps that led to them.
+"""The tables of a study, as the steps that led to them.
 
 A database knows how many steps it has taken (`user_version`). A step, once published, never
 changes: what comes next is a further step.
@@ -6,8 +6,13 @@ changes: what comes next is a further step.
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
+
 APPLICATION_ID = 0x52415354
 """Written into the file's header (`RAST`), by which another program's database is recognized."""
+_CREATE = re.compile(r"\s*CREATE TABLE (\w+)")
+_COLUMN = re.compile(r"[(,\n]\s*(\w+) (?:TEXT|INTEGER|REAL)\b")
 
 MIGRATIONS: tuple[tuple[str, ...], ...] = (
     (
@@ -222,3 +227,41 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         """,
     ),
 )
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of the newest schema.
+
+    Attributes:
+        name: of it.
+        columns: all that are stored, with `rowid` last where SQLite numbers the rows.
+        order: the column by which the rows are in order of storing, or always in the same order.
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    order: str
+
+
+def study_tables() -> tuple[Table, ...]:
+    """Return the tables, each after those that it refers to."""
+    return tuple(
+        _table(statement) for step in MIGRATIONS for statement in step if _CREATE.match(statement)
+    )
+
+
+def has_numbered_rows(statement: str) -> bool:
+    """Return whether a statement creates a table whose rows SQLite numbers, in `rowid`."""
+    is_unnumbered = "INTEGER PRIMARY KEY" in statement or "WITHOUT ROWID" in statement
+    return _CREATE.match(statement) is not None and not is_unnumbered
+
+
+def _table(statement: str) -> Table:
+    created = _CREATE.match(statement)
+    assert created is not None
+    columns = tuple(_COLUMN.findall(statement))
+    if has_numbered_rows(statement):
+        columns = (*columns, "rowid")
+    order = next((name for name in ("id", "rowid") if name in columns), columns[0])
+    return Table(created[1], columns, order)

@@ -18,8 +18,7 @@ from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.address import PostgresAddress, study_place
 from rastrainer.study.database.database import LockWait, StudyDatabase
 from rastrainer.study.database.postgres_database import PostgresDatabase
-from rastrainer.study.database.sqlite_database import SqliteDatabase
-from rastrainer.study.database.sqlite_reading import ReadOnlySqliteDatabase
+from rastrainer.study.database.sqlite_database import ReadOnlySqliteDatabase, SqliteDatabase
 from rastrainer.study.database.values import StoredTrial, Trainee, TrialOutcome
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.procedure_outcome import ProcedureOutcome

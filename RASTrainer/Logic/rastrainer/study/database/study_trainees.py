@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.values import Trainee, utc_now
 
 

@@ -15,7 +15,7 @@ from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees
-from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
 from rastrainer.study.database.values import (
     StoredProcedure,

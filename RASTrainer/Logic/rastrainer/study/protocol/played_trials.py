@@ -12,7 +12,7 @@ from typing import Any
 
 from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.database.aborted_trials import unexplained
-from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded
 from rastrainer.study.database.values import moment

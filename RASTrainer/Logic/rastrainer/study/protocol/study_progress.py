@@ -14,7 +14,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.aborted_trials import explain
-from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text

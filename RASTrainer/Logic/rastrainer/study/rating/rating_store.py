@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.study.database.connection import Connection
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
 from rastrainer.study.rating.forms import FORMS, MARKS, RatingForm, find_form
