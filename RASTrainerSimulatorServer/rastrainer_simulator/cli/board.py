@@ -6,10 +6,9 @@ import argparse
 import asyncio
 from pathlib import Path
 
-from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.address import StudyPlace
-from rastrainer_simulator.cli.shared import STUDY_HELP, add_study
+from rastrainer_simulator.cli.options import STUDY_HELP, add_config, add_study, check_ports
 
 DEFAULT_BOARD_PORT = 18955
 
@@ -37,9 +36,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         default=DEFAULT_BOARD_PORT,
         help="for browsers on this computer, 0 for any free one (default: %(default)s)",
     )
-    parser.add_argument(
-        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
-    )
+    add_config(parser)
     parser.set_defaults(run=run)
 
 
@@ -49,8 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         InputError: the list of seats or the study cannot be read, or the port not listened on.
     """
-    if not 0 <= arguments.port < 65536:
-        raise InputError("--port must be a number from 0 to 65535.")
+    check_ports(arguments)
     from rastrainer_simulator.ops.folders import config_folder
 
     config = arguments.config or config_folder()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -30,7 +29,8 @@ from rastrainer.trial.method_comparison import (
     targets_of,
 )
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.shared import add_study, text_table
+from rastrainer_simulator.cli.options import add_json, add_study
+from rastrainer_simulator.cli.output import json_text, text_table
 
 Found = Mapping[RegistrationMethod, Sequence[tuple[str, MethodResult]]]
 """By method, the trials' names and their results."""
@@ -75,7 +75,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, metavar="DIR", help="write CSV, JSON, text and a picture"
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_json(parser)
     parser.set_defaults(run=run)
 
 
@@ -98,12 +98,12 @@ def run(arguments: argparse.Namespace) -> int:
     values = {"scenario": scenario.name, **comparison_json(found), "notes": notes}
     if arguments.output is not None:
         make_empty_folder(arguments.output)
-        as_json = json.dumps(values, allow_nan=False, indent=1)
+        as_json = json_text(values)
         write_text(arguments.output / "methods.txt", text + "\n")
         write_text(arguments.output / "methods.json", as_json + "\n")
         write_text(arguments.output / "methods.csv", comparison_csv(found))
         write_text(arguments.output / "methods.svg", picture(found))
-    print(json.dumps(values, allow_nan=False, indent=1) if arguments.json else text)
+    print(json_text(values) if arguments.json else text)
     return 0
 
 

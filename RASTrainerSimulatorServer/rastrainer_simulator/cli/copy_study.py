@@ -13,7 +13,7 @@ from rastrainer.study.database.database import Connection
 from rastrainer.study.database.schema import Table, study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.platform_links import PlatformLinks
-from rastrainer_simulator.cli.shared import add_study
+from rastrainer_simulator.cli.options import add_study
 
 COUNTER = "trainee_numbers"
 """The one table that a new study has a row in."""

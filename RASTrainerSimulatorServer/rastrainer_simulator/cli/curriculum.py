@@ -16,7 +16,7 @@ from rastrainer.study.curriculum.wording import (
     title_of,
 )
 from rastrainer.study.database.study import Study
-from rastrainer_simulator.cli.shared import add_study
+from rastrainer_simulator.cli.options import add_study
 
 HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 

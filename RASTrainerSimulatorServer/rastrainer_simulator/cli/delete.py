@@ -8,7 +8,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.export.trainee_data import erase_trainee
 from rastrainer.study.database.study import Study
-from rastrainer_simulator.cli.shared import add_study
+from rastrainer_simulator.cli.options import add_study
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rastrainer.protocol import DEFAULT_PORT, DEFAULT_VIEW_PORT
-from rastrainer_simulator.cli.records_option import add_records
+from rastrainer_simulator.cli.options import add_records
 
 if TYPE_CHECKING:
     from rastrainer_simulator.cli.doctor.check_result import CheckResult

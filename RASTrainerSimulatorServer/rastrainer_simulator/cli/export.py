@@ -28,11 +28,11 @@ from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer_simulator.cli.options import add_config, add_incomplete, add_study, read_known_study
 from rastrainer_simulator.cli.record_store_settings import (
     home_page_url,
     read_record_store_settings,
 )
-from rastrainer_simulator.cli.shared import add_incomplete, add_study, read_known_study
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 
@@ -60,9 +60,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="URL",
         help=f"of the lab's system, for xAPI (default: as set, or {HOME_PAGE})",
     )
-    parser.add_argument(
-        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
-    )
+    add_config(parser)
     add_incomplete(parser)
     parser.set_defaults(run=run)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import getpass
 import sys
-from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.cli.options import add_config
 from rastrainer_simulator.ops.folders import config_folder
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS, InstructorPin
 
@@ -26,9 +26,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         ),
     )
     parser.add_argument("--remove", action="store_true", help="have no PIN any more")
-    parser.add_argument(
-        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
-    )
+    add_config(parser)
     parser.set_defaults(run=run)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer_simulator.cli.shared import add_study
+from rastrainer_simulator.cli.options import add_config, add_study, check_ports
 
 if TYPE_CHECKING:
     from rastrainer_simulator.lti.settings import LtiSettings
@@ -55,9 +55,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="FILE",
         help="PEM with private key and chain, for --lan (default: one made on this computer)",
     )
-    parser.add_argument(
-        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
-    )
+    add_config(parser)
     parser.set_defaults(run=run)
 
 
@@ -69,8 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     if importlib.util.find_spec("jwt") is None:
         raise InputError("This needs PyJWT: install it with pip install 'rastrainer[lti]'.")
-    if not 0 <= arguments.port < 65536:
-        raise InputError("--port must be a number from 0 to 65535.")
+    check_ports(arguments)
     from rastrainer_simulator.lti.settings import read_lti_settings
     from rastrainer_simulator.lti.tool_key import ToolKey
     from rastrainer_simulator.net.limits import read_limits

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer_simulator.cli.shared import text_table
+from rastrainer_simulator.cli.options import add_json
+from rastrainer_simulator.cli.output import json_text, text_table
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -22,7 +22,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     parser.add_argument("journal", type=Path, metavar="JOURNAL")
     parser.add_argument("--explain", action="store_true", help="explain each metric")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_json(parser)
     parser.set_defaults(run=run)
 
 
@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     reading = read_journal(arguments.journal)
     motion = trial_motion(Recording.of(reading.entries).trajectory())
     if arguments.json:
-        print(json.dumps(motion, indent=1, allow_nan=False))
+        print(json_text(motion))
         return 0
     known = [DEFINITIONS[name] for name in DEFINITIONS if name in motion]
     rows = [[d.title, f"{motion[d.name]:.4g}", d.unit] for d in known]

@@ -11,8 +11,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.rating.forms import FORMS, find_form
 from rastrainer.study.rating.rating_store import RatingStore
 from rastrainer.study.rating.rating_work import RatingWork
-from rastrainer_simulator.cli.records_option import add_records
-from rastrainer_simulator.cli.shared import add_study
+from rastrainer_simulator.cli.options import add_playback, add_records, add_study, check_ports
 
 REPLAYS = 20
 
@@ -51,10 +50,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--scenario", type=Path, metavar="DIR", help="the scenario they were recorded with"
     )
-    parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
-    parser.add_argument(
-        "--window", action=argparse.BooleanOptionalAction, default=True, help="open the window"
-    )
+    add_playback(parser)
     parser.set_defaults(run=run)
 
 
@@ -65,9 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
         InputError: an argument is not usable, there is nothing to rate, or a replay cannot be
             shown.
     """
-    port = arguments.view_port
-    if port is not None and not 0 <= port < 65536:
-        raise InputError("--view-port must be a number from 0 to 65535.")
+    check_ports(arguments)
     if arguments.replays < 1:
         raise InputError("--replays must be at least 1.")
     # Only here: the robot and the scenario take time to import.
@@ -80,7 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
         order = store.assign(arguments.rater, trials, arguments.replays, random.SystemRandom())
         work = RatingWork(store, arguments.rater, order, forms)
         _tell(f"has {len(order)} replays for {arguments.rater}, {work.rated} rated")
-        serve_rating(work, arguments.records, arguments.scenario, port, arguments.window, _tell)
+        playback = arguments.scenario, arguments.view_port, arguments.window
+        serve_rating(work, arguments.records, *playback, _tell)
         _tell(f"is left: {work.rated} of {len(order)} replays are rated")
     return 0
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,8 @@ from rastrainer.registration.localization_error import (
 )
 from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.target_error import INTERVAL_NOTE, TargetError, target_error
-from rastrainer_simulator.cli.shared import text_table
+from rastrainer_simulator.cli.options import add_json
+from rastrainer_simulator.cli.output import json_text, text_table
 from rastrainer_simulator.cli.surface_registration import match_files, match_json, match_text
 
 FRE_NOTE = (
@@ -105,7 +105,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "--head", type=Path, metavar="HEAD.ply", help="the head's mesh for --surface, RAS mm"
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_json(parser)
     parser.set_defaults(run=run)
 
 
@@ -117,7 +117,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     if arguments.surface is not None:
         found = match_files(arguments)
-        text = json.dumps(match_json(*found), allow_nan=False, indent=1)
+        text = json_text(match_json(*found))
         print(text if arguments.json else match_text(*found))
         return 0
     labels, moving, fixed = pair(read_points(arguments.moving), read_points(arguments.fixed))
@@ -127,7 +127,7 @@ def run(arguments: argparse.Namespace) -> int:
     error = _target_error(registration, arguments.target, stated)
     if arguments.json:
         answer = registration_json(registration, error, stated)
-        print(json.dumps(answer, allow_nan=False, indent=1))
+        print(json_text(answer))
     else:
         print(registration_text(registration, error, stated))
     return 0

@@ -7,7 +7,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
-from rastrainer.errors import InputError
+from rastrainer_simulator.cli.options import add_playback, check_ports
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -28,10 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="simulate the trial again and compare it with the journal instead of showing it",
     )
     parser.add_argument("--json", action="store_true", help="print the report of --verify as JSON")
-    parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
-    parser.add_argument(
-        "--window", action=argparse.BooleanOptionalAction, default=True, help="open the window"
-    )
+    add_playback(parser)
     parser.set_defaults(run=run)
 
 
@@ -59,15 +56,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _show(arguments: argparse.Namespace) -> int:
-    port = arguments.view_port
-    if port is not None and not 0 <= port < 65536:
-        raise InputError("--view-port must be a number from 0 to 65535.")
+    check_ports(arguments)
     from rastrainer_simulator.server.replay_server import show
 
     def announce(where: str) -> None:
         print(f"RASTrainer replay {where}", flush=True)
 
-    show(arguments.journal, arguments.scenario, port, arguments.window, announce)
+    playback = arguments.scenario, arguments.view_port, arguments.window
+    show(arguments.journal, *playback, announce)
     return 0
 
 

@@ -6,13 +6,13 @@ import argparse
 from pathlib import Path
 
 from rastrainer.report.report import write_report
-from rastrainer_simulator.cli.score import mean_times
-from rastrainer_simulator.cli.shared import (
+from rastrainer_simulator.cli.options import (
     STUDY_HELP,
     add_incomplete,
     add_study,
     read_known_study,
 )
+from rastrainer_simulator.cli.score import mean_times
 
 CSV_HEADER = "mode,subject,task,ct,rmse"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import Any
 
 from rastrainer.errors import InputError
@@ -14,7 +13,8 @@ from rastrainer.trial.ctps import (
     score_cohort,
     trials_by_mode,
 )
-from rastrainer_simulator.cli.shared import text_table
+from rastrainer_simulator.cli.options import add_json
+from rastrainer_simulator.cli.output import json_text, text_table
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -38,7 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
             "without MODE for all modes; may be given once for each mode"
         ),
     )
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
+    add_json(parser)
     parser.set_defaults(run=run)
 
 
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     scores = {mode: score_cohort(trials, means.get(mode)) for mode, trials in modes.items()}
     if arguments.json:
         objects = {mode: scores_json(score) for mode, score in scores.items()}
-        print(json.dumps(objects, allow_nan=False, indent=1))
+        print(json_text(objects))
     else:
         print("\n\n".join(scores_text(mode, score) for mode, score in scores.items()))
         print(f"\nWarning: {CTPS_WARNING}")

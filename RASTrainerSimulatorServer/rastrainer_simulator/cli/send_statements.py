@@ -18,12 +18,12 @@ from rastrainer.json_checks import accepted
 from rastrainer.number_text import counted
 from rastrainer.study.database.address import beside_study
 from rastrainer.study.study_data import read_study_data
+from rastrainer_simulator.cli.options import add_study
 from rastrainer_simulator.cli.record_store_settings import (
     RECORD_STORE_FILE,
     home_page_url,
     read_record_store_settings,
 )
-from rastrainer_simulator.cli.shared import add_study
 from rastrainer_simulator.net.record_store import BATCH, Delivery, RecordStore, StoreAwayError
 
 CREDENTIALS_VARIABLE = "RASTRAINER_XAPI_CREDENTIALS"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
-from rastrainer_simulator.cli.records_option import add_records
+from rastrainer_simulator.cli.options import add_config, add_records, check_ports
 from rastrainer_simulator.ops.desktop_process import has_display
 
 FASTEST = 1000.0
@@ -73,9 +73,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         default=True,
         help="read the gamepads of this computer",
     )
-    parser.add_argument(
-        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
-    )
+    add_config(parser)
     parser.add_argument(
         "--resume",
         action=argparse.BooleanOptionalAction,
@@ -148,9 +146,7 @@ NO_DISPLAY = (
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    for name, port in (("--port", arguments.port), ("--view-port", arguments.view_port)):
-        if port is not None and not 0 <= port < 65536:
-            raise InputError(f"{name} must be a number from 0 to 65535.")
+    check_ports(arguments)
     if arguments.no_views and arguments.view_port is not None:
         raise InputError("--view-port and --no-views exclude each other.")
     if arguments.no_views and arguments.lan:

@@ -1,0 +1,99 @@
+"""Options that several commands have, and the study or the error that they lead to."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rastrainer.errors import InputError
+from rastrainer.study.database.address import EXAMPLE, StudyPlace, study_place
+
+if TYPE_CHECKING:
+    from rastrainer.study.study_data import StudyData
+
+DEFAULT_RECORDS = Path.home() / "RASTrainer" / "trials"
+STUDY_HELP = f"a study's file, or its address in PostgreSQL, such as {EXAMPLE}"
+
+
+def add_config(parser: argparse.ArgumentParser) -> None:
+    """Add the folder of the user's settings to a command's parser."""
+    parser.add_argument(
+        "--config", type=Path, metavar="DIR", help="folder of your settings (default: the usual)"
+    )
+
+
+def add_records(parser: argparse.ArgumentParser) -> None:
+    """Add the folder of the trials' journals to a command's parser."""
+    parser.add_argument(
+        "--records",
+        type=Path,
+        metavar="DIR",
+        default=DEFAULT_RECORDS,
+        help="folder of the trials' journals (default: %(default)s)",
+    )
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """Add output for other programs to a command's parser."""
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def add_playback(parser: argparse.ArgumentParser) -> None:
+    """Add how replays are shown to a command's parser."""
+    parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
+    parser.add_argument(
+        "--window", action=argparse.BooleanOptionalAction, default=True, help="open the window"
+    )
+
+
+def check_ports(arguments: argparse.Namespace) -> None:
+    """Raise `InputError` if a given `--port` or `--view-port` is none; 0 is any free one."""
+    for option in ("port", "view_port"):
+        port = getattr(arguments, option, None)
+        if port is not None and not 0 <= port < 65536:
+            raise InputError(f"--{option.replace('_', '-')} must be a number from 0 to 65535.")
+
+
+def add_study(
+    parser: argparse.ArgumentParser,
+    name: str = "study",
+    metavar: str = "STUDY",
+    help_text: str = STUDY_HELP,
+    nargs: str | None = None,
+) -> None:
+    """Add where a study is to a command's parser: a `StudyPlace`."""
+    parser.add_argument(name, type=_place, metavar=metavar, help=help_text, nargs=nargs)
+
+
+def _place(text: str) -> StudyPlace:
+    try:
+        return study_place(text)
+    except InputError as error:
+        # In place of argparse's own sentence, which would repeat what was entered.
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def add_incomplete(parser: argparse.ArgumentParser) -> None:
+    """Add the option to a command's parser."""
+    parser.add_argument(
+        "--incomplete",
+        action="store_true",
+        help="accept a virtual cohort that was not played to its end",
+    )
+
+
+def read_known_study(arguments: argparse.Namespace) -> StudyData:
+    """Return the study of a command's arguments `study` and `incomplete`.
+
+    Raises:
+        InputError: the study cannot be read, or is incomplete and the option is not given.
+    """
+    # Only here: most commands read no study, and need not wait for its import.
+    from rastrainer.study.database.cohort_store import IncompleteStudyError
+    from rastrainer.study.study_data import read_study_data
+
+    try:
+        return read_study_data(arguments.study, arguments.incomplete)
+    except IncompleteStudyError as error:
+        raise IncompleteStudyError(f"{error} --incomplete takes it as it is.") from None
