@@ -13,11 +13,8 @@ from aiohttp import web
 
 from rastrainer_simulator.net.views.messages import SUBPROTOCOL
 from Testing.end_to_end.simulator_process import ViewedSimulator
+from Testing.simulator.board.seat_double import serve_seat
 from Testing.simulator.net.views.served import HELLO
-
-HOST = "127.0.0.1"
-WELCOME = json.dumps({"type": "welcome", "protocol": 1, "view": 1, "bodies": []})
-KEY = "k" * 43
 
 Recording = Sequence[tuple[float, str]]
 """Time since the first, s, and the message."""
@@ -57,35 +54,15 @@ def repeat(count: int, recording: Recording, pipe: Connection) -> None:
 
 async def _repeat(count: int, recording: Recording, pipe: Connection) -> None:
     sent: dict[tuple[int, int], float] = {}
-    ports = []
-    runners = []
-    for seat in range(count):
-        app = web.Application()
-        app.add_routes(
-            [web.post("/pair", _pair), web.get("/stream", _streamer(seat, count, recording, sent))]
-        )
-        runner = web.AppRunner(app, access_log=None)
-        await runner.setup()
-        site = web.TCPSite(runner, HOST, 0)
-        await site.start()
-        ports.append(site._server.sockets[0].getsockname()[1])
-        runners.append(runner)
-    pipe.send(ports)
+    served = [await serve_seat(_sayer(seat, count, recording, sent)) for seat in range(count)]
+    pipe.send([port for _runner, port in served])
     while not pipe.poll():
         await asyncio.sleep(0.1)
     pipe.send(sent)
 
 
-async def _pair(_request: web.Request) -> web.Response:
-    return web.json_response({"key": KEY})
-
-
-def _streamer(seat: int, count: int, recording: Recording, sent: dict):
-    async def stream(request: web.Request) -> web.WebSocketResponse:
-        socket = web.WebSocketResponse(protocols=(SUBPROTOCOL,))
-        await socket.prepare(request)
-        await socket.receive()
-        await socket.send_str(WELCOME)
+def _sayer(seat: int, count: int, recording: Recording, sent: dict):
+    async def say(socket: web.WebSocketResponse) -> None:
         # Classes do not begin at the same time.
         await asyncio.sleep(seat / count)
         number = 0
@@ -96,6 +73,5 @@ def _streamer(seat: int, count: int, recording: Recording, sent: dict):
                 number += 1
                 sent[seat, number] = time.time()
                 await socket.send_str(json.dumps({**json.loads(text), "rejected": number}))
-        return socket
 
-    return stream
+    return say

@@ -12,7 +12,7 @@ from rastrainer.scenario.tasks import LABELS, Task
 from rastrainer.slicer.link.link import Link
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
-from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
+from Testing.slicer.host.fixtures import host, module_widget, start_slicer  # noqa: F401
 from Testing.slicer.simulator_double import SimulatorDouble
 
 

@@ -8,7 +8,6 @@ from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer import settings
 from rastrainer.slicer.settings import PORT, STUDY_ADDRESS, Setting
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
-from Testing.slicer.host.host import Host
 
 SECTIONS = (
     "setup",
@@ -22,25 +21,16 @@ SECTIONS = (
 
 
 @pytest.fixture
-def start(tmp_path):
-    """Returns a function that starts Slicer, after closing the one before."""
-    running = []
+def start(start_slicer):
+    """Returns a function that starts Slicer again with all of this open."""
 
     def start():
-        if running:
-            running.pop().close()
-        running.append(Host(tmp_path / "slicer"))
-        running[0].open()
-        for section in SECTIONS:
-            running[0].find(f"{section}CollapsibleButton").collapsed = False
-        running[0].find("setupGroupBox").collapsed = False
-        running[0].process_events()
-        return running[0]
+        host = start_slicer(*SECTIONS)
+        host.find("setupGroupBox").collapsed = False
+        host.process_events()
+        return host
 
-    yield start
-    errors = list(running[0].errors)
-    running.pop().close()
-    assert not errors, "\n".join(errors)
+    return start
 
 
 def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):

@@ -7,7 +7,6 @@ import pytest
 from rastrainer.study.database import postgres_connecting, postgres_database
 from rastrainer.study.database.study import Study
 from Testing.postgres_server import PostgresServer
-from Testing.slicer.host.host import Host
 
 pytestmark = pytest.mark.soak
 
@@ -16,26 +15,6 @@ pytestmark = pytest.mark.soak
 def server():
     with PostgresServer() as server:
         yield server
-
-
-@pytest.fixture
-def start(tmp_path):
-    """Returns a function that starts Slicer, after closing the one before."""
-    running = []
-
-    def start():
-        if running:
-            running.pop().close()
-        running.append(Host(tmp_path / "slicer"))
-        running[0].open()
-        running[0].find("traineesCollapsibleButton").collapsed = False
-        running[0].process_events()
-        return running[0]
-
-    yield start
-    errors = list(running[0].errors)
-    running.pop().close()
-    assert not errors, "\n".join(errors)
 
 
 @pytest.fixture(autouse=True)
@@ -50,18 +29,18 @@ def names(host):
     return [combo.itemText(row) for row in range(1, combo.count)]
 
 
-def test_a_study_at_an_address_is_used_kept_and_left_again(start, server):
+def test_a_study_at_an_address_is_used_kept_and_left_again(start_slicer, server):
     place = server.new_study()
     with Study.open(place) as study:
         study.create_trainee("Blue")
-    host = start()
+    host = start_slicer("trainees")
     host.press("createTraineeButton")
     assert names(host) == ["T001"]
     host.type("studyAddressLineEdit", str(place))
     assert names(host) == ["Blue"]
     assert not host.find("studyPathLineEdit").enabled
     host.press("createTraineeButton")
-    host = start()
+    host = start_slicer("trainees")
     assert host.text("studyAddressLineEdit") == str(place)
     assert names(host) == ["Blue", "T002"]
     host.type("studyAddressLineEdit", "")
@@ -71,18 +50,18 @@ def test_a_study_at_an_address_is_used_kept_and_left_again(start, server):
         assert [trainee.pseudonym for trainee in study.trainees()] == ["Blue", "T002"]
 
 
-def test_the_list_shows_a_trainee_of_another_seat(start, server):
+def test_the_list_shows_a_trainee_of_another_seat(start_slicer, server):
     place = server.new_study()
-    host = start()
+    host = start_slicer("trainees")
     host.type("studyAddressLineEdit", str(place))
     with Study.open(place) as other:
         other.create_trainee("Blue")
     host.wait_until(lambda: names(host) == ["Blue"], "the list shows it")
 
 
-def test_a_server_that_is_away_is_said_and_used_again_when_it_is_back(start, server):
+def test_a_server_that_is_away_is_said_and_used_again_when_it_is_back(start_slicer, server):
     place = server.new_study()
-    host = start()
+    host = start_slicer("trainees")
     host.type("studyAddressLineEdit", str(place))
     host.press("createTraineeButton")
     server.kill()

@@ -7,9 +7,8 @@ virtual trainees.
 from __future__ import annotations
 
 import dataclasses
-import json
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 
 from aiohttp import web
@@ -19,22 +18,19 @@ from rastrainer.protocol import Phase
 from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer_simulator.board.class_reader import ClassReader, ClassStanding
 from rastrainer_simulator.flow.session.curricula import AssignmentWords
-from rastrainer_simulator.net.views.messages import SUBPROTOCOL
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
 from rastrainer_simulator.net.views.presenter import Seat
 from rastrainer_simulator.ops.texts.english import ENGLISH
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import TouchStage
-from Testing.free_port import free_port
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import BoardClient
+from Testing.simulator.board.seat_double import HOST, serve_seat
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.web.chromium import launch
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
-HOST, SIZE, WIDE = "127.0.0.1", {"width": 1180, "height": 640}, {"width": 1300, "height": 640}
-WELCOME = json.dumps({"type": "welcome", "protocol": 1, "view": 1, "bodies": []})
-KEY = "k" * 43
+SIZE, WIDE = {"width": 1180, "height": 640}, {"width": 1300, "height": 640}
 SAY = Texts(ENGLISH).say
 
 
@@ -89,27 +85,14 @@ def seats(found: ClassStanding) -> dict[str, str]:
     }
 
 
-async def serve(text: str) -> tuple[web.AppRunner, int]:
-    """Serve a seat; return its server and its port."""
+def says(text: str) -> Callable[[web.WebSocketResponse], Awaitable[None]]:
+    """Return what has a seat say one thing."""
 
-    async def stream(request: web.Request) -> web.WebSocketResponse:
-        socket = web.WebSocketResponse(protocols=(SUBPROTOCOL,))
-        await socket.prepare(request)
-        await socket.receive()
-        await socket.send_str(WELCOME)
+    async def say(socket: web.WebSocketResponse) -> None:
         await socket.send_str(text)
         await socket.receive()
-        return socket
 
-    async def pair(_request: web.Request) -> web.Response:
-        return web.json_response({"key": KEY})
-
-    app = web.Application()
-    app.add_routes([web.post("/pair", pair), web.get("/stream", stream)])
-    runner, port = web.AppRunner(app, access_log=None, shutdown_timeout=0.1), free_port()
-    await runner.setup()
-    await web.TCPSite(runner, HOST, port).start()
-    return runner, port
+    return say
 
 
 def take_picture(board: BoardClient, stopped: Iterable[web.AppRunner]) -> None:
@@ -145,7 +128,7 @@ def main() -> None:
         board = BoardClient(thread, Path(folder) / "teacher", study)
         runners = []
         for name, text in seats(found).items():
-            runner, port = thread.run(serve(text))
+            runner, port = thread.run(serve_seat(says(text)))
             runners.append(runner)
             values = {"name": name, "address": f"http://{HOST}:{port}", "code": "000000"}
             status, answer = board.ask("/seats", "POST", **values)

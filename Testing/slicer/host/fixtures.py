@@ -20,3 +20,26 @@ def host(tmp_path):
 def module_widget(host):
     """The module's widget, opened and entered."""
     return host.open()
+
+
+@pytest.fixture
+def start_slicer(tmp_path):
+    """Returns a function that starts Slicer, after closing the one before, and opens sections."""
+    from Testing.slicer.host.host import Host
+
+    running = []
+
+    def start(*sections):
+        if running:
+            running.pop().close()
+        running.append(Host(tmp_path / "slicer"))
+        running[0].open()
+        for section in sections:
+            running[0].find(f"{section}CollapsibleButton").collapsed = False
+        running[0].process_events()
+        return running[0]
+
+    yield start
+    errors = list(running[0].errors)
+    running.pop().close()
+    assert not errors, "\n".join(errors)
