@@ -19,16 +19,17 @@ from rastrainer.study.database.address import StudyPlace
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.lti.course_study import CourseStudy
 from rastrainer_simulator.lti.grade_return import GradeReturn
-from rastrainer_simulator.lti.key_sets import KeySets
 from rastrainer_simulator.lti.launch_message import (
     LARGEST_TOKEN,
+    VALID_S,
+    OpenLogins,
     PlatformLaunch,
     RefusedLaunchError,
+    new_secret,
     read_launch,
 )
 from rastrainer_simulator.lti.launch_page import PAGE_HEADERS, LaunchPage
-from rastrainer_simulator.lti.open_logins import VALID_S, OpenLogins, new_secret
-from rastrainer_simulator.lti.platform_client import PlatformAwayError, PlatformClient
+from rastrainer_simulator.lti.platform_client import KeySets, PlatformAwayError, PlatformClient
 from rastrainer_simulator.lti.settings import KEYS, LAUNCH, LOGIN, LtiSettings
 from rastrainer_simulator.lti.tool_key import ToolKey
 from rastrainer_simulator.net.limits import ViewLimits

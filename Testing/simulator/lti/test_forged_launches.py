@@ -12,8 +12,13 @@ from aiohttp import web
 from cryptography.hazmat.primitives import serialization
 from cryptography.hazmat.primitives.asymmetric import rsa
 
-from rastrainer_simulator.lti.launch_message import LARGEST_TOKEN, RefusedLaunchError
-from rastrainer_simulator.lti.open_logins import MOST_LOGINS, VALID_S, OpenLogins
+from rastrainer_simulator.lti.launch_message import (
+    LARGEST_TOKEN,
+    MOST_LOGINS,
+    VALID_S,
+    OpenLogins,
+    RefusedLaunchError,
+)
 from Testing.simulator.lti.conftest import ADDRESS
 from Testing.simulator.lti.platform_double import (
     CLAIM,
