@@ -29,7 +29,7 @@ from rastrainer_simulator.board.seat_list import (
 from rastrainer_simulator.board.watched_seat import WatchedSeat
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.gate import ROLE, PairingCode
-from rastrainer_simulator.net.views.guarded_server import GuardedServer
+from rastrainer_simulator.net.views.limited_server import GuardedServer
 from rastrainer_simulator.net.views.presenter import InstructorOrder
 from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 

@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.reading import printable_name, read_json
 from rastrainer.files.writing import write_private_json
 from rastrainer.json_checks import accepted, text
-from rastrainer_simulator.net.loopback import is_loopback
+from rastrainer_simulator.net.listener import is_loopback
 
 SEATS_FILE = "board.json"
 FORMAT_VERSION = 1

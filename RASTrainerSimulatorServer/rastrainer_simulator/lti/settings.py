@@ -10,7 +10,7 @@ from urllib.parse import urlsplit
 from rastrainer.errors import InputError
 from rastrainer.files.reading import printable_name, read_json
 from rastrainer.json_checks import Argument, checked_keys, text, texts, yes_or_no
-from rastrainer_simulator.net.loopback import is_loopback
+from rastrainer_simulator.net.listener import is_loopback
 
 SETTINGS_FILE = "lti.json"
 MOST_PLATFORMS = 20

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import ipaddress
 import socket
 import ssl
 from collections.abc import Callable, Coroutine
@@ -126,3 +127,11 @@ def listening_socket(family: int, address: tuple) -> socket.socket:
         listening.close()
         raise
     return listening
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether a host is this computer's own address, which no other computer can use."""
+    try:
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import printable_name
-from rastrainer_simulator.net.loopback import is_loopback
+from rastrainer_simulator.net.listener import is_loopback
 
 XAPI_VERSION = "1.0.3"
 TIMEOUT_S = 20.0

@@ -35,7 +35,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
-from rastrainer_simulator.net.loopback import is_loopback
+from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, TrialLog
 from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.desktop_process import DesktopProcess

@@ -1,20 +1,24 @@
-"""Listen for HTTP within limits of connections, requests and sizes."""
+"""Listen for HTTP within limits of connections, requests and sizes; behind a gate or not."""
 
 from __future__ import annotations
 
 import ssl
 from collections.abc import Sequence
+from pathlib import Path
 
 from aiohttp import web
 from aiohttp.typedefs import Middleware
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
 from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
-from rastrainer_simulator.net.views.gate import add_security_headers
+from rastrainer_simulator.net.views.gate import Gate, PairingCode, add_security_headers
+from rastrainer_simulator.net.views.sessions import Sessions
 
 SHUTDOWN_S = 1.0
+LARGEST_BODY = 1024
 
 
 class LimitedServer:
@@ -81,3 +85,36 @@ class LimitedServer:
     async def close(self) -> None:
         """End what is still connected."""
         await self._runner.cleanup()
+
+
+class GuardedServer(LimitedServer):
+    """A server that lets through nobody but who is paired, except to the page and the pairing."""
+
+    def __init__(
+        self,
+        sessions: Sessions,
+        code: PairingCode,
+        limits: ViewLimits,
+        routes: Sequence[web.RouteDef],
+        page: Path | None,
+    ) -> None:
+        """Make a server; nothing listens yet.
+
+        Args:
+            sessions: whose keys let somebody through.
+            code: that a new session is given for, at `POST /pair`.
+            limits: what connections may cost.
+            routes: what else is answered.
+            page: folder of the built page, whose files are public; None where there is none.
+        """
+        connections = Connections(limits.connections, limits.first_message_s)
+        gate = Gate(
+            sessions,
+            code,
+            connections.note,
+            connections.note_key,
+            AsyncRateLimiter(limits.requests_per_s),
+        )
+        static = [] if page is None else [web.static("/", page)]
+        paths = [web.post("/pair", gate.pair), *routes, *static]
+        super().__init__(connections, limits, gate.check, paths, LARGEST_BODY)

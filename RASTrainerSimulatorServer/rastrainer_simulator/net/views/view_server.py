@@ -16,11 +16,11 @@ from aiohttp import WSCloseCode, WSMsgType, web
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import NOT_BUILT, asset_path, page_folder
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.loopback import is_loopback
+from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, StateSource
+from rastrainer_simulator.net.views.boards import InstructorOrders
 from rastrainer_simulator.net.views.gate import ROLE, PairingCode
-from rastrainer_simulator.net.views.guarded_server import GuardedServer
-from rastrainer_simulator.net.views.instructor_orders import InstructorOrders
+from rastrainer_simulator.net.views.limited_server import GuardedServer
 from rastrainer_simulator.net.views.messages import HELLO, ONLY_WATCH, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.presenter import Hello, Presenter
 from rastrainer_simulator.net.views.sessions import BOARDS_FILE, Sessions, ViewRole
