@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.protocol import Phase, Proximity
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import Phase, Proximity, RegistrationMethod
 from rastrainer_simulator.procedure_state import (
     GuideAlignment,
     GuideAxis,

@@ -10,7 +10,7 @@ import pytest
 from rastrainer.export.slicer_files import write_slicer_files
 from rastrainer.files.markups import read_markups
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study

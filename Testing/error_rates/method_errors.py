@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.number_text import fixed
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.method_trials import METHODS, MethodStudy

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from Testing.error_rates.method_errors import CHUNK, keys, play, stored
 
 

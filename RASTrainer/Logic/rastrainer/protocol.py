@@ -91,6 +91,17 @@ class Mode(str, Enum):
     HMD = "hmd"
 
 
+class RegistrationMethod(str, Enum):
+    """How a head is registered: what is touched or traced on it."""
+
+    FIDUCIALS = "fiducials"
+    LANDMARKS = "landmarks"
+    SURFACE = "surface"
+    SCAN = "scan"
+    BONE_SCREWS = "bone-screws"
+    LANDMARKS_SURFACE = "landmarks-surface"
+
+
 class TouchRule(str, Enum):
     """Which touch counts: only on the skin, or, as in the paper, anywhere near the fiducial."""
 

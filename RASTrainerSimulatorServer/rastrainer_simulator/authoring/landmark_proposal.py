@@ -19,7 +19,7 @@ from rastrainer.head.face_removal import nose_tip
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
 from rastrainer.registration.fits import RIGID, fit
-from rastrainer.registration.surface_placement import rotations
+from rastrainer.registration.surface_steps import rotations
 from rastrainer.scenario.landmark_checks import FACE_LANDMARKS, NOSE_TIP, spread_first
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Landmark

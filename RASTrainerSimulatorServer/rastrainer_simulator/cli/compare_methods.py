@@ -14,8 +14,7 @@ from rastrainer.export.tidy_csv import csv_text
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.number_text import fixed
-from rastrainer.registration.methods import RegistrationMethod
-from rastrainer.registration.published_noise import PUBLISHED_NOISE
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.sections.mode_comparison import Series, grouped_bars
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.study.database.address import StudyPlace
@@ -31,6 +30,7 @@ from rastrainer.trial.method_comparison import (
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.options import add_json, add_study
 from rastrainer_simulator.cli.output import json_text, text_table
+from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 
 Found = Mapping[RegistrationMethod, Sequence[tuple[str, MethodResult]]]
 """By method, the trials' names and their results."""

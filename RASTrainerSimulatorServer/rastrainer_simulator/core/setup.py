@@ -17,7 +17,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.collision.capsules import Capsule

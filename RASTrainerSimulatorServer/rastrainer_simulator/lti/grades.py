@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Iterable
 from enum import Enum
 
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.platform_links import LinkedAssignment
 from rastrainer.trial.scoring import score_version
 from rastrainer.trial.trainee_progress import PastTrial

@@ -16,7 +16,7 @@ import jwt
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import text
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer_simulator.lti.grades import GradeRule, GradeTerms
 from rastrainer_simulator.lti.platform_client import KeySets
 from rastrainer_simulator.lti.settings import LearningPlatform

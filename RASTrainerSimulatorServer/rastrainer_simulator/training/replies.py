@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer_simulator.state import Event, EventKind, TrainingState
 from rastrainer_simulator.training.feed import Feed
 

@@ -16,9 +16,9 @@ from rastrainer.protocol import (
     CommandName,
     Phase,
     Proximity,
+    RegistrationMethod,
     TouchRule,
 )
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts

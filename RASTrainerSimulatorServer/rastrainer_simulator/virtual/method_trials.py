@@ -14,9 +14,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.skin_shift import SkinShift
 from rastrainer.head.surface_queries import outward_normals
-from rastrainer.registration.methods import RegistrationMethod
-from rastrainer.registration.published_noise import PUBLISHED_NOISE, MethodNoise
-from rastrainer.registration.range_camera import RangeCamera
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.surface_match import STARTS
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
 from rastrainer.registration.trace_guidance import guided_vertices
@@ -28,6 +26,7 @@ from rastrainer.trial.method_comparison import (
     register_by,
     targets_of,
 )
+from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, MethodNoise, RangeCamera
 
 TRACE_POINTS = 200
 SCREWS = 5

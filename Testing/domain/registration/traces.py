@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.registration.surface_placement import rotations
+from rastrainer.registration.surface_steps import rotations
 
 COLIN27 = Path(__file__).parents[3] / "assets" / "scenarios" / "colin27"
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.method_task import method_of, task_by_method
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path

@@ -6,7 +6,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.export.trainee_data import erase_trainee, export_trainee
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.schema import study_tables
 from rastrainer.study.database.study import Study

@@ -10,7 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.report import methods_note, with_one_method
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.study_data import StudyData, TrialRow

@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.markups import read_points, write_markups
 from rastrainer.files.point_list import PointList, read_point_cloud, write_point_cloud
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.cli.main import main

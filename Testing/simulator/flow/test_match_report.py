@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.protocol import Phase
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.touch_registration import register_trial
 from rastrainer_simulator.flow.pages.match import match_report

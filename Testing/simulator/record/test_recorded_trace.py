@@ -7,8 +7,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.protocol import MIN_TRACE_POINTS, CommandName, Phase
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import MIN_TRACE_POINTS, CommandName, Phase, RegistrationMethod
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.simulation import Simulation

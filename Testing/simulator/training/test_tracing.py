@@ -4,8 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.protocol import MAX_TRACE_POINTS, MIN_TRACE_POINTS, CommandName, Phase
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import (
+    MAX_TRACE_POINTS,
+    MIN_TRACE_POINTS,
+    CommandName,
+    Phase,
+    RegistrationMethod,
+)
 from rastrainer_simulator.state import EventKind
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 from Testing.simulator.training.hand_driven import Trial

@@ -11,7 +11,7 @@ from rastrainer.number_text import fixed
 from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.training_panel import METHODS
 from rastrainer.panels.widgets import chosenData, fillTable, setSentence
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.slicer.logic.method_comparison_logic import ComparedMethod
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _

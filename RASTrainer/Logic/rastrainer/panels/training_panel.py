@@ -23,8 +23,14 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN, Mode, Phase, Proximity
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import (
+    PROCEDURE_PHASES,
+    TRIAL_RUN,
+    Mode,
+    Phase,
+    Proximity,
+    RegistrationMethod,
+)
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.training_logic import TrialStatus

@@ -9,7 +9,6 @@ from numpy.random import default_rng
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.registration.nearby_minima import lowest_nearby
 from rastrainer.registration.surface_checks import (
     MatchMeasures,
     check_start,
@@ -18,14 +17,14 @@ from rastrainer.registration.surface_checks import (
     find_match_warnings,
     thinned,
 )
-from rastrainer.registration.surface_fit import costs, fit_to_surface, gates
-from rastrainer.registration.surface_placement import (
+from rastrainer.registration.surface_fit import costs, fit_to_surface, gates, lowest_nearby
+from rastrainer.registration.surface_slide import SurfaceSlide, slide_of
+from rastrainer.registration.surface_steps import (
     SurfaceFit,
     plane_normals,
     rotations,
     transforms_of,
 )
-from rastrainer.registration.surface_slide import SurfaceSlide, slide_of
 from rastrainer.registration.warnings import RegistrationWarning
 
 STARTS = 8

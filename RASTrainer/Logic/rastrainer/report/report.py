@@ -12,14 +12,13 @@ import rastrainer
 from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import counted
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.elements.comparisons import ModeComparison, compare_modes
 from rastrainer.report.elements.markup import bullets, page, paragraph, section
 from rastrainer.report.elements.scores import versions_note, with_ctps, with_one_score_version
 from rastrainer.report.sections.calibration import calibration
-from rastrainer.report.sections.curricula import curricula
 from rastrainer.report.sections.learning import learning
-from rastrainer.report.sections.method_comparison import method_comparison
+from rastrainer.report.sections.method_comparison import method_comparison, shifted_skin
 from rastrainer.report.sections.methods import limits, methods
 from rastrainer.report.sections.mode_comparison import distributions, mode_comparison, motion
 from rastrainer.report.sections.paired_statistics import findings, order_caveat, paired_statistics
@@ -27,8 +26,7 @@ from rastrainer.report.sections.passing import passing, started_trials
 from rastrainer.report.sections.procedures import procedures
 from rastrainer.report.sections.published_tables import paper_notes, published_tables
 from rastrainer.report.sections.raters import raters
-from rastrainer.report.sections.shifted_skin import shifted_skin
-from rastrainer.report.sections.trainees import groups, questionnaires
+from rastrainer.report.sections.trainees import curricula, groups, questionnaires
 from rastrainer.report.sections.variation import variation
 from rastrainer.statistics.few_subjects import FEW_SUBJECTS
 from rastrainer.statistics.scipy_modules import scipy_module

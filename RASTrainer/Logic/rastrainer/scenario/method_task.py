@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task
 

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import TRIAL_RUN
+from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted

@@ -11,8 +11,14 @@ from typing import Any
 
 from rastrainer import json_checks
 from rastrainer.json_checks import Argument
-from rastrainer.protocol import FIDUCIAL_COUNT, MIN_ABORTED_S, OPEN_PHASES, TRIAL_RUN, Phase
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import (
+    FIDUCIAL_COUNT,
+    MIN_ABORTED_S,
+    OPEN_PHASES,
+    TRIAL_RUN,
+    Phase,
+    RegistrationMethod,
+)
 from rastrainer.scenario.method_task import TRACED_METHODS
 from rastrainer.trial.record import (
     MAX_TRACE_POINTS,

@@ -12,8 +12,8 @@ from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.head.skin_shift import UNMOVED, SkinShift
 from rastrainer.motion.trajectory import Trajectory
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.scenario.scenario import Scenario
@@ -30,8 +30,12 @@ from rastrainer.trial.scoring import (
     score_trial,
     score_version,
 )
-from rastrainer.trial.skin_effect import skin_sentence, unshifted_tre_mm
-from rastrainer.trial.touch_registration import normals_at, register_trial
+from rastrainer.trial.touch_registration import (
+    normals_at,
+    register_trial,
+    skin_sentence,
+    unshifted_tre_mm,
+)
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
 from rastrainer.trial.trueness import CommonBias, common_bias, true_touch_errors
 

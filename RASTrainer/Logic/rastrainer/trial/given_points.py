@@ -13,9 +13,8 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.json_checks import Argument, accepted, checked_keys
-from rastrainer.protocol import FIDUCIAL_COUNT, MIN_TRACE_POINTS, WORLD_LIMIT_MM
+from rastrainer.protocol import FIDUCIAL_COUNT, MIN_TRACE_POINTS, WORLD_LIMIT_MM, RegistrationMethod
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.registration import register
 from rastrainer.registration.trace_guidance import TraceGuide, nearest_traced_mm
 from rastrainer.scenario.method_task import (

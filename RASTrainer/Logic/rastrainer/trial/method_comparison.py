@@ -10,8 +10,8 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.registration import register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import STARTS, match_surface

@@ -23,9 +23,9 @@ from rastrainer.protocol import (
     MIN_TRACE_POINTS,
     WORLD_LIMIT_MM,
     Mode,
+    RegistrationMethod,
     TouchRule,
 )
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.method_task import COARSE_LANDMARKS, PLAYED_METHODS, TRACED_METHODS
 
 TIME_LIMIT_S = 1e6

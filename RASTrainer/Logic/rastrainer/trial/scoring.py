@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 from rastrainer.desirability import TIME_FLOOR, falling, of_time
 from rastrainer.errors import InputError
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 
 SCORE_VERSION = "3"
 """Changes with any change of a formula or a reference, so that scores stay comparable."""

@@ -3,6 +3,9 @@
 A trace is matched to the surface of the scenario's head, from where the landmarks put it. What
 counts of such a registration is its matrix: its residuals are those of the landmarks, which it does
 not make least, and its FRE is the root mean square of the trace's inliers to the surface.
+
+Where the skin lay otherwise than in the images, the points are also put back and registered again:
+that shows what the shift did.
 """
 
 from __future__ import annotations
@@ -16,23 +19,27 @@ from typing import Any
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.skin_shift import SkinShift
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.localization_error import (
     LocalizationError,
     error_along_surface,
     isotropic_error,
 )
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.registration.registration import Registration, register_all_kinds
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
-from rastrainer.registration.target_error import TargetError, target_error
+from rastrainer.registration.target_error import TargetError, target_error, true_errors
 from rastrainer.scenario.method_task import TRACED_METHODS, task_by_method
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.given_points import GivenPoints
+from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import point_normals
+from rastrainer.trial.wording import Sentence, say
 
 LEAST_ALONG_SURFACE = 6
 """Touches; of fewer, the residuals do not separate the error along the skin from that across it."""
@@ -147,3 +154,50 @@ def normals_at(
     task = task_by_method(scenario, task_name, method)
     rows = [task.labels.index(label) for label in labels]
     return point_normals(scenario, task)[rows]
+
+
+def unshifted_tre_mm(
+    record: TrialRecord, scenario: Scenario, head_to_world: np.ndarray, skin: SkinShift
+) -> float | None:
+    """Return the true TRE that a trial would have had with the skin as in the images, mm.
+
+    Its touches and its trace are put back to where they would have been measured, and registered
+    again.
+
+    Args:
+        record: The trial.
+        scenario: In which it was played.
+        head_to_world: (4, 4) float, mm, the true pose.
+        skin: How the skin lay, with its seed.
+
+    Returns:
+        None where the skin lay as in the images, or where the points cannot be registered so.
+    """
+    if skin.is_none:
+        return None
+    to_head, mesh = transforms.inverse(head_to_world), head_of(scenario)
+    given = GivenPoints.of_record(record)
+
+    def put_back(points: np.ndarray) -> np.ndarray:
+        in_head = skin.unmeasured(transforms.apply(to_head, points), mesh)
+        return transforms.apply(head_to_world, in_head)
+
+    touches = PointList(given.touches.labels, put_back(given.touches.points))
+    unshifted = replace(given, touches=touches, trace_mm=put_back(given.trace_mm))
+    try:
+        matrix = register_trial(unshifted, scenario).rigid.matrix
+    except InputError:
+        return None
+    return float(np.linalg.norm(true_errors(matrix, head_to_world, scenario.target_position)))
+
+
+def skin_sentence(
+    skin: SkinShift, true_tre_mm: float, unshifted_mm: float | None
+) -> Sentence | None:
+    """Return what the trainee reads after a trial; None where the skin lay as in the images."""
+    if skin.is_none:
+        return None
+    amounts = {"shift": skin.rms_mm, "indentation": skin.indentation_mm, "tre": true_tre_mm}
+    if unshifted_mm is None:
+        return say("skin", **amounts)
+    return say("skin and error", **amounts, without=unshifted_mm)

@@ -12,8 +12,7 @@ from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
-from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep

@@ -1,4 +1,7 @@
-"""The methods of registration side by side: residual, expected and true target error."""
+"""The methods of registration side by side: residual, expected and true target error.
+
+Also what a shift of the skin did: the true errors beside those of the same trials without it.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from rastrainer.number_text import fixed, p_text
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.elements.comparisons import ModeComparison, compare_modes, tested
 from rastrainer.report.elements.markup import (
     Cell,
@@ -50,6 +53,20 @@ PAIRED = (
     "the orders allow it. The decision is about the true error alone, with Holm's correction over "
     "the pairs of methods; the other outcomes are described. What else differed between the "
     "trials, such as their tasks, is part of the differences."
+)
+_HEADER = (
+    *("Method", "n, trainees", "trials", "residual (mm) [95 %]", "expected TRE (mm) [95 %]"),
+    *("true TRE (mm) [95 %]", "true inside"),
+)
+_PAIR_HEADER = ("Outcome", "first", "second", "n", "difference [95 %]", "t", "p", "p (Holm)")
+SKIN_INTRO = (
+    "In these trials the skin lay otherwise than in the images. Residual and expected error show "
+    "little of it. The last column is of the same points, put back to where they would have been "
+    "measured and registered again; means over the trials whose truth was revealed."
+)
+SKIN_HEADER = (
+    *("Shift, RMS (mm)", "indentation (mm)", "registered by", "trials", "residual (mm)"),
+    *("expected TRE (mm)", "true TRE (mm)", "without the shift (mm)"),
 )
 
 
@@ -133,12 +150,6 @@ def _findings(pairs: Sequence[ModeComparison]) -> list[str]:
     return sentences or ["The true errors of too few trainees are known: nothing is tested."]
 
 
-_HEADER = (
-    *("Method", "n, trainees", "trials", "residual (mm) [95 %]", "expected TRE (mm) [95 %]"),
-    *("true TRE (mm) [95 %]", "true inside"),
-)
-
-
 def _row(by_method: StudyData, method: str) -> Line:
     trials = by_method.of_mode(method)
     trainees = {trial.trainee for trial in trials}
@@ -188,9 +199,6 @@ def _picture(by_method: StudyData, methods: Sequence[str]) -> str:
     return grouped_bars("Residual and target error, mm", names, series, "method")
 
 
-_PAIR_HEADER = ("Outcome", "first", "second", "n", "difference [95 %]", "t", "p", "p (Holm)")
-
-
 def _pair_row(pair: ModeComparison) -> Line:
     outcome, result = pair.outcome, pair.result
     start: Line = [outcome.heading, TITLES[pair.first], TITLES[pair.second]]
@@ -204,3 +212,28 @@ def _pair_row(pair: ModeComparison) -> Line:
         p_text(result.p),
         "–" if pair.adjusted_p is None else p_text(pair.adjusted_p),
     ]
+
+
+def shifted_skin(data: StudyData) -> str:
+    """Return the section; "" where the skin lay as in the images in all trials."""
+    groups: dict[tuple[float, float, str], list[TrialRow]] = {}
+    for trial in data.trials:
+        if "skin_shift_mm" in trial.values:
+            amounts = trial.values["skin_shift_mm"], trial.values["skin_indentation_mm"]
+            groups.setdefault((*amounts, trial.method), []).append(trial)
+    if not groups:
+        return ""
+    rows = [_skin_row(*key, groups[key]) for key in sorted(groups)]
+    return section("Shifted skin", paragraph(SKIN_INTRO), table([SKIN_HEADER], rows, "wide"))
+
+
+def _skin_row(shift: float, indentation: float, method: str, trials: Sequence[TrialRow]) -> Line:
+    names = ("rmse_mm", "expected_tre_mm", "true_tre_mm", "unshifted_tre_mm")
+    means = [_mean_of(trials, name) for name in names]
+    by = TITLES.get(method, method)
+    return [fixed(shift, 1), fixed(indentation, 1), by, str(len(trials)), *means]
+
+
+def _mean_of(trials: Sequence[TrialRow], name: str) -> str:
+    values = [trial.values[name] for trial in trials if name in trial.values]
+    return fixed(float(np.mean(values)), 2) if values else "–"

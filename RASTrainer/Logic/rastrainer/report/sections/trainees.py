@@ -1,21 +1,41 @@
-"""Questionnaire scores, and groups of trainees by performance."""
+"""Trainees: what they answered, groups by performance, and where they stand in their curricula."""
 
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 
 import numpy as np
 
 from rastrainer.number_text import fixed, p_phrase
-from rastrainer.report.elements.markup import Cell, Line, paragraph, section, table
+from rastrainer.report.elements.markup import (
+    Cell,
+    Line,
+    bullets,
+    heading,
+    paragraph,
+    section,
+    table,
+)
 from rastrainer.statistics.trainee_clusters import (
     NoClustersError,
     TraineeClusters,
     cluster_trainees,
 )
+from rastrainer.study.curriculum.curriculum import Curriculum
+from rastrainer.study.curriculum.standing import AssignmentStanding, CurriculumStanding
+from rastrainer.study.curriculum.wording import goal_of, short_progress_of, title_of
 from rastrainer.study.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES, Scale
 from rastrainer.study.study_data import StudyData
+
+NAMES = "ABCDE"
+MAX_NAMED = 12
+_CURRICULA_NOTE = (
+    "Trials in a row that pass are a goal for practice, not a proof of competence: a trainee who "
+    "plays long enough reaches them by chance. Aborted trials with a touch count as not passed, "
+    "and n counts them."
+)
 
 
 def questionnaires(data: StudyData) -> str:
@@ -62,10 +82,6 @@ def _row(scale: Scale, when: str, scores: list[float]) -> Line:
     ]
 
 
-NAMES = "ABCDE"
-MAX_NAMED = 12
-
-
 def groups(data: StudyData) -> str:
     """Return the section."""
     means = trainee_means(data)
@@ -110,3 +126,36 @@ def _words(found: TraineeClusters) -> str:
         "the mean Jaccard similarity under resampling of trainees (Hennig 2007). A group describes "
         "these trainees; it does not say why they differ."
     )
+
+
+def curricula(data: StudyData) -> str:
+    """Return the section; "" if nobody follows a curriculum."""
+    groups: dict[Curriculum, dict[str, CurriculumStanding]] = {}
+    for name, standing in data.standings.items():
+        groups.setdefault(standing.curriculum, {})[name] = standing
+    if not groups:
+        return ""
+    parts = [_of_curriculum(each, found) for each, found in groups.items()]
+    return section("Curriculum", *parts, paragraph(_CURRICULA_NOTE, "small"))
+
+
+def _of_curriculum(curriculum: Curriculum, found: Mapping[str, CurriculumStanding]) -> str:
+    first = next(iter(found.values()))
+    header = ["trainee", "trials (n)", "reached", *(each.name for each in curriculum.assignments)]
+    rows = [
+        [
+            name,
+            str(standing.played),
+            f"{standing.reached} of {len(standing.standings)}",
+            *map(short_progress_of, standing.standings),
+        ]
+        for name, standing in found.items()
+    ]
+    goals = [f"{each.assignment.name}: {_goal(each)}" for each in first.standings]
+    return heading(curriculum.title) + table([header], rows) + bullets(goals)
+
+
+def _goal(standing: AssignmentStanding) -> str:
+    after = ", ".join(standing.assignment.after)
+    gate = f"; after {after}" if after else ""
+    return f"{title_of(standing.assignment)}, {goal_of(standing)}{gate}"

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rastrainer.protocol import Phase
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.scenario.method_task import playable_methods
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task

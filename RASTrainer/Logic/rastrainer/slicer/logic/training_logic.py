@@ -10,8 +10,14 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.json_checks import is_number
-from rastrainer.protocol import FIDUCIAL_COUNT, OPEN_PHASES, TRIAL_RUN, CommandName, Phase
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import (
+    FIDUCIAL_COUNT,
+    OPEN_PHASES,
+    TRIAL_RUN,
+    CommandName,
+    Phase,
+    RegistrationMethod,
+)
 from rastrainer.scenario.method_task import method_of
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link import Link

@@ -11,7 +11,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.method_task import task_by_method
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task

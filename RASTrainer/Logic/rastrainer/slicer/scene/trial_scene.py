@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.checks import MINIMUM_POINTS
 from rastrainer.registration.fits import RIGID
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.method_task import TRACED_METHODS
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.scene.control_points import labelsOf, localPoints, setPoints

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from rastrainer.procedure.score import ProcedureScore
-from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN, RegistrationMethod
 from rastrainer.study.curriculum.curriculum import Assignment
 from rastrainer.study.database import study_trainees
 from rastrainer.study.database.aborted_trials import stored_of

@@ -14,8 +14,8 @@ from rastrainer.protocol import (
     TRIAL_RUN,
     GoalKind,
     Mode,
+    RegistrationMethod,
 )
-from rastrainer.registration.methods import RegistrationMethod
 from rastrainer.scenario.method_task import PLAYED_METHODS
 
 FORMAT_VERSION = 1

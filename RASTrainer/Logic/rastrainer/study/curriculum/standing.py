@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from statistics import fmean
 
 from rastrainer.procedure.score import PROCEDURE_SCORE_VERSION
-from rastrainer.protocol import AssignmentState, GoalKind
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import AssignmentState, GoalKind, RegistrationMethod
 from rastrainer.study.curriculum.counted_trials import CountedTrial
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
 from rastrainer.study.database.values import moment

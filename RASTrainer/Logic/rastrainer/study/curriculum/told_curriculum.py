@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from rastrainer.protocol import AssignmentState, GoalKind
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import AssignmentState, GoalKind, RegistrationMethod
 from rastrainer.study.curriculum.standing import AssignmentStanding, CurriculumStanding
 
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from datetime import datetime
 from typing import Any
 
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.database.aborted_trials import unexplained
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID

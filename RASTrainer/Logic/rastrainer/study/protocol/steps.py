@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from rastrainer.protocol import TRIAL_RUN, Mode, StepKind
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import TRIAL_RUN, Mode, RegistrationMethod, StepKind
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.study_protocol import (
     AFTER_ALL,

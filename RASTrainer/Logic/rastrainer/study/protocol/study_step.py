@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.files.json_fields import Fields
-from rastrainer.protocol import ALL_DONE, FREE, REPEAT, StepKind
-from rastrainer.registration.methods import RegistrationMethod
+from rastrainer.protocol import ALL_DONE, FREE, REPEAT, RegistrationMethod, StepKind
 from rastrainer.study.protocol.progress import Progress
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 

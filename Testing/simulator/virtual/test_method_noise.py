@@ -1,15 +1,13 @@
-"""A scan sees what nothing hides; a shift of the skin is smooth, seeded, and none at the base."""
+"""The noise of each method is stated with its source; a scan sees what nothing hides."""
 
 import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.skin_shift import SkinShift
 from rastrainer.head.surface_queries import hides
-from rastrainer.registration.methods import RegistrationMethod
-from rastrainer.registration.published_noise import PUBLISHED_NOISE
-from rastrainer.registration.range_camera import RangeCamera
+from rastrainer.protocol import RegistrationMethod
+from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, RangeCamera
 from Testing.domain.registration.traces import colin27
 
 
@@ -38,29 +36,6 @@ def test_a_camera_that_sees_too_little_gets_a_sentence():
     head = colin27()
     with pytest.raises(InputError, match="range camera sees"):
         RangeCamera(head.middle + np.array([0.0, 500.0, 0.0]), 1.0, spacing_mm=90.0).seen(head)
-
-
-def test_a_shift_has_its_size_is_smooth_and_ends_at_the_base():
-    head = colin27()
-    high = head.vertices[head.vertices[:, 2] > head.vertices[:, 2].min() + 30.0][::40]
-    squares = [np.sum(SkinShift(2.0, seed).moved(high, head) ** 2, axis=1) for seed in range(60)]
-    assert np.sqrt(np.mean(squares)) == pytest.approx(2.0, abs=0.15)
-    shift = SkinShift(2.0, 7)
-    moved, beside = shift.moved(high, head), shift.moved(high + np.array([3.0, 0.0, 0.0]), head)
-    assert np.linalg.norm(moved - beside, axis=1).max() < 0.5
-    assert np.array_equal(moved, SkinShift(2.0, 7).moved(high, head))
-    assert not np.allclose(moved, SkinShift(2.0, 8).moved(high, head))
-    assert not shift.moved(np.array([[0.0, 0.0, head.vertices[:, 2].min()]]), head).any()
-
-
-def test_by_default_nothing_moves_and_the_tip_presses_inward():
-    head, rows = colin27(), slice(0, 2000, 50)
-    points, normals = head.vertices[rows], head.vertex_normals[rows]
-    assert np.array_equal(SkinShift().touched(points, normals, head), points)
-    pressed = SkinShift(indentation_mm=1.5).touched(points, normals, head)
-    assert np.allclose(pressed, points - 1.5 * normals)
-    with pytest.raises(InputError, match="0 to 20 mm"):
-        SkinShift(-1.0)
 
 
 def test_noise_is_stated_with_its_source_for_every_method_and_screws_are_off_the_skin():
