@@ -9,6 +9,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.logic.method_comparison_logic import MethodComparisonLogic
+from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from Testing.end_to_end.module.story import Story
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
@@ -28,15 +29,14 @@ print(" ".join(sys.argv[1:]))
 """
 
 
-class Simulator:
+class Simulator(SimulatorLogic):
     """A simulator whose program writes a text as its comparison."""
 
     def __init__(self, text, script=WRITES):
         self._script = script.format(text=text)
         self.words = []
 
-    def command(self, words, own):
-        assert own == ""
+    def command(self, words):
         self.words = words
         return [sys.executable, "-c", self._script, *words]
 

@@ -62,8 +62,8 @@ class LandmarksPanel:
     def propose(self) -> None:
         """Replace the landmarks by proposed ones on the chosen head."""
         with slicer.util.tryWithErrorDisplay(_("No landmarks could be proposed.")):
-            scenario, own = self._scenario(), self._ui.programPathLineEdit.currentPath
-            said = self._work.run(lambda report: self._logic.propose(scenario, own, report))
+            scenario = self._scenario()
+            said = self._work.run(lambda report: self._logic.propose(scenario, report))
             if said is not None:
                 self._showMessage(said)
 
@@ -95,8 +95,8 @@ class LandmarksPanel:
     def check(self) -> None:
         """Check the landmarks on the head of the chosen scenario, and the robot's reach."""
         with slicer.util.tryWithErrorDisplay(_("The landmarks were not checked.")):
-            scenario, own = self._scenario(), self._ui.programPathLineEdit.currentPath
-            said = self._work.run(lambda report: self._logic.check(scenario, own, report))
+            scenario = self._scenario()
+            said = self._work.run(lambda report: self._logic.check(scenario, report))
             if said is not None:
                 self._showMessage(said)
 
@@ -104,8 +104,8 @@ class LandmarksPanel:
         """Copy the chosen scenario with these landmarks and use the copy."""
         with slicer.util.tryWithErrorDisplay(_("The landmarks were not saved.")):
             title = self._ui.landmarksTitleLineEdit.text.strip()
-            scenario, own = self._scenario(), self._ui.programPathLineEdit.currentPath
-            saved = self._work.run(lambda report: self._logic.save(scenario, title, own, report))
+            scenario = self._scenario()
+            saved = self._work.run(lambda report: self._logic.save(scenario, title, report))
             if saved is not None:
                 text = _("{title} was made and is chosen above.")
                 self._showMessage(text.format(title=saved.title))

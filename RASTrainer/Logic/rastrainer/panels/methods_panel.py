@@ -44,12 +44,10 @@ class MethodsPanel:
             name = chosenData(ui.scenarioComboBox)
             if not name:
                 raise InputError(_("Choose a scenario that can be used."))
-            scenario, own = self._session.scenario.find(name), ui.programPathLineEdit.currentPath
+            scenario = self._session.scenario.find(name)
             trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
             self._showMessage(_("Trials are being simulated and registered."))
-            found = self._work.run(
-                lambda report: logic.compare(scenario, trials, shift, own, report)
-            )
+            found = self._work.run(lambda report: logic.compare(scenario, trials, shift, report))
             if found is not None:
                 fillTable(ui.methodsTable, [_row(method) for method in found])
                 self._showMessage(self._said(found))

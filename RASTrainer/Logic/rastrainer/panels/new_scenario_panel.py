@@ -149,10 +149,7 @@ class NewScenarioPanel:
         with slicer.util.tryWithErrorDisplay(
             _("The scenario could not be made with these choices.")
         ):
-            own = self._ui.programPathLineEdit.currentPath
-            warnings = self._work.run(
-                lambda report: self._maker.check(*self._wanted(), report, own)
-            )
+            warnings = self._work.run(lambda report: self._maker.check(*self._wanted(), report))
             if warnings is not None:
                 text = _("Set-up, plan and fiducials can be used.")
                 self._showMessage(" ".join([text, *warnings]))
@@ -160,8 +157,7 @@ class NewScenarioPanel:
     def make(self) -> None:
         """Make the scenario and use it."""
         with slicer.util.tryWithErrorDisplay(_("The scenario was not made.")):
-            own = self._ui.programPathLineEdit.currentPath
-            made = self._work.run(lambda report: self._maker.make(*self._wanted(), report, own))
+            made = self._work.run(lambda report: self._maker.make(*self._wanted(), report))
             if made is not None:
                 self._useScenario(*made)
 

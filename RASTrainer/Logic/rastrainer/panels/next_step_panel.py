@@ -83,7 +83,7 @@ class NextStepPanel:
         self._isUnscored = self._hasNewResult = self._isResultShown = False
         self._studyStep: Any = None
         self._repeatSentence = ""
-        self._needsSetup = session.simulator.needsSetup
+        self._isSetUp = session.simulator.setup.isCurrent
         connectAsPressed(ui.nextStepButton, self._action)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
         self._listening = (
@@ -138,7 +138,7 @@ class NextStepPanel:
             link=session.link.status if session.link.isInstalled else notInstalled(),
             program=simulator.program.state,
             programSentence=simulator.program.sentence,
-            needsSetup=self._needsSetup and not ui.programPathLineEdit.currentPath,
+            needsSetup=not (self._isSetUp or simulator.ownProgram),
             isBeingSetUp=simulator.setup.isRunning,
             isElsewhere=ui.hostLineEdit.text.strip() not in THIS_COMPUTER,
             runningSentence=simulator.running.sentence if simulator.running.canConnect else "",
@@ -201,7 +201,7 @@ class NextStepPanel:
 
     def _lookAtSetup(self, _error: str = "") -> None:
         # It is in a file, which is not to be read ten times a second.
-        self._needsSetup = self._session.simulator.needsSetup
+        self._isSetUp = self._session.simulator.setup.isCurrent
         self.showState()
 
     def _followTrial(self, state: Mapping[str, Any]) -> None:

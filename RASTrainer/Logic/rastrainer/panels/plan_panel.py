@@ -102,7 +102,6 @@ class PlanPanel:
                     chosenData(ui.scenarioComboBox),
                     ui.planTitleLineEdit.text.strip(),
                     ui.planComboBox.currentNode(),
-                    ui.programPathLineEdit.currentPath,
                     report,
                 )
             )

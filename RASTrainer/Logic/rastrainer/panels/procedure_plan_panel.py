@@ -153,8 +153,7 @@ class ProcedurePlanPanel:
         with slicer.util.tryWithErrorDisplay(_("The lines were not checked.")):
             self._problem = ""
             scenario, plan, snapshot = self._scenario(), self._description(), self._snapshot()
-            own = self._ui.programPathLineEdit.currentPath
-            found = self._work.run(lambda report: self._logic.check(scenario, plan, own, report))
+            found = self._work.run(lambda report: self._logic.check(scenario, plan, report))
             if found is not None:
                 self._checked = snapshot, found
                 self._seen = ()
@@ -165,10 +164,7 @@ class ProcedurePlanPanel:
         with slicer.util.tryWithErrorDisplay(_("The procedure was not saved.")):
             title = self._ui.procedureScenarioLineEdit.text.strip()
             scenario, plan = self._scenario(), self._description()
-            own = self._ui.programPathLineEdit.currentPath
-            saved = self._work.run(
-                lambda report: self._logic.save(scenario, title, plan, own, report)
-            )
+            saved = self._work.run(lambda report: self._logic.save(scenario, title, plan, report))
             if saved is not None:
                 self._session.scenarioMade.emit(saved.name)
 

@@ -124,10 +124,9 @@ class ScenarioPanel:
             proposed = f"{name}.zip" if keepsNames else "head.zip"
             path = askWhereToSave(_("Save the scenario"), proposed, "Zip (*.zip)")
             if path is not None:
-                own = self._ui.programPathLineEdit.currentPath
                 taken = self._writing.run(
                     lambda report: self._session.scenarioFiles.exportScenario(
-                        name, path, keepsFace, keepsNames, own, report
+                        name, path, keepsFace, keepsNames, report
                     )
                 )
                 if taken is not None:

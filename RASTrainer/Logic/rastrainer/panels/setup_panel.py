@@ -37,7 +37,7 @@ class SetupPanel:
         for signal, slot in self._listening:
             signal.connect(slot)
         self._showSetup()
-        ui.setupCollapsibleButton.collapsed = not self._isNeeded()
+        ui.setupCollapsibleButton.collapsed = not self._simulator.needsSetup
 
     def close(self) -> None:
         """Stop listening to the session."""
@@ -62,9 +62,6 @@ class SetupPanel:
             if slicer.util.confirmYesNoDisplay(toolTip(question), _("Remove the simulator")):
                 self._simulator.removeSetup()
                 self._ui.setupCollapsibleButton.collapsed = False
-
-    def _isNeeded(self) -> bool:
-        return self._simulator.needsSetup and not self._ui.programPathLineEdit.currentPath
 
     def _showSetup(self, _text: str = "") -> None:
         ui, setup = self._ui, self._simulator.setup
@@ -132,7 +129,7 @@ class SetupPanel:
         self._showSetup()
         if error:
             setText(self._ui.setupText, error)
-        self._ui.setupCollapsibleButton.collapsed = not self._isNeeded()
+        self._ui.setupCollapsibleButton.collapsed = not self._simulator.needsSetup
 
     def _log(self, line: str) -> None:
         self._ui.setupLogEdit.appendPlainText(line)

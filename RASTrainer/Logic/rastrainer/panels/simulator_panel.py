@@ -69,7 +69,7 @@ class SimulatorPanel:
 
     def startAndConnect(self) -> None:
         """Start the simulator on this computer and connect; set it up first, after asking."""
-        if not self._needsSetup():
+        if not self._simulator.needsSetup:
             self._start()
             return
         question = _(
@@ -106,9 +106,6 @@ class SimulatorPanel:
     def _isOff(self) -> bool:
         return self._link.status.state is LinkState.OFF
 
-    def _needsSetup(self) -> bool:
-        return self._simulator.needsSetup and not self._ui.programPathLineEdit.currentPath
-
     def _startAfterSetup(self, error: str) -> None:
         startsNow, self._startsAfterSetup = self._startsAfterSetup and not error, False
         if startsNow:
@@ -119,7 +116,6 @@ class SimulatorPanel:
         with slicer.util.tryWithErrorDisplay(_("The simulator could not be started.")):
             self._simulator.start(
                 freePort(ui.portSpinBox.value),
-                ui.programPathLineEdit.currentPath,
                 hasWindow=ui.windowCheckBox.checked,
                 hasNetwork=ui.networkCheckBox.checked,
             )
@@ -128,7 +124,7 @@ class SimulatorPanel:
         ui, setup, program = self._ui, self._simulator.setup, self._simulator.program
         if setup.isRunning:
             text = _("The simulator is being set up.")
-        elif self._needsSetup() and program.state is ProgramState.STOPPED:
+        elif self._simulator.needsSetup and program.state is ProgramState.STOPPED:
             text = _("The simulator is not set up yet: see Set-up.")
         else:
             text = program.sentence

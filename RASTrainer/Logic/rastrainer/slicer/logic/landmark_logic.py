@@ -38,14 +38,12 @@ class LandmarkLogic:
     def propose(
         self,
         scenario: Scenario,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> str:
         """Replace the landmarks in the scene by proposed ones; return a sentence about them.
 
         Args:
             scenario: whose head it is.
-            ownProgram: see `ScenarioFiles`.
             progress: see `ScenarioFiles`.
 
         Raises:
@@ -54,7 +52,7 @@ class LandmarkLogic:
         with tempfile.TemporaryDirectory() as temporary:
             path = Path(temporary) / FILE
             words = ["landmarks", str(scenario.folder), str(path), "--propose"]
-            sentence = self._files.run(words, ownProgram, progress)
+            sentence = self._files.run(words, progress)
             proposed = read_markups(path)
         places = np.array(proposed.points, dtype=float)
         self.points.show([*map(Landmark, proposed.labels or (), places)])
@@ -63,14 +61,12 @@ class LandmarkLogic:
     def check(
         self,
         scenario: Scenario,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> str:
         """Return what is wrong with the landmarks on the head of a scenario, or that nothing is.
 
         Args:
             scenario: whose head it is.
-            ownProgram: see `ScenarioFiles`.
             progress: see `ScenarioFiles`.
 
         Raises:
@@ -78,13 +74,12 @@ class LandmarkLogic:
         """
         with self._written() as path:
             words = ["landmarks", str(scenario.folder), str(path)]
-            return self._files.run(words, ownProgram, progress, mayFail=True)
+            return self._files.run(words, progress, mayFail=True)
 
     def save(
         self,
         scenario: Scenario,
         title: str,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> Scenario:
         """Copy a scenario with the landmarks of the scene, and return the copy.
@@ -92,16 +87,13 @@ class LandmarkLogic:
         Args:
             scenario: which stays as it is.
             title: of the copy.
-            ownProgram: see `ScenarioFiles`.
             progress: see `ScenarioFiles`.
 
         Raises:
             InputError: there is one of that title already, or the landmarks cannot be used.
         """
         with self._written() as path:
-            return self._files.saveWith(
-                "--landmarks", path, scenario.name, title, ownProgram, progress
-            )
+            return self._files.saveWith("--landmarks", path, scenario.name, title, progress)
 
     @contextmanager
     def _written(self) -> Iterator[Path]:

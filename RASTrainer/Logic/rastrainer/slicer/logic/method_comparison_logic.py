@@ -13,7 +13,6 @@ from rastrainer.files.reading import read_json
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
-from rastrainer.slicer.program.child_process import runChild
 from rastrainer.slicer.translation import _
 
 LIMIT_BYTES = 1 << 20
@@ -68,7 +67,6 @@ class MethodComparisonLogic:
         scenario: Scenario,
         trials: int,
         skinShiftMm: float,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> tuple[ComparedMethod, ...]:
         """Return how each method for which a head has the points registers simulated trials.
@@ -77,7 +75,6 @@ class MethodComparisonLogic:
             scenario: whose head it is.
             trials: how many.
             skinShiftMm: between imaging and operation, RMS.
-            ownProgram: see `ScenarioFiles`.
             progress: see `ScenarioFiles`.
 
         Raises:
@@ -87,10 +84,7 @@ class MethodComparisonLogic:
             folder = Path(temporary) / "methods"
             words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
             words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
-            ended = runChild(self._simulator.command(words, ownProgram), progress)
-            if ended.exitStatus != 0:
-                sentence = ended.lastLine.removeprefix("rastrainer: ")
-                raise InputError(sentence or _("The simulator's program wrote nothing."))
+            self._simulator.run(words, progress)
             compared = read_json(folder / "methods.json", LIMIT_BYTES)
         try:
             return tuple(ComparedMethod.of(*each) for each in compared["methods"].items())

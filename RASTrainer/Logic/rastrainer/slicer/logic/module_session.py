@@ -151,7 +151,7 @@ class ModuleSession:
         self.link = Link(scene, findKit, callSoon=callSoon)
         run = OwnProcess(places.python)
         setup = SimulatorSetup(places.python, places.simulator, places.package)
-        self.simulator = SimulatorLogic(self.link, setup, places.records)
+        self.simulator = SimulatorLogic(self.link, setup, places.records, self.settings)
         self.trainees = TraineeLogic(self.openStudy, places.records, self.openStudyPatiently)
         self.scenario = ScenarioLogic(scene, cache, places.assets / ROBOT, run)
         self.images = VolumeLoader(scene, self.work)

@@ -167,7 +167,6 @@ class ProcedurePlanLogic:
         self,
         scenario: Scenario,
         plan: PlanDescription,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> CheckedPlan:
         """Measure the plan on the head of a scenario; nothing is changed.
@@ -175,7 +174,6 @@ class ProcedurePlanLogic:
         Args:
             scenario: whose head it is.
             plan: what of it is no node.
-            ownProgram: see `ScenarioFiles`.
             progress: see `ScenarioFiles`.
 
         Raises:
@@ -187,7 +185,7 @@ class ProcedurePlanLogic:
             measures = folder / "lines.json"
             words = ["lines", str(scenario.folder), "--procedure", str(path)]
             words += ["--json", str(measures)]
-            refusal = self._files.run(words, ownProgram, progress, mayFail=True)
+            refusal = self._files.run(words, progress, mayFail=True)
             if not measures.is_file():
                 raise InputError(refusal)
             (measured,) = json.loads(measures.read_text(encoding="utf-8"))
@@ -199,7 +197,6 @@ class ProcedurePlanLogic:
         scenario: Scenario,
         title: str,
         plan: PlanDescription,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> Scenario:
         """Copy a scenario with the plan, and return the copy.
@@ -208,7 +205,6 @@ class ProcedurePlanLogic:
             scenario: which stays as it is.
             title: of the copy.
             plan: what of it is no node.
-            ownProgram: see `ScenarioFiles`.
             progress: see `ScenarioFiles`.
 
         Raises:
@@ -217,9 +213,7 @@ class ProcedurePlanLogic:
         """
         with tempfile.TemporaryDirectory() as temporary:
             path = self._write(Path(temporary), plan)
-            return self._files.saveWith(
-                "--procedure", path, scenario.name, title, ownProgram, progress
-            )
+            return self._files.saveWith("--procedure", path, scenario.name, title, progress)
 
     def _write(self, folder: Path, plan: PlanDescription) -> Path:
         procedure, meshes = self.read(plan)

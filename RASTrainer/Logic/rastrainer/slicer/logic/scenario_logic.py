@@ -14,7 +14,6 @@ from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.head_preview import findSkin
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
-from rastrainer.slicer.program.child_process import runChild
 from rastrainer.slicer.program.own_process import Run
 from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
@@ -125,7 +124,6 @@ class ScenarioLogic:
 class ScenarioFiles:
     """What the panels Scenario and Plan do with scenarios on disk.
 
-    `ownProgram` is a `rastrainer` installed elsewhere; that of the simulator where it is empty.
     `progress` is called while it works: it may let the application draw, and may raise to cancel.
     """
 
@@ -157,7 +155,6 @@ class ScenarioFiles:
         package: Path,
         keepsFace: bool = False,
         keepsNames: bool = False,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> str:
         """Write a scenario as a zip file and return a sentence that says what was taken off.
@@ -167,7 +164,6 @@ class ScenarioFiles:
             package: the new file.
             keepsFace: whether the head keeps its face and skull.
             keepsNames: whether title, name and source stay, which may be the patient's name.
-            ownProgram: see the class.
             progress: see the class.
 
         Raises:
@@ -176,14 +172,13 @@ class ScenarioFiles:
         words = ["pack", str(self._cache.find(name).folder), str(package)]
         words += ["--keep-face"] if keepsFace else []
         words += ["--keep-names"] if keepsNames else []
-        return self.run(words, ownProgram, progress)
+        return self.run(words, progress)
 
     def savePlan(
         self,
         name: str,
         title: str,
         node: Any,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> Scenario:
         """Copy a scenario with a list in the place of its targets, or a line of its trajectory.
@@ -192,7 +187,6 @@ class ScenarioFiles:
             name: of the scenario, which stays as it is.
             title: of the copy.
             node: a `vtkMRMLMarkupsFiducialNode` or a `vtkMRMLMarkupsLineNode`.
-            ownProgram: see the class.
             progress: see the class.
 
         Raises:
@@ -200,7 +194,7 @@ class ScenarioFiles:
         """
         isLine = node.IsA("vtkMRMLMarkupsLineNode")
         plan = planWords(None, node) if isLine else planWords(node, None)
-        return self._copy(name, title, plan, ownProgram, progress)
+        return self._copy(name, title, plan, progress)
 
     def saveWith(
         self,
@@ -208,7 +202,6 @@ class ScenarioFiles:
         file: Path,
         name: str,
         title: str,
-        ownProgram: str = "",
         progress: Progress = lambda _step, _share: None,
     ) -> Scenario:
         """Copy a scenario with what a file holds, in the place of its own.
@@ -220,39 +213,24 @@ class ScenarioFiles:
             file: the file.
             name: of the scenario, which stays as it is.
             title: of the copy.
-            ownProgram: see the class.
             progress: see the class.
 
         Raises:
             InputError: there is one of that title already, or what the file holds cannot be used.
         """
-        return self._copy(name, title, [option, str(file)], ownProgram, progress)
+        return self._copy(name, title, [option, str(file)], progress)
 
-    def _copy(
-        self, name: str, title: str, plan: list[str], ownProgram: str, progress: Progress
-    ) -> Scenario:
+    def _copy(self, name: str, title: str, plan: list[str], progress: Progress) -> Scenario:
         folder = self._library / self._cache.newName(title)
         source = str(self._cache.find(name).folder)
         words = ["plan", source, "-o", str(folder), f"--title={title}", *plan]
-        self.run(words, ownProgram, progress)
+        self.run(words, progress)
         self._cache.refresh()
         return load_scenario(folder)
 
-    def run(
-        self, words: list[str], ownProgram: str, progress: Progress, mayFail: bool = False
-    ) -> str:
-        """Run `rastrainer scenario` and return the last line that it has written.
-
-        Raises:
-            InputError: it has ended with an error, and may not.
-        """
-        command = self._simulator.command(["scenario", *words], ownProgram)
-        ended = runChild(command, progress)
-        sentence = ended.lastLine or _("The simulator's program wrote nothing.")
-        sentence = sentence.removeprefix("rastrainer: ")
-        if ended.exitStatus != 0 and not mayFail:
-            raise InputError(sentence)
-        return sentence
+    def run(self, words: list[str], progress: Progress, mayFail: bool = False) -> str:
+        """Run `rastrainer scenario`; see `SimulatorLogic.run`."""
+        return self._simulator.run(["scenario", *words], progress, mayFail)
 
 
 def planWords(targets: Any | None, trajectory: Any | None) -> list[str]:

@@ -125,7 +125,6 @@ class ScenarioMaker:
         volumeNode: Any,
         options: NewScenarioOptions,
         progress: Progress,
-        ownProgram: str = "",
     ) -> tuple[Scenario, list[str]]:
         """Make a scenario in the library and return it with warnings, one sentence each.
 
@@ -135,7 +134,6 @@ class ScenarioMaker:
             options: what else is wanted.
             progress: called with each step and the share of the work done, many times a second; it
                 may let the application draw, and may raise to cancel: then nothing is left behind.
-            ownProgram: a `rastrainer` installed elsewhere; that of the simulator where empty.
 
         Raises:
             InputError: something cannot be used; the sentence says what.
@@ -144,7 +142,7 @@ class ScenarioMaker:
 
         with self._planned(volumeNode, options) as planned:
             folder = self._library / self._cache.newName(planned.title)
-            command = self._simulator.command([], ownProgram)
+            command = self._simulator.command([])
             scenario, warnings = buildScenario(
                 planned.head, folder, planned.words, command, progress
             )
@@ -157,7 +155,6 @@ class ScenarioMaker:
         volumeNode: Any,
         options: NewScenarioOptions,
         progress: Progress,
-        ownProgram: str = "",
     ) -> list[str]:
         """Find out whether set-up, plan and fiducials can be used, and make nothing of them.
 
@@ -168,7 +165,7 @@ class ScenarioMaker:
         with self._planned(
             volumeNode, replace(options, hasSkull=False, hasVolume=False)
         ) as planned:
-            command = self._simulator.command([], ownProgram)
+            command = self._simulator.command([])
             words = [*planned.words, "--check"]
             warnings = planScenario(planned.head, planned.folder / "none", words, command, progress)
         return [*planned.warnings, *warnings]

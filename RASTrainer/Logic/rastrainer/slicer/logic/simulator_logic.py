@@ -7,12 +7,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
+from rastrainer.progress import Progress
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.program.child_process import runChild
 from rastrainer.slicer.program.running_simulator import RunningSimulator
 from rastrainer.slicer.program.simulator_package import SetupSource
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
+from rastrainer.slicer.settings import PROGRAM, Settings
 from rastrainer.slicer.translation import _
 
 
@@ -25,8 +28,11 @@ class SimulatorLogic:
         running: a simulator that was not started from here.
     """
 
-    def __init__(self, link: Link, setup: SimulatorSetup, records: Path) -> None:
+    def __init__(
+        self, link: Link, setup: SimulatorSetup, records: Path, settings: Settings
+    ) -> None:
         """`records` is the folder into which the simulator writes its journals."""
+        self._settings = settings
         self.program = SimulatorProgram()
         self.setup = setup
         self._link = link
@@ -36,22 +42,20 @@ class SimulatorLogic:
         self.program.changed.connect(self._followProgram)
 
     @property
+    def ownProgram(self) -> str:
+        """A `rastrainer` that the user has installed elsewhere; "" for the private folder's."""
+        return self._settings.get(PROGRAM)
+
+    @property
     def needsSetup(self) -> bool:
         """Whether the simulator has to be set up before it can be started."""
-        return not self.setup.isCurrent
+        return not self.ownProgram and not self.setup.isCurrent
 
-    def start(
-        self,
-        port: int,
-        ownProgram: str = "",
-        hasWindow: bool = False,
-        hasNetwork: bool = False,
-    ) -> None:
+    def start(self, port: int, hasWindow: bool = False, hasNetwork: bool = False) -> None:
         """Start the simulator on this computer, or find one that runs already; see `running`.
 
         Args:
             port: to listen on; 0 takes any free one.
-            ownProgram: a `rastrainer` installed elsewhere; the private folder's where empty.
             hasWindow: open the trainee's window on this computer, too.
             hasNetwork: let headsets and browsers of the local network in, by https.
 
@@ -63,18 +67,15 @@ class SimulatorLogic:
         arguments = ["simulator", "--port", str(port), "--records", str(self._records)]
         arguments += ["--lan"] if hasNetwork else []
         arguments += ["--desktop"] if hasWindow else []
-        self.program.start(self.command(arguments, ownProgram))
+        self.program.start(self.command(arguments))
 
-    def command(self, arguments: Sequence[str], ownProgram: str = "") -> list[str]:
-        """Return what runs `rastrainer` with these arguments.
-
-        Args:
-            arguments: such as `simulator --port 0`.
-            ownProgram: a `rastrainer` installed elsewhere; the private folder's where empty.
+    def command(self, arguments: Sequence[str]) -> list[str]:
+        """Return what runs `rastrainer` with arguments such as `simulator --port 0`.
 
         Raises:
             InputError: it is not set up.
         """
+        ownProgram = self.ownProgram
         if ownProgram:
             if not Path(ownProgram).is_file():
                 raise InputError(_("There is no program {path}.").format(path=ownProgram))
@@ -82,6 +83,25 @@ class SimulatorLogic:
         if self.needsSetup:
             raise InputError(_("The simulator is not set up yet: press Set up first."))
         return self.setup.command(arguments)
+
+    def run(self, arguments: Sequence[str], progress: Progress, mayFail: bool = False) -> str:
+        """Run `rastrainer` to its end and return the last line that it has written.
+
+        Args:
+            arguments: such as `scenario pack FOLDER FILE`.
+            progress: called while it works: it may let the application draw, and may raise to
+                cancel.
+            mayFail: whether the line is also returned where it has ended with an error.
+
+        Raises:
+            InputError: it is not set up, or has ended with an error and may not.
+        """
+        ended = runChild(self.command(arguments), progress)
+        sentence = ended.lastLine.removeprefix("rastrainer: ")
+        sentence = sentence or _("The simulator's program wrote nothing.")
+        if ended.exitStatus != 0 and not mayFail:
+            raise InputError(sentence)
+        return sentence
 
     def stop(self) -> None:
         """Disconnect, and ask the simulator that was started from here to end."""
