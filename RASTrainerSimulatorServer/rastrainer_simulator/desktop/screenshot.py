@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError, RASTrainerError
-from rastrainer.files.writing import make_private_folder
+from rastrainer.files.writing import make_folder
 from rastrainer.python_environment import python_words
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
@@ -79,10 +79,7 @@ def write_picture(pixels: np.ndarray, path: Path) -> None:
     Raises:
         InputError: it cannot be written.
     """
-    try:
-        make_private_folder(path.parent)
-    except OSError as error:
-        raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
+    make_folder(path.parent, is_private=True)
     write_png(pixels, path)
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
+from rastrainer.files.writing import keep_others_out, make_folder, write_text
 from rastrainer_simulator.input.control_name import OF_VIEW, SITUATIONS, ControlContext, ControlName
 from rastrainer_simulator.input.inputs import BUTTONS, InputDevice, is_input
 
@@ -202,10 +202,7 @@ def write_bindings(path: Path, bindings: Bindings) -> None:
     for device in InputDevice:
         table = bindings.table(device)
         values[device.value] = {control.value: list(table[control]) for control in ControlName}
-    try:
-        make_private_folder(path.parent)
-    except OSError as error:
-        raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
+    make_folder(path.parent, is_private=True)
     write_text(path, json.dumps(values, indent=2) + "\n")
     keep_others_out(path)
 

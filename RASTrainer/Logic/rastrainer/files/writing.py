@@ -17,6 +17,11 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
 
+OUR_FOLDERS = ("RASTrainer", "rastrainer")
+"""Names of folders that we create for users."""
+_FILE, _FOLDER = 0o600, 0o700
+_OTHERS = 0o077
+
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
     """Write a UTF-8 text file as `write_bytes` does.
@@ -58,10 +63,17 @@ def write_json(path: str | os.PathLike[str], value: object) -> None:
     write_text(path, json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
 
 
-def make_folder(folder: Path) -> None:
-    """Make a folder and its missing parents; raise `InputError` if that fails."""
+def make_folder(folder: Path, is_private: bool = False) -> None:
+    """Make a folder and its missing parents, or as `make_private_folder` does.
+
+    Raises:
+        InputError: it cannot be made.
+    """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        if is_private:
+            make_private_folder(folder)
+        else:
+            folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
 
@@ -79,10 +91,7 @@ def write_private_json(path: Path, value: object) -> None:
     Raises:
         InputError: the folder cannot be made, or the file not written.
     """
-    try:
-        make_private_folder(path.parent)
-    except OSError as error:
-        raise InputError(f"The folder {path.parent} cannot be made: {error.strerror}.") from None
+    make_folder(path.parent, is_private=True)
     if not path.exists():
         # Private before there is anything in it.
         write_json(path, {})
@@ -94,12 +103,6 @@ def _unwritable(path: object, error: Exception) -> InputError:
     return InputError(
         f"The file {printable_name(path)} cannot be written: {failure_reason(error)}."
     )
-
-
-OUR_FOLDERS = ("RASTrainer", "rastrainer")
-"""Names of folders that we create for users."""
-_FILE, _FOLDER = 0o600, 0o700
-_OTHERS = 0o077
 
 
 def make_private_folder(folder: Path) -> None:

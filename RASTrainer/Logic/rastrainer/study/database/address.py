@@ -14,7 +14,7 @@ from pathlib import Path
 from urllib.parse import parse_qsl, quote, unquote, urlencode, urlsplit
 
 from rastrainer.errors import InputError
-from rastrainer.files.writing import make_private_folder
+from rastrainer.files.writing import make_folder
 
 SCHEMES = ("postgresql://", "postgres://")
 EXAMPLE = "postgresql://USER@HOST/DATABASE"
@@ -149,10 +149,7 @@ def beside_study(place: StudyPlace) -> Path:
     if isinstance(place, Path):
         return place
     folder = Path.home() / "RASTrainer" / "studies"
-    try:
-        make_private_folder(folder)
-    except OSError as error:
-        raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+    make_folder(folder, is_private=True)
     # Not by the role or the options: another one leads to the same study.
     where = f"{place.host}:{place.port or 5432}/{place.database}"
     return folder / hashlib.sha256(where.encode()).hexdigest()[:16]

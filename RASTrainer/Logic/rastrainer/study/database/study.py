@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.files.writing import make_private_folder
+from rastrainer.files import writing
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees, study_trials
@@ -70,11 +70,7 @@ class Study:
         if must_exist and not place.is_file():
             raise InputError(f"There is no file {place}.")
         if make_folder:
-            folder = place.parent
-            try:
-                make_private_folder(folder)
-            except OSError as error:
-                raise InputError(f"The folder {folder} cannot be made: {error.strerror}.") from None
+            writing.make_folder(place.parent, is_private=True)
         return cls(SqliteDatabase(place, lock_wait))
 
     @classmethod
