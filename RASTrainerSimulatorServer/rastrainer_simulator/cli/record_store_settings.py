@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from rastrainer.errors import InputError
+from rastrainer.files.json_fields import known_keys
 from rastrainer.files.reading import printable_name, read_json
-from rastrainer.json_checks import Argument, checked_keys, text
+from rastrainer.json_checks import Argument, text
 from rastrainer_simulator.ops.folders import config_folder
 
 RECORD_STORE_FILE = "record-store.json"
@@ -69,12 +69,6 @@ def read_record_store_settings(config: Path | None) -> RecordStoreSettings:
     if not path.exists():
         return RecordStoreSettings()
     values = read_json(path, _MAX_BYTES)
-    checked = checked_keys(values, _KEYS, printable_name(path))
-    unknown = sorted(set(values) - set(_KEYS))
-    if unknown:
-        raise InputError(
-            f"{printable_name(path)}: there is no {printable_name(unknown[0])}; use "
-            f"{', '.join(_KEYS)}."
-        )
+    checked = known_keys(values, _KEYS, printable_name(path))
     credentials = folder / checked["credentials"] if checked["credentials"] else None
     return RecordStoreSettings(checked["store"], checked["homePage"], credentials)

@@ -8,8 +8,9 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
+from rastrainer.files.json_fields import known_keys
 from rastrainer.files.reading import printable_name, read_json
-from rastrainer.json_checks import Argument, checked_keys, text, texts, yes_or_no
+from rastrainer.json_checks import Argument, text, texts, yes_or_no
 from rastrainer_simulator.net.listener import is_loopback
 
 SETTINGS_FILE = "lti.json"
@@ -139,7 +140,7 @@ def read_lti_settings(config: Path) -> LtiSettings:
         )
     values = read_json(path, _MAX_BYTES)
     keys = {"address": Argument(_own_address), "platforms": Argument(_list_of_platforms)}
-    checked = _only(values, keys, what)
+    checked = known_keys(values, keys, what)
     platforms = tuple(
         _platform(each, f"{what}: platform {number}")
         for number, each in enumerate(checked["platforms"], 1)
@@ -157,21 +158,10 @@ def _list_of_platforms(value: Any) -> list[Any]:
 
 
 def _platform(value: Any, what: str) -> LearningPlatform:
-    checked = _only(value, _PLATFORM_KEYS, what)
+    checked = known_keys(value, _PLATFORM_KEYS, what)
     for each in checked["lineItemOrigins"]:
         try:
             https_url(each)
         except ValueError as error:
             raise InputError(f"{what}: each of lineItemOrigins must be {error}.") from None
     return LearningPlatform(*checked.values())
-
-
-def _only(value: Any, keys: dict[str, Argument], what: str) -> dict[str, Any]:
-    """Return the checked values; a key that is misspelled must not be silently without effect."""
-    checked = checked_keys(value, keys, what)
-    unknown = sorted(set(value) - set(keys))
-    if unknown:
-        raise InputError(
-            f"{what}: there is no {printable_name(unknown[0])}; use {', '.join(keys)}."
-        )
-    return checked

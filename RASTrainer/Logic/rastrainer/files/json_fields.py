@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.files.reading import read_json
+from rastrainer.files.reading import printable_name, read_json
 
 MAX_BYTES = 2**20
 T = TypeVar("T")
@@ -150,3 +150,17 @@ def fields_of(value: Any, what: str) -> Fields:
     if not isinstance(value, dict):
         raise InputError(f"A {what} must be one JSON object.")
     return Fields(value, Path(what))
+
+
+def known_keys(value: Any, keys: Mapping[str, json_checks.Argument], what: str) -> dict[str, Any]:
+    """Return an object's values as `json_checks.checked_keys` does, where it has no other keys.
+
+    One that is misspelled must not be silently without effect.
+    """
+    checked = json_checks.checked_keys(value, keys, what)
+    unknown = sorted(set(value) - set(keys))
+    if unknown:
+        raise InputError(
+            f"{what}: there is no {printable_name(unknown[0])}; use {', '.join(keys)}."
+        )
+    return checked
