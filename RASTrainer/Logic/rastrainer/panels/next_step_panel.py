@@ -22,6 +22,7 @@ from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
 from rastrainer.slicer.link.heartbeat import LinkState, notInstalled
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
 
@@ -86,7 +87,7 @@ class NextStepPanel:
         self._isSetUp = session.simulator.setup.isCurrent
         connectAsPressed(ui.nextStepButton, self._action)
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._noteScoreSeen)
-        self._listening = (
+        self._listening = Listening(
             (session.link.statusChanged, self.showState),
             (session.link.stateChanged, self._followTrial),
             (session.simulator.program.changed, self.showState),
@@ -98,14 +99,11 @@ class NextStepPanel:
             (session.trials.trialScored, self._takeResult),
             (session.trials.problemFound, self._noteProblem),
         )
-        for signal, slot in self._listening:
-            signal.connect(slot)
         self._lookUp()
 
     def close(self) -> None:
         """Stop listening to the session."""
-        for signal, slot in self._listening:
-            signal.disconnect(slot)
+        self._listening.close()
 
     def _action(self) -> Callable[[], None]:
         action = NextAction.WAIT if self._step is None else self._step.action

@@ -27,6 +27,7 @@ from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
 from rastrainer.slicer.scene.registration_input import snapshot
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 
@@ -51,20 +52,17 @@ class PlanPanel:
         self._keeping.connectButton(ui.keepPlanButton, self.save)
         ui.planComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
         ui.planTargetComboBox.connect("activated(int)", self._chooseTarget)
-        self._listening = (
+        self._listening = Listening(
             (self._logic.changed, self.showState),
             (session.registration.changed, self.showState),
             (session.link.statusChanged, self.showState),
         )
-        for signal, slot in self._listening:
-            signal.connect(slot)
         self.showState()
 
     def close(self) -> None:
         """Cancel what is under way, and stop listening to the session."""
         self._keeping.cancel()
-        for signal, slot in self._listening:
-            signal.disconnect(slot)
+        self._listening.close()
 
     def placeTarget(self) -> None:
         """Let the next click in a view place a target, beside those that are placed."""

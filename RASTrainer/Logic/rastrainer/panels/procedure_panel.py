@@ -21,6 +21,7 @@ from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
 from rastrainer.slicer.settings import SLICES_LIE_ALONG
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 
@@ -100,13 +101,11 @@ class ProcedurePanel:
         for step in STEPS:
             getattr(ui, step.button).connect("clicked()", self._action(step))
         ui.procedureErrorsTable.connect("itemSelectionChanged()", self._jumpToTarget)
-        self._listening = (
+        self._listening = Listening(
             (self._logic.changed, self.showState),
             (self._logic.answered, self._showMessage),
             (session.link.statusChanged, self.showState),
         )
-        for signal, slot in self._listening:
-            signal.connect(slot)
         self._laySlices()
         self._showMessage("")
         self._showOutcome()
@@ -114,8 +113,7 @@ class ProcedurePanel:
 
     def close(self) -> None:
         """Stop listening to the session."""
-        for signal, slot in self._listening:
-            signal.disconnect(slot)
+        self._listening.close()
 
     def showState(self, *_arguments: Any) -> None:
         """Show how far the procedure is; called about ten times a second."""

@@ -78,17 +78,14 @@ class ProcedurePlanPanel:
         ui.noGoComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self.showState)
         self._work.connectButton(ui.checkLinesButton, self.check)
         ui.saveProcedureButton.connect("clicked()", self.save)
-        self._listening = ((session.taskChosen, self._showProcedures),)
-        for signal, slot in self._listening:
-            signal.connect(slot)
+        session.taskChosen.connect(self._showProcedures)
         self._showProcedures()
         self.showState()
 
     def close(self) -> None:
         """Cancel what is under way, and stop listening to the session."""
         self._work.cancel()
-        for signal, slot in self._listening:
-            signal.disconnect(slot)
+        self._session.taskChosen.disconnect(self._showProcedures)
 
     def edit(self) -> None:
         """Bring the chosen procedure into the scene, in the place of the plan there."""

@@ -16,6 +16,7 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.settings import SCENARIO, TASK
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 PICTURE_HEIGHT = 180
@@ -44,11 +45,13 @@ class ScenarioPanel:
         self._writing.connectButton(ui.exportScenarioButton, self.exportScenario)
         self._adding.connectButton(ui.importScenarioButton, self.importScenario)
         ui.headModelComboBox.connect("currentNodeChanged(vtkMRMLNode*)", self._showUsable)
-        session.link.statusChanged.connect(self._showUsable)
-        session.training.answered.connect(self._showMessage)
-        session.scenarioMade.connect(self.continueWith)
-        session.images.shown.connect(self._frameImages)
-        session.images.problemFound.connect(self._showMessage)
+        self._listening = Listening(
+            (session.link.statusChanged, self._showUsable),
+            (session.training.answered, self._showMessage),
+            (session.scenarioMade, self.continueWith),
+            (session.images.shown, self._frameImages),
+            (session.images.problemFound, self._showMessage),
+        )
         self._fill(session.settings.get(SCENARIO))
 
     def close(self) -> None:
@@ -56,11 +59,7 @@ class ScenarioPanel:
         self._work.cancel()
         self._writing.cancel()
         self._adding.cancel()
-        self._session.link.statusChanged.disconnect(self._showUsable)
-        self._session.training.answered.disconnect(self._showMessage)
-        self._session.scenarioMade.disconnect(self.continueWith)
-        self._session.images.shown.disconnect(self._frameImages)
-        self._session.images.problemFound.disconnect(self._showMessage)
+        self._listening.close()
 
     def show(self) -> None:
         """Show the chosen head and the fiducials of the chosen task."""

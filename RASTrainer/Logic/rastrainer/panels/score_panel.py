@@ -34,6 +34,7 @@ from rastrainer.slicer.scene.score_board import (
     showStandings,
     standings,
 )
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.values import StoredTrial
@@ -60,17 +61,17 @@ class ScorePanel:
         ui.scoreCollapsibleButton.connect("contentsCollapsed(bool)", self._fold)
         self._work.connectButton(ui.replayButton, self.replay)
         ui.worstTouchButton.connect("clicked()", self.replayWorstTouch)
-        self._trainees.changed.connect(self._show)
-        session.trials.trialScored.connect(self._noteNewTrial)
-        session.replay.feedbackFound.connect(self._showFeedback)
+        self._listening = Listening(
+            (self._trainees.changed, self._show),
+            (session.trials.trialScored, self._noteNewTrial),
+            (session.replay.feedbackFound, self._showFeedback),
+        )
         self._show()
 
     def close(self) -> None:
         """Cancel what is under way, and stop listening to the session."""
         self._work.cancel()
-        self._trainees.changed.disconnect(self._show)
-        self._session.trials.trialScored.disconnect(self._noteNewTrial)
-        self._session.replay.feedbackFound.disconnect(self._showFeedback)
+        self._listening.close()
 
     def showTables(self) -> None:
         """Show the section's content as tables of the scene, or give the user's layout back."""

@@ -11,6 +11,7 @@ from rastrainer.panels.widgets import connectAsPressed, keepPath, keepText, setT
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import INDEX, PROGRAM, WHEELS
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 
@@ -28,21 +29,18 @@ class SetupPanel:
         setup = self._simulator.setup
         connectAsPressed(ui.setupButton, lambda: setup.cancel if setup.isRunning else self.setUp)
         ui.removeSetupButton.connect("clicked()", self.remove)
-        self._listening = (
+        self._listening = Listening(
             (setup.progressed, self._follow),
             (setup.changed, self._showSetup),
             (setup.finished, self._finish),
             (self._simulator.program.changed, self._showSetup),
         )
-        for signal, slot in self._listening:
-            signal.connect(slot)
         self._showSetup()
         ui.setupCollapsibleButton.collapsed = not self._simulator.needsSetup
 
     def close(self) -> None:
         """Stop listening to the session."""
-        for signal, slot in self._listening:
-            signal.disconnect(slot)
+        self._listening.close()
 
     def setUp(self) -> None:
         """Start the set-up."""

@@ -25,6 +25,7 @@ from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.simulator_logic import freePort
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.settings import HAS_NETWORK, HAS_WINDOW, HOST, PORT
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 
@@ -47,7 +48,7 @@ class SimulatorPanel:
             ui.connectButton, lambda: self.connect if self._isOff() else self.disconnect
         )
         ui.probeButton.connect("clicked()", self.testConnection)
-        self._listening = (
+        self._listening = Listening(
             (self._link.statusChanged, self._showStatus),
             (self._link.stateChanged, self._showTraining),
             (self._simulator.setup.changed, self._showProgram),
@@ -56,16 +57,13 @@ class SimulatorPanel:
             (self._simulator.program.changed, self._showProgram),
             (self._simulator.program.pairingChanged, self._showPairing),
         )
-        for signal, slot in self._listening:
-            signal.connect(slot)
         self._showStatus(self._link.status)
         self._showProgram()
         self._showPairing()
 
     def close(self) -> None:
         """Stop listening to the session."""
-        for signal, slot in self._listening:
-            signal.disconnect(slot)
+        self._listening.close()
 
     def startAndConnect(self) -> None:
         """Start the simulator on this computer and connect; set it up first, after asking."""

@@ -40,6 +40,7 @@ from rastrainer.slicer.settings import (
     SLICES_FOLLOW_TOOL,
     SLICES_SHOW_NEXT_POINT,
 )
+from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 
 PHASES = {
@@ -86,7 +87,7 @@ class TrainingPanel:
         ui.startTaskButton.connect("clicked()", self.startTask)
         connectAsPressed(ui.pauseButton, lambda: self.resume if self._isPaused() else self.pause)
         ui.abortButton.connect("clicked()", self.abort)
-        self._listening = (
+        self._listening = Listening(
             (self._logic.changed, self.showState),
             (self._logic.answered, self._showMessage),
             (session.trials.problemFound, self._showMessage),
@@ -95,8 +96,6 @@ class TrainingPanel:
             (session.taskChosen, self._showChoices),
             (session.link.statusChanged, self.showState),
         )
-        for signal, slot in self._listening:
-            signal.connect(slot)
         self._showMessage("")
         self._showChoices()
         self._moveSlices()
@@ -104,8 +103,7 @@ class TrainingPanel:
 
     def close(self) -> None:
         """Stop listening to the session."""
-        for signal, slot in self._listening:
-            signal.disconnect(slot)
+        self._listening.close()
 
     def startTrialRun(self) -> None:
         """Start the trial run, which does not count."""

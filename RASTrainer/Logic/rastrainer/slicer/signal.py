@@ -1,10 +1,14 @@
-"""Signals in plain Python, and calls whose errors stop nothing else."""
+"""Signals in plain Python, who listens to them, and calls whose errors stop nothing else."""
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Callable
 from typing import Any
+
+_logger = logging.getLogger("rastrainer.error_guard")
+
+MAX_REMEMBERED = 100
 
 
 class Signal:
@@ -33,9 +37,19 @@ class Signal:
             listener(*values)
 
 
-_logger = logging.getLogger("rastrainer.error_guard")
+class Listening:
+    """Listeners that are connected to their signals until this is closed."""
 
-MAX_REMEMBERED = 100
+    def __init__(self, *pairs: tuple[Signal, Callable[..., Any]]) -> None:
+        """Connect the listener of each pair to its signal."""
+        self._pairs = pairs
+        for signal, listener in pairs:
+            signal.connect(listener)
+
+    def close(self) -> None:
+        """Disconnect them."""
+        for signal, listener in self._pairs:
+            signal.disconnect(listener)
 
 
 class ErrorGuard:

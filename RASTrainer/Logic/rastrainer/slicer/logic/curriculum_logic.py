@@ -10,7 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
@@ -37,13 +37,14 @@ class CurriculumLogic:
         self._standings: dict[str, CurriculumStanding] = {}
         self._stamps: dict[str, tuple[int | None, ...]] = {}
         self._followed: Study | None = None
-        trainees.changed.connect(self._followTrainees)
-        link.opened.connect(self._tellAll)
+        self._listening = Listening(
+            (trainees.changed, self._followTrainees),
+            (link.opened, self._tellAll),
+        )
 
     def close(self) -> None:
         """Stop listening."""
-        self._trainees.changed.disconnect(self._followTrainees)
-        self._link.opened.disconnect(self._tellAll)
+        self._listening.close()
 
     def standing(self) -> CurriculumStanding | None:
         """Return where the chosen trainee stands; None without a curriculum, or a trainee."""

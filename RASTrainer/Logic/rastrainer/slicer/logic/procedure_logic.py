@@ -15,7 +15,7 @@ from rastrainer.slicer.logic.training_logic import knownNumber
 from rastrainer.slicer.logic.trial_work import REGISTER_OPEN
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProcedureErrors
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.given_points import GivenPoints
@@ -123,13 +123,14 @@ class ProcedureLogic:
         self._run = run
         self._trialId = ""
         self._registering = ""
-        link.stateChanged.connect(self._follow)
-        link.opened.connect(self._beginAgain)
+        self._listening = Listening(
+            (link.stateChanged, self._follow),
+            (link.opened, self._beginAgain),
+        )
 
     def close(self) -> None:
         """Stop listening to the link."""
-        self._link.stateChanged.disconnect(self._follow)
-        self._link.opened.disconnect(self._beginAgain)
+        self._listening.close()
 
     def accept(self) -> None:
         """Go on by the registration in use."""

@@ -15,7 +15,7 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.practice_watch import PracticeWatch
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.progress import Progress
@@ -57,15 +57,15 @@ class StudyLogic:
         self._ledStudy: Study | None = None
         self._breaks: dict[str, datetime] = {}
         self._watch = PracticeWatch(trainees, training, link, self._leadAgain)
-        trainees.changed.connect(self._followTrainees)
-        link.opened.connect(self._sendAll)
-        link.stepAnswered.connect(self._takeAnswers)
+        self._listening = Listening(
+            (trainees.changed, self._followTrainees),
+            (link.opened, self._sendAll),
+            (link.stepAnswered, self._takeAnswers),
+        )
 
     def close(self) -> None:
         """Stop listening, and keep what was practiced last."""
-        self._trainees.changed.disconnect(self._followTrainees)
-        self._link.opened.disconnect(self._sendAll)
-        self._link.stepAnswered.disconnect(self._takeAnswers)
+        self._listening.close()
         self._watch.close()
 
     def leaveStudy(self) -> None:

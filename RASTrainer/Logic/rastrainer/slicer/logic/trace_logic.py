@@ -14,6 +14,7 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import knownNumber
 from rastrainer.slicer.scene.trace_nodes import forgetTrace, showTrace
+from rastrainer.slicer.signal import Listening
 from rastrainer.trial.given_points import FollowedTrace, GivenPoints, TraceFollower
 
 PERIOD_S = 1.0
@@ -56,13 +57,14 @@ class TraceLogic:
         self._shown: _Wanted | None = None
         self._isAsking = False
         self._asked = -PERIOD_S
-        link.stateChanged.connect(self._follow)
-        link.opened.connect(self._beginAgain)
+        self._listening = Listening(
+            (link.stateChanged, self._follow),
+            (link.opened, self._beginAgain),
+        )
 
     def close(self) -> None:
         """Stop listening to the link."""
-        self._link.stateChanged.disconnect(self._follow)
-        self._link.opened.disconnect(self._beginAgain)
+        self._listening.close()
 
     def begin(self, scenario: Scenario) -> None:
         """Show traces on the head of a scenario, which is in the scene now."""

@@ -26,7 +26,7 @@ from rastrainer.slicer.scene.registration_nodes import showPlannedPlace
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.slicer.scene.trial_scene import forgetStoredTouches, noteTouchedTask
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 
 LOADING_S = 30.0
@@ -104,13 +104,14 @@ class TrainingLogic:
         self._stateTime = 0.0
         self._shownTrial = ""
         self._total = FIDUCIAL_COUNT
-        link.stateChanged.connect(self._follow)
-        link.pointsChanged.connect(self._emitChange)
+        self._listening = Listening(
+            (link.stateChanged, self._follow),
+            (link.pointsChanged, self._emitChange),
+        )
 
     def close(self) -> None:
         """Stop listening to the link."""
-        self._link.stateChanged.disconnect(self._follow)
-        self._link.pointsChanged.disconnect(self._emitChange)
+        self._listening.close()
 
     @property
     def progress(self) -> TrialStatus:

@@ -27,7 +27,7 @@ from rastrainer.slicer.logic.trial_scoring import TrialScoring
 from rastrainer.slicer.logic.trial_work import REGISTER, SCORE
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial
-from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
@@ -108,14 +108,15 @@ class TrialLogic:
             _("Trials arrive faster than they can be scored; they are offered again later."),
         )
         self.problemFound = self._queue.problemFound
-        link.stateChanged.connect(self._followTraining)
-        link.opened.connect(self._resumeAll)
+        self._listening = Listening(
+            (link.stateChanged, self._followTraining),
+            (link.opened, self._resumeAll),
+        )
 
     def close(self) -> None:
         """Stop listening to the link, and start nothing more."""
         self._queue.close()
-        self._link.stateChanged.disconnect(self._followTraining)
-        self._link.opened.disconnect(self._resumeAll)
+        self._listening.close()
         self.forgetWaiting()
 
     def forgetWaiting(self) -> None:
