@@ -15,6 +15,10 @@ _STEP = re.compile(r"\s*(\d+)%  (.+)")
 _WARNING = "Warning: "
 
 
+def no_progress(_step: str, _share: float) -> None:
+    """Ignore the progress, where nobody waits for the work."""
+
+
 def print_progress(step: str, share: float) -> None:
     """Print a step as a line for `report_line`."""
     print(f"{share:4.0%}  {step}", flush=True)

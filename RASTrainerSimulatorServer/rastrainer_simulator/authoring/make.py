@@ -13,7 +13,7 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
 from rastrainer.procedure.meshes import read_all_no_go
 from rastrainer.procedure.plan import Procedure
-from rastrainer.progress import Progress, Warn
+from rastrainer.progress import Progress, Warn, no_progress
 from rastrainer.scenario.landmark_checks import on_skin
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
@@ -62,7 +62,7 @@ def make_scenario(
     draft: HeadDraft,
     options: ScenarioOptions,
     folder: Path,
-    progress: Progress = lambda _step, _share: None,
+    progress: Progress = no_progress,
     wait_for_skull: Callable[[], HeadDraft] | None = None,
     warn: Warn = lambda _sentence: None,
 ) -> Scenario:

@@ -12,7 +12,7 @@ from rastrainer.head.face_removal import face_vertices
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.surface_path import shortest_path_mm
 from rastrainer.head.surface_queries import outward_normals
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.tasks import LABELS, Task
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
 from rastrainer_simulator.authoring.task_proposal import (
@@ -82,9 +82,7 @@ _DECIMALS = 4
 class TaskSetProposer:
     """Proposes sets of tasks for one head and set-up; the same seed proposes the same set."""
 
-    def __init__(
-        self, planning: PlanningSetup, progress: Progress = lambda _step, _share: None
-    ) -> None:
+    def __init__(self, planning: PlanningSetup, progress: Progress = no_progress) -> None:
         """Prepare proposals; `progress` may raise to cancel."""
         self._planning = planning
         self._progress = progress

@@ -21,6 +21,7 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
+from rastrainer.progress import no_progress
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -41,9 +42,7 @@ class PlanPanel:
         self._offered: tuple[Any, tuple[str, ...]] = (None, ())
         self._seen: tuple = ()
         self._known: tuple[PlanOnImages | None, str] = (None, "")
-        self._keeping = CancelableWork(
-            lambda _sentence: None, lambda _step, _share: None, self.showState
-        )
+        self._keeping = CancelableWork(lambda _sentence: None, no_progress, self.showState)
         ui.placeTargetButton.connect("clicked()", self.placeTarget)
         ui.placeTrajectoryButton.connect("clicked()", self.placeTrajectory)
         ui.removePlanPointButton.connect("clicked()", self.removePoint)

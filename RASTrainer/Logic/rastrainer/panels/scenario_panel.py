@@ -11,6 +11,7 @@ import slicer
 from rastrainer.panels.application import askWhereToSave, fitSliceViews, fitThreeDViews
 from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.widgets import chosenData, fillComboBox, setChecked, setText, setUsable
+from rastrainer.progress import no_progress
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.slicer.link.heartbeat import LinkState
@@ -30,9 +31,7 @@ class ScenarioPanel:
         self._session = session
         self._logic = session.scenario
         self._work = CancelableWork(self._showHeadMessage, self._showProgress, self._showUsable)
-        self._writing = CancelableWork(
-            self._showMessage, lambda _step, _share: None, self._showUsable
-        )
+        self._writing = CancelableWork(self._showMessage, no_progress, self._showUsable)
         self._adding = CancelableWork(self._showMessage, self._showAdding, self._showUsable)
         ui.scenarioComboBox.connect("activated(int)", self._showTasks)
         ui.taskComboBox.connect("activated(int)", self._chooseTask)

@@ -16,7 +16,7 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
 from rastrainer.procedure.checks import unusable_lines
 from rastrainer.procedure.meshes import read_all_no_go, read_procedure_meshes
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario, load_scenario
 from rastrainer.scenario.writer import new_folder, write_scenario
 
@@ -66,7 +66,7 @@ def pack(folder: Path, package: Path) -> Path:
     return package
 
 
-def unpack(package: Path, library: Path, progress: Progress = lambda _step, _share: None) -> Path:
+def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Path:
     """Unpack a scenario into a new folder of `library` named like it, and return the folder.
 
     If that fails, nothing is left behind.

@@ -7,7 +7,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.slicer.head import level_set, mask, surface
 from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody, HeadSettings
 from rastrainer.slicer.head.volume import Volume, onRasGrid
@@ -23,9 +23,7 @@ LONGEST_HEAD_MM = 200.0
 
 
 def extractHead(
-    volume: Volume,
-    settings: HeadSettings | None = None,
-    progress: Progress = lambda _step, _share: None,
+    volume: Volume, settings: HeadSettings | None = None, progress: Progress = no_progress
 ) -> HeadMesh:
     """Return the skin as one closed surface of genus 0 with a flat base.
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
@@ -35,7 +35,7 @@ def makeDraft(
     volume: Volume,
     settings: HeadSettings | None = None,
     hasSkull: bool = True,
-    progress: Progress = lambda _step, _share: None,
+    progress: Progress = no_progress,
     segment: SegmentImage | None = None,
     headMade: Callable[[HeadDraft, list[str]], None] = lambda _draft, _warnings: None,
     hasVolume: bool = True,
@@ -76,7 +76,7 @@ def makeDraft(
 def findSkin(
     volume: Volume,
     settings: HeadSettings | None = None,
-    progress: Progress = lambda _step, _share: None,
+    progress: Progress = no_progress,
     segment: SegmentImage | None = None,
 ) -> tuple[HeadBody, HeadMesh, list[str]]:
     """Return a head as voxels and as a surface, and warnings; otherwise as `makeDraft`."""

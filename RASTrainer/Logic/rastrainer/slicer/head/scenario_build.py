@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.scenario.writer import HeadDraft, write_draft
 from rastrainer.slicer.background_work import inBackground
@@ -24,7 +24,7 @@ def buildScenario(
     folder: Path,
     words: Sequence[str],
     command: Sequence[str],
-    progress: Progress = lambda _step, _share: None,
+    progress: Progress = no_progress,
 ) -> tuple[Scenario, list[str]]:
     """Build a scenario and return it with warnings, one sentence each; see `planScenario`."""
     warnings = planScenario(make, folder, words, command, progress)
@@ -36,7 +36,7 @@ def planScenario(
     folder: Path,
     words: Sequence[str],
     command: Sequence[str],
-    progress: Progress = lambda _step, _share: None,
+    progress: Progress = no_progress,
 ) -> list[str]:
     """Make a head, have the simulator plan on it, and return warnings, one sentence each.
 

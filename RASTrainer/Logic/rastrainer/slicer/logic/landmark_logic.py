@@ -13,7 +13,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.markups import read_markups, write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Landmark
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
@@ -35,11 +35,7 @@ class LandmarkLogic:
         self.points = LandmarkPoints(scene)
         self._files = files
 
-    def propose(
-        self,
-        scenario: Scenario,
-        progress: Progress = lambda _step, _share: None,
-    ) -> str:
+    def propose(self, scenario: Scenario, progress: Progress = no_progress) -> str:
         """Replace the landmarks in the scene by proposed ones; return a sentence about them.
 
         Args:
@@ -58,11 +54,7 @@ class LandmarkLogic:
         self.points.show([*map(Landmark, proposed.labels or (), places)])
         return sentence
 
-    def check(
-        self,
-        scenario: Scenario,
-        progress: Progress = lambda _step, _share: None,
-    ) -> str:
+    def check(self, scenario: Scenario, progress: Progress = no_progress) -> str:
         """Return what is wrong with the landmarks on the head of a scenario, or that nothing is.
 
         Args:
@@ -76,12 +68,7 @@ class LandmarkLogic:
             words = ["landmarks", str(scenario.folder), str(path)]
             return self._files.run(words, progress, mayFail=True)
 
-    def save(
-        self,
-        scenario: Scenario,
-        title: str,
-        progress: Progress = lambda _step, _share: None,
-    ) -> Scenario:
+    def save(self, scenario: Scenario, title: str, progress: Progress = no_progress) -> Scenario:
         """Copy a scenario with the landmarks of the scene, and return the copy.
 
         Args:

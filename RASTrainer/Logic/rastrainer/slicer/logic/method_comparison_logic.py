@@ -10,7 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.translation import _
@@ -63,11 +63,7 @@ class MethodComparisonLogic:
         self._simulator = simulator
 
     def compare(
-        self,
-        scenario: Scenario,
-        trials: int,
-        skinShiftMm: float,
-        progress: Progress = lambda _step, _share: None,
+        self, scenario: Scenario, trials: int, skinShiftMm: float, progress: Progress = no_progress
     ) -> tuple[ComparedMethod, ...]:
         """Return how each method for which a head has the points registers simulated trials.
 

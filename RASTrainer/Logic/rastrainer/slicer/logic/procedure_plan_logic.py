@@ -28,7 +28,7 @@ from rastrainer.procedure.plan import (
     ProcedureTrajectory,
     procedure_json,
 )
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.no_go_structures import noGoMeshes
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
@@ -164,10 +164,7 @@ class ProcedurePlanLogic:
         return procedure, meshes
 
     def check(
-        self,
-        scenario: Scenario,
-        plan: PlanDescription,
-        progress: Progress = lambda _step, _share: None,
+        self, scenario: Scenario, plan: PlanDescription, progress: Progress = no_progress
     ) -> CheckedPlan:
         """Measure the plan on the head of a scenario; nothing is changed.
 
@@ -197,7 +194,7 @@ class ProcedurePlanLogic:
         scenario: Scenario,
         title: str,
         plan: PlanDescription,
-        progress: Progress = lambda _step, _share: None,
+        progress: Progress = no_progress,
     ) -> Scenario:
         """Copy a scenario with the plan, and return the copy.
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.replay_track import ReplayTrack
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
@@ -136,7 +136,7 @@ class ReplayLogic:
         """Forget where the replay is to stop: the scene was cleared."""
         self._until = None
 
-    def show(self, trial: StoredTrial, progress: Progress = lambda _step, _share: None) -> None:
+    def show(self, trial: StoredTrial, progress: Progress = no_progress) -> None:
         """Show a trial again, from its beginning.
 
         Args:
@@ -150,9 +150,7 @@ class ReplayLogic:
         self._put(trial, progress)
         self._play(None)
 
-    def showWorstTouch(
-        self, trial: StoredTrial, progress: Progress = lambda _step, _share: None
-    ) -> None:
+    def showWorstTouch(self, trial: StoredTrial, progress: Progress = no_progress) -> None:
         """Show again how the worst touch came about; otherwise as `show`."""
         if self._known is None or self._known[0] != trial.record.trial_id:
             judged = inBackground(lambda report: self._judge(trial, report), progress)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.package import unpack
 from rastrainer.scenario.scenario import Scenario, load_scenario
@@ -64,9 +64,7 @@ class ScenarioLogic:
         if placed is None or isPlanned(placed):
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
 
-    def useHead(
-        self, node: Any, progress: Progress = lambda _step, _share: None
-    ) -> tuple[Any, list[str]]:
+    def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:
         """Let a model or a volume of the scene be the head that is looked at.
 
         The head that was one before is hidden, and is no longer ours to fill.
@@ -133,9 +131,7 @@ class ScenarioFiles:
         self._cache = cache
         self._library = library
 
-    def importScenario(
-        self, package: Path, progress: Progress = lambda _step, _share: None
-    ) -> Scenario:
+    def importScenario(self, package: Path, progress: Progress = no_progress) -> Scenario:
         """Unpack a scenario's zip file into the library.
 
         Args:
@@ -155,7 +151,7 @@ class ScenarioFiles:
         package: Path,
         keepsFace: bool = False,
         keepsNames: bool = False,
-        progress: Progress = lambda _step, _share: None,
+        progress: Progress = no_progress,
     ) -> str:
         """Write a scenario as a zip file and return a sentence that says what was taken off.
 
@@ -175,11 +171,7 @@ class ScenarioFiles:
         return self.run(words, progress)
 
     def savePlan(
-        self,
-        name: str,
-        title: str,
-        node: Any,
-        progress: Progress = lambda _step, _share: None,
+        self, name: str, title: str, node: Any, progress: Progress = no_progress
     ) -> Scenario:
         """Copy a scenario with a list in the place of its targets, or a line of its trajectory.
 
@@ -197,12 +189,7 @@ class ScenarioFiles:
         return self._copy(name, title, plan, progress)
 
     def saveWith(
-        self,
-        option: str,
-        file: Path,
-        name: str,
-        title: str,
-        progress: Progress = lambda _step, _share: None,
+        self, option: str, file: Path, name: str, title: str, progress: Progress = no_progress
     ) -> Scenario:
         """Copy a scenario with what a file holds, in the place of its own.
 

@@ -84,12 +84,7 @@ class ScenarioMaker:
     """What the panel New scenario does."""
 
     def __init__(
-        self,
-        scene: Any,
-        simulator: SimulatorLogic,
-        cache: ScenarioCache,
-        library: Path,
-        run: Run,
+        self, scene: Any, simulator: SimulatorLogic, cache: ScenarioCache, library: Path, run: Run
     ) -> None:
         """Make scenarios.
 
@@ -121,10 +116,7 @@ class ScenarioMaker:
         return self._preview.show(_chosen(volumeNode), _settings(options), progress)
 
     def make(
-        self,
-        volumeNode: Any,
-        options: NewScenarioOptions,
-        progress: Progress,
+        self, volumeNode: Any, options: NewScenarioOptions, progress: Progress
     ) -> tuple[Scenario, list[str]]:
         """Make a scenario in the library and return it with warnings, one sentence each.
 
@@ -150,12 +142,7 @@ class ScenarioMaker:
         self._cache.refresh()
         return scenario, [*planned.warnings, *warnings]
 
-    def check(
-        self,
-        volumeNode: Any,
-        options: NewScenarioOptions,
-        progress: Progress,
-    ) -> list[str]:
+    def check(self, volumeNode: Any, options: NewScenarioOptions, progress: Progress) -> list[str]:
         """Find out whether set-up, plan and fiducials can be used, and make nothing of them.
 
         Arguments, warnings and errors are those of `make`.

@@ -9,7 +9,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import write_histories, write_history
 from rastrainer.export.trainee_data import Erasure, erase_trainee, export_trainee
-from rastrainer.progress import Progress
+from rastrainer.progress import Progress, no_progress
 from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
@@ -140,7 +140,7 @@ class TraineeLogic:
         self.study.set_archived(self.chosen, archived)
         self.changed.emit()
 
-    def delete(self, progress: Progress = lambda _step, _share: None) -> Erasure:
+    def delete(self, progress: Progress = no_progress) -> Erasure:
         """Delete the chosen trainee with all trials and journals, for good; return what was.
 
         Args:
@@ -179,9 +179,7 @@ class TraineeLogic:
         """
         return write_history(self.study, [self.chosen], path)
 
-    def exportHistories(
-        self, path: Path, progress: Progress = lambda _step, _share: None
-    ) -> tuple[int, int]:
+    def exportHistories(self, path: Path, progress: Progress = no_progress) -> tuple[int, int]:
         """Write the trials of all who agreed to research as a CSV file.
 
         Args:
@@ -201,7 +199,7 @@ class TraineeLogic:
 
         return inBackground(write, progress)
 
-    def calibration(self, progress: Progress = lambda _step, _share: None) -> TreCalibration:
+    def calibration(self, progress: Progress = no_progress) -> TreCalibration:
         """Return true against expected TRE of all trials of the study, of whomever they are.
 
         Args:
