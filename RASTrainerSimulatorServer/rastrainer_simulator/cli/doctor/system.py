@@ -85,32 +85,28 @@ _LISTENS = "0A"
 
 def check_ports(link: int, views: int) -> Iterator[CheckResult]:
     """Try the port of OpenIGTLink, and the one that views are served on."""
-    yield _link(link)
-    yield _views(views)
-
-
-def _link(port: int) -> CheckResult:
-    reason = _refusal(port)
-    if reason is None:
-        return CheckResult("ports", CheckStatus.OK, f"Port {port} for OpenIGTLink is free.")
-    return CheckResult(
-        "ports",
+    yield _port(
+        link,
+        "OpenIGTLink",
         CheckStatus.PROBLEM,
-        f"Port {port} for OpenIGTLink cannot be used: {reason}.",
         "End that program, or choose another port: rastrainer simulator --port NUMBER, and the "
         "same in Slicer.",
     )
+    yield _port(
+        views,
+        "the views",
+        CheckStatus.WARNING,
+        "The simulator uses another one and prints it; end that program to free this one.",
+    )
 
 
-def _views(port: int) -> CheckResult:
+def _port(port: int, what: str, verdict: CheckStatus, remedy: str) -> CheckResult:
+    """Return whether a port is free; the verdict and the remedy are for one that is not."""
     reason = _refusal(port)
     if reason is None:
-        return CheckResult("ports", CheckStatus.OK, f"Port {port} for the views is free.")
+        return CheckResult("ports", CheckStatus.OK, f"Port {port} for {what} is free.")
     return CheckResult(
-        "ports",
-        CheckStatus.WARNING,
-        f"Port {port} for the views cannot be used: {reason}.",
-        "The simulator uses another one and prints it; end that program to free this one.",
+        "ports", verdict, f"Port {port} for {what} cannot be used: {reason}.", remedy
     )
 
 
