@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.head.triangle_sides import least_of_each
-from rastrainer.head.triangle_tree import NearestPoints, TriangleTree
+from rastrainer.head.triangle_tree import NearestPoints, TriangleTree, least_of_each
 
 POOR_GUESS_MM = 2.0
 
