@@ -30,6 +30,13 @@ class Surroundings:
     stand_radius: float = 0.04
 
 
+def stand_pose(head_to_world: np.ndarray, base: np.ndarray) -> np.ndarray:
+    """Return StandToWorld, (4, 4) float, m; `base` is the middle of the head's base, (3,) float."""
+    stand_to_world = np.eye(4)
+    stand_to_world[:3, 3] = head_to_world[:3, :3] @ base + head_to_world[:3, 3]
+    return stand_to_world
+
+
 class TableClearance:
     """The least distance of the moving links and the tool to the table and to the stand."""
 

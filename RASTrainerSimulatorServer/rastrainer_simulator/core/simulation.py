@@ -12,13 +12,12 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.collision import Collision, Surroundings, stand_pose
 from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import Pressing, next_proximity
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
 from rastrainer_simulator.core.procedure_motion import FED, PlannedBone, ProcedureMotion
-from rastrainer_simulator.core.scene_view import SceneView, stand_pose
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.texts.texts import Texts
@@ -34,6 +33,7 @@ from rastrainer_simulator.state import (
     StartingPoint,
     StepResult,
 )
+from rastrainer_simulator.teleoperation.axes import ChosenAxes
 from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
     MotionOutcome,
@@ -61,15 +61,16 @@ class Simulation:
     needs nothing but the trial's own inputs.
     """
 
-    def __init__(self, setup: SimulationSetup, seed: int, texts: Texts | None = None) -> None:
+    def __init__(self, setup: SimulationSetup, seed: int) -> None:
         """Build the scene; takes about a second, most of it for the head's surface."""
         settings = setup.settings
         self.setup = setup
-        self._texts = texts or Texts()
+        self._texts = Texts()
         self._training = Training(
             setup.scenario, seed, settings.training, self._texts, settings.procedure
         )
-        self._view = SceneView(setup.scenario, settings.camera, settings.axes)
+        self._axes = ChosenAxes(setup.scenario.cameras, settings.camera, settings.axes)
+        self._planned_target: PlanInWorld | None = None
         self._teleoperation = Teleoperation(settings.teleoperation)
         head = read_head_mesh(setup.scenario.head_mesh)
         self._head_base = head.base / MM_PER_M
@@ -103,7 +104,7 @@ class Simulation:
     def restart_from(self, point: StartingPoint) -> None:
         """Count ticks, time and revisions on from another simulation, before the first step."""
         self._training.restart_from(point.revision)
-        self._view.camera = point.camera or self._view.camera
+        self._axes.camera = point.camera or self._axes.camera
         self.state = self._state(point.tick, point.sim_time, Motion.NONE)
 
     def resume_trial(
@@ -121,7 +122,7 @@ class Simulation:
         self._is_within_reach = interrupted.is_within_reach
         self._obstacle = interrupted.obstacle
         self._procedure_motion.reset(interrupted.feed)
-        self._view.camera = point.camera or self._view.camera
+        self._axes.camera = point.camera or self._axes.camera
         self.state = self._state(point.tick, point.sim_time, Motion.NONE)
 
     def step(self, dt: float, operator_input: OperatorInput) -> StepResult:
@@ -167,7 +168,7 @@ class Simulation:
         if command.name == CommandName.LIST_TASKS:
             return TrainingReply(True, data=listed(self.setup.scenario))
         if command.name == CommandName.SET_CAMERA:
-            self._view.camera = arguments["camera"]
+            self._axes.camera = arguments["camera"]
             return TrainingReply(True, events=(Event(EventKind.CAMERA, sim_time, dict(arguments)),))
         if command.name == CommandName.PLAN_TARGET:
             return self._plan(arguments, sim_time)
@@ -183,7 +184,7 @@ class Simulation:
             )
         else:
             tool = self._posture.tool_axes
-            motion = commanded_motion(command, self._view.camera_axes, tool)
+            motion = commanded_motion(command, self._axes.of_camera, tool)
         if isinstance(motion, str):
             return TrainingReply(False, motion)
         self._teleoperation.start(motion)
@@ -195,9 +196,7 @@ class Simulation:
         position, entry = _meters(arguments["positionMm"]), arguments["entryMm"]
         entry = None if entry is None else _meters(entry)
         answer = self._plan_reach.judge(position, entry)
-        self._view.planned_target = PlanInWorld(
-            arguments["name"], position, entry, answer.reachable
-        )
+        self._planned_target = PlanInWorld(arguments["name"], position, entry, answer.reachable)
         event = Event(EventKind.PLAN, sim_time, {**arguments, "reachable": answer.reachable})
         return TrainingReply(True, data=answer._asdict(), events=(event,))
 
@@ -210,7 +209,7 @@ class Simulation:
             stopped = self._teleoperation.stop()
             return MotionRequest(Motion.NONE, ended=MotionOutcome.STOPPED if stopped else None)
         self._teleoperation.hold_direction(phase is Phase.ALIGNING)
-        axes = self._view.stick_axes
+        axes = self._axes.of_sticks
         posture = self._posture
         return self._teleoperation.step(dt, operator_input, posture.tip, axes, posture.surface)
 
@@ -231,7 +230,7 @@ class Simulation:
         self._operator = ""
         self._teleoperation.stop()
         self._procedure_motion.reset()
-        self._view.planned_target = None
+        self._planned_target = None
 
     def _move(self, dt: float, motion_request: MotionRequest, sim_time: float) -> list[Event]:
         """Carry out a request as far as arm, head and table allow."""
@@ -287,8 +286,8 @@ class Simulation:
             elapsed=self._training.elapsed(sim_time),
             motion=motion,
             operator=self._operator,
-            camera=self._view.camera,
-            planned_target=self._view.planned_target,
+            camera=self._axes.camera,
+            planned_target=self._planned_target,
             depth=self._pressing.depth,
             touch=touch_stage(
                 self._touch_moment(sim_time),

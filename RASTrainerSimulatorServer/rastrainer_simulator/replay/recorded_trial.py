@@ -17,8 +17,8 @@ from rastrainer.scenario.method_task import TRACED_METHODS, method_of, task_by_m
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.collision.collision import stand_pose
 from rastrainer_simulator.core.arm import moving_links
-from rastrainer_simulator.core.scene_view import stand_pose
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.procedure_state import ProcedureState, Tool
 from rastrainer_simulator.record.procedure_entries import procedure_after

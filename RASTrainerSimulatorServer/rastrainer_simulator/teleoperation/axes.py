@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
+from rastrainer.scenario.scenario import Camera
 from rastrainer_simulator.vectors import Vector, cross, length, reject, rotated, scale, unit, vector
 
 WORLD_UP: Vector = (0.0, 0.0, 1.0)
@@ -55,3 +57,31 @@ def camera_axes(view_direction: Vector, view_up: Vector) -> Axes:
         ahead = reject(view_up if view_direction[2] < 0.0 else scale(view_up, -1.0), WORLD_UP)
     forward = unit(ahead)
     return Axes(right=cross(forward, WORLD_UP), forward=forward, up=WORLD_UP)
+
+
+class ChosenAxes:
+    """The axes of the chosen camera, and those that the sticks follow.
+
+    Attributes:
+        camera: name of the chosen one.
+    """
+
+    def __init__(self, cameras: Mapping[str, Camera], camera: str, choice: AxesChoice) -> None:
+        self._choice = choice
+        self._axes_of_cameras = {
+            name: camera_axes(
+                tuple((view.focal_point - view.position).tolist()), tuple(view.view_up.tolist())
+            )
+            for name, view in cameras.items()
+        }
+        self.camera = camera
+
+    @property
+    def of_camera(self) -> Axes:
+        """Right, forward and up as the chosen camera sees them."""
+        return self._axes_of_cameras[self.camera]
+
+    @property
+    def of_sticks(self) -> Axes:
+        """Right, forward and up as the sticks mean them."""
+        return self.of_camera if self._choice is AxesChoice.CAMERA else ROBOT_AXES
