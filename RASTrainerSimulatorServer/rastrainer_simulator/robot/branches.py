@@ -31,9 +31,8 @@ def joint_angles(
     tool: Vector,
     roll: Roll,
     last: Angles,
-    signs: tuple[float, float, float] = (1.0, 1.0, 1.0),
 ) -> tuple[float, ...]:
-    """Return θ of the branch whose tilts have the given signs, pans within ±π, in rad.
+    """Return θ of the branch whose tilts are positive, pans within ±π, in rad.
 
     `upper`, `fore` and `tool` are unit vectors, `roll` the tool's x and y axes where its roll
     matters. Where a tilt vanishes its pan is taken from `last`, as is θ7 where the roll is free.
@@ -41,32 +40,23 @@ def joint_angles(
     ux, uy, uz = upper
     fx, fy, fz = fore
     tx, ty, tz = tool
-    shoulder, elbow, wrist = signs
     # (px, py, 0), (ex, ey, ez), (wx, wy, wz): the axes of joints 2, 4 and 6, not normalized.
-    px, py = -shoulder * uy, shoulder * ux
+    px, py = -uy, ux
     s2 = sqrt(ux * ux + uy * uy)
     if s2 > _STRAIGHT:
         t1 = atan2(-px, py)
     else:
         t1 = last[0]
         px, py = -sin(t1), cos(t1)
-    ex, ey, ez = (
-        elbow * (uy * fz - uz * fy),
-        elbow * (uz * fx - ux * fz),
-        elbow * (ux * fy - uy * fx),
-    )
+    ex, ey, ez = uy * fz - uz * fy, uz * fx - ux * fz, ux * fy - uy * fx
     s4 = sqrt(ex * ex + ey * ey + ez * ez)
-    t3 = atan2(elbow * (px * fx + py * fy), px * ex + py * ey) if s4 > _STRAIGHT else last[2]
+    t3 = atan2(px * fx + py * fy, px * ex + py * ey) if s4 > _STRAIGHT else last[2]
     if s4 < _NEARLY_STRAIGHT:
         ex, ey, ez = _turned((px, py, 0.0), upper, t3)
-    wx, wy, wz = (
-        wrist * (fy * tz - fz * ty),
-        wrist * (fz * tx - fx * tz),
-        wrist * (fx * ty - fy * tx),
-    )
+    wx, wy, wz = fy * tz - fz * ty, fz * tx - fx * tz, fx * ty - fy * tx
     s6 = sqrt(wx * wx + wy * wy + wz * wz)
     if s6 > _STRAIGHT:
-        t5 = atan2(wrist * (ex * tx + ey * ty + ez * tz), ex * wx + ey * wy + ez * wz)
+        t5 = atan2(ex * tx + ey * ty + ez * tz, ex * wx + ey * wy + ez * wz)
     else:
         t5 = last[4]
     if s6 < _NEARLY_STRAIGHT:
@@ -77,11 +67,11 @@ def joint_angles(
         t7 = atan2(wx * xx + wy * xy + wz * xz, wx * yx + wy * yy + wz * yz)
     return (
         t1,
-        shoulder * atan2(s2, uz),
+        atan2(s2, uz),
         t3,
-        elbow * atan2(s4, ux * fx + uy * fy + uz * fz),
+        atan2(s4, ux * fx + uy * fy + uz * fz),
         t5,
-        wrist * atan2(s6, fx * tx + fy * ty + fz * tz),
+        atan2(s6, fx * tx + fy * ty + fz * tz),
         t7,
     )
 

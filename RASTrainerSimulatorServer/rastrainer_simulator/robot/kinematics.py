@@ -45,13 +45,13 @@ def make_kinematics(model: RobotModel, backend: str | None = None) -> Kinematics
     return PinocchioKinematics(model)
 
 
-def kinematics_name(backend: str | None = None) -> str:
+def kinematics_name() -> str:
     """Return what `make_kinematics` computes with, and its version, such as "Pinocchio 3.9.0".
 
     Raises:
         InputError: there is no such backend.
     """
-    if _chosen(backend) == "numpy":
+    if _chosen(None) == "numpy":
         return f"numpy {np.__version__}"
     import pinocchio
 

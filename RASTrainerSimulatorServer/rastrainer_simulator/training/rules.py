@@ -224,7 +224,7 @@ def refused_touch(
     fiducials: Mapping[str, Vector],
     settings: TrainingSettings,
     texts: Texts,
-    method: RegistrationMethod = RegistrationMethod.FIDUCIALS,
+    method: RegistrationMethod,
 ) -> str | None:
     """Return why a touch does not count, None where it does.
 

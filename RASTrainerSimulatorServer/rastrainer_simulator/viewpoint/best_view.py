@@ -99,7 +99,7 @@ def best_view(touch: ViewedTouch, sight: LineOfSight, front: Vector) -> BestView
     return None
 
 
-def is_seen(touch: ViewedTouch, sight: LineOfSight, eye: Vector, margin: float = 0.0) -> bool:
+def is_seen(touch: ViewedTouch, sight: LineOfSight, eye: Vector, margin: float) -> bool:
     """Return whether an eye sees target, number and tip of a touch well enough."""
     line = subtract(eye, touch.fiducial)
     off_tool = angle(line, scale(touch.direction, -1.0))

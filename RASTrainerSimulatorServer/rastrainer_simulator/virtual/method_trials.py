@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -109,14 +109,14 @@ class MethodStudy:
         """Vertices (c,) int on which a trainee would draw."""
         return guided_vertices(self.mesh, self.camera.eye)
 
-    def possible(self, methods: Sequence[RegistrationMethod] = METHODS) -> list[RegistrationMethod]:
+    def possible(self) -> list[RegistrationMethod]:
         """Return the methods for which the scenario has the points."""
         if len(self.landmarks) >= LEAST_FOR_INTERVAL:
-            return list(methods)
+            return list(METHODS)
         given = {RegistrationMethod.BONE_SCREWS, RegistrationMethod.FIDUCIALS}
         if len(self.landmarks) >= COARSE_LANDMARKS:
             given |= {RegistrationMethod.SURFACE, RegistrationMethod.SCAN}
-        return [method for method in methods if method in given]
+        return [method for method in METHODS if method in given]
 
     def trial(self, method: RegistrationMethod, seed: int) -> MethodResult:
         """Play and register one virtual trial.

@@ -20,9 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
-from rastrainer_simulator.virtual.population import pseudonym
 
 DOF = 3 * FIDUCIAL_COUNT - 6
 REFERENCE_RMSE_MM, REFERENCE_TRE_MM = 1.4, 0.4
@@ -88,41 +86,6 @@ class DrawnTrials:
     errors_mm: np.ndarray
     true_tre_mm: np.ndarray
     lapses: np.ndarray
-
-
-def draw_study(
-    model: OutcomeModel,
-    trainees: int,
-    modes: Sequence[str],
-    random: np.random.Generator,
-    orders: Sequence[Sequence[str]] | None = None,
-) -> StudyData:
-    """Return a study in which every trainee does every task once in every mode.
-
-    `orders` are the modes in the order of each trainee; by default that of `modes` for all.
-    """
-    orders = orders or [tuple(modes)] * trainees
-    times, errors = draw_outcomes(model, trainees, modes, random, orders)
-    scores = model_scores(model, times, errors)
-    rows = [
-        TrialRow(
-            pseudonym(i),
-            mode,
-            f"task-{k + 1}",
-            k + 1,
-            {
-                "completion_time_s": float(times[i, m, k]),
-                "rmse_mm": float(errors[i, m, k]),
-                "score": float(scores[i, m, k]),
-            },
-        )
-        for i in range(trainees)
-        for mode, m in sorted(
-            ((mode, m) for m, mode in enumerate(modes)), key=lambda one: orders[i].index(one[0])
-        )
-        for k in range(len(model.task_times_s))
-    ]
-    return StudyData("Simulated outcomes", tuple(rows), has_order=True)
 
 
 def draw_outcomes(

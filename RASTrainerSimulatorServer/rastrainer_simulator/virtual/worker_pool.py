@@ -32,7 +32,7 @@ def run_on_workers(
     function: Callable[[Any], Any],
     jobs: Iterable[Any],
     workers: int,
-    name_of: Callable[[Any], str] = str,
+    name_of: Callable[[Any], str],
 ) -> Iterator[Any]:
     """Yield the result of each job, in their order; the processes end with the iterator.
 
@@ -160,7 +160,7 @@ class _Pool:
         self._done[task.place] = None, WorkerDiedError(sentence)
 
 
-def died_message(job: str, cause: str = "") -> str:
+def died_message(job: str, cause: str) -> str:
     """Return the error message of a job at which all processes died."""
     return (
         f"{job} cannot be played: {ATTEMPTS} worker processes were ended while they played "

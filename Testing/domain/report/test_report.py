@@ -25,9 +25,10 @@ from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.trial.scoring import LONG_PAUSE_S, SCORE_VERSION
 from rastrainer.trial.trainee_progress import competence_of
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.virtual.outcome_model import OutcomeModel, draw_study
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel
 from Testing.domain.study.played_study import STUDIES, study_with_trials
 from Testing.domain.trial.trial_records import make_record
+from Testing.drawn_study import draw_study
 
 PUBLISHED = STUDIES / "published.csv"
 VOID = {"meta", "br", "img", "hr", "link", "input"}

@@ -10,7 +10,8 @@ from rastrainer.statistics.competence import lc_cusum, lc_cusum_limit
 from rastrainer.statistics.intervals import correlation
 from rastrainer.statistics.paired import compare_paired, equivalence_margin
 from rastrainer.study.outcomes import MAIN_OUTCOMES
-from rastrainer_simulator.virtual.outcome_model import OutcomeModel, draw_study
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel
+from Testing.drawn_study import draw_study
 
 MODES = ("desktop", "hmd")
 STUDIES = 400

@@ -13,12 +13,12 @@ from rastrainer_simulator.virtual.outcome_model import (
     DOF,
     OutcomeModel,
     draw_outcomes,
-    draw_study,
     expected_outcomes,
 )
 from rastrainer_simulator.virtual.population import ModeEffect, Population
 from rastrainer_simulator.virtual.rejection_rates import rejection_rates
 from rastrainer_simulator.virtual.scripted_trainee import Skill
+from Testing.drawn_study import draw_study
 
 MODES = ("desktop", "hmd")
 TASKS = 10

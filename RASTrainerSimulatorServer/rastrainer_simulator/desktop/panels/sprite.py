@@ -27,7 +27,7 @@ _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 class Sprite:
     """One picture in a renderer's overlay, invisible until it is shown."""
 
-    def __init__(self, renderer: vtkRenderer, order: int = 0):
+    def __init__(self, renderer: vtkRenderer, order: int):
         """Of overlapping sprites, the one with the higher `order` is in front."""
         self._renderer = renderer
         self._points = vtkPoints()

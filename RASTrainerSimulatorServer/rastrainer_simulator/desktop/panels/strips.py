@@ -141,9 +141,7 @@ def _hints_width(row: Sequence[Hint], brush: Brush) -> int:
     return sum(_hint_width(hint, brush) for hint in row) + between + 2 * brush.px(theme.PAD)
 
 
-def _write_hint(
-    canvas: Canvas, hint: Hint, brush: Brush, box: Box, is_hovered: bool = False
-) -> None:
+def _write_hint(canvas: Canvas, hint: Hint, brush: Brush, box: Box, is_hovered: bool) -> None:
     """Draw a key cap and its action; what can be clicked is colored as buttons are.
 
     What is written on the cap already is not said twice.

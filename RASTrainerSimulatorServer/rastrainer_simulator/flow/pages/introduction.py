@@ -38,9 +38,9 @@ class IntroductionPage(SessionPage):
     name = "introduction"
     first = "next"
 
-    def __init__(self, session: TrainingSession, sheet: int = 1) -> None:
+    def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
-        self._sheet = sheet
+        self._sheet = 1
 
     def menu(self) -> Menu:
         """Return the sheet."""
