@@ -10,11 +10,10 @@ import numpy as np
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.operated_view import OperatedView
-from rastrainer_simulator.flow.seat import instruct, seat_of
+from rastrainer_simulator.flow.seat import ViewSources, instruct, seat_of
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.flow.view_sources import ViewSources
 from rastrainer_simulator.input.bindings import Bindings
 from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.input.controls import IDLE_S, Controls

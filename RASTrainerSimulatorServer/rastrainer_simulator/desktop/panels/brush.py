@@ -7,6 +7,7 @@ these are set in a font of this computer.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -19,11 +20,20 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from rastrainer_simulator.desktop.panels.canvas import Canvas, Letters
-from rastrainer_simulator.desktop.panels.line_breaks import WIDE, pieces
 from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
 from rastrainer_simulator.ops.chinese_font import chinese_font
 
 _BASELINE_SHARE = 0.70
+
+WIDE = "\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef"
+"""Chinese characters and their punctuation, for a class of characters of an expression."""
+_BEGINS_NO_LINE = r"\s。，、；：？！）”」》…—%°,.;:?!)"
+_ENDS_NO_LINE = r"\s（“「《("
+_AT_A_CHARACTER = f"(?<=[{WIDE}])|(?=[{WIDE}])"
+_BEFORE_THE_LAST = f"[{WIDE}][{_BEGINS_NO_LINE}]*$"
+_BREAK = re.compile(
+    f"(?<![{_ENDS_NO_LINE}])(?:{_AT_A_CHARACTER})(?![{_BEGINS_NO_LINE}]|{_BEFORE_THE_LAST})"
+)
 
 
 @dataclass(frozen=True)
@@ -64,7 +74,7 @@ class Brush:
         lines: list[str] = []
         for paragraph in text.split("\n"):
             line = ""
-            for between, piece in pieces(paragraph):
+            for between, piece in _pieces(paragraph):
                 longer = f"{line}{between}{piece}".strip(" ")
                 if self.width(longer, style) <= width:
                     line = longer
@@ -94,6 +104,19 @@ class Brush:
 
     def _pixels(self, style: TextStyle) -> int:
         return max(1, round(style.size * self.scale))
+
+
+def _pieces(paragraph: str) -> Iterator[tuple[str, str]]:
+    """Yield what no line may break, each after what stands between it and the piece before.
+
+    That is a space, or nothing between Chinese characters. No-break spaces do not break, and no
+    Chinese character is left alone on the last line.
+    """
+    for word in filter(None, paragraph.split(" ")):
+        between = " "
+        for piece in filter(None, _BREAK.split(word)):
+            yield between, piece
+            between = ""
 
 
 _DPI = 72
