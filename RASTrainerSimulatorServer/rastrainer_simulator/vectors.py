@@ -96,6 +96,15 @@ def turned_toward(direction: Vector, goal: Vector, most: float) -> Vector:
     return unit(rotated(direction, unit(axis), most))
 
 
+def accelerated(velocity: Vector, wanted: Vector, most: float) -> Vector:
+    """Return the velocity changed toward `wanted` by at most `most`."""
+    change = subtract(wanted, velocity)
+    if change == ZERO:
+        return wanted
+    limited = shortened(change, most)
+    return (velocity[0] + limited[0], velocity[1] + limited[1], velocity[2] + limited[2])
+
+
 def any_perpendicular(direction: Vector) -> Vector:
     """Return a unit vector perpendicular to `direction`."""
     axes: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

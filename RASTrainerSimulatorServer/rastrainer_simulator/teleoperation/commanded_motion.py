@@ -12,8 +12,8 @@ from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.state import Motion
 from rastrainer_simulator.teleoperation.axes import Axes
 from rastrainer_simulator.vectors import (
-    ZERO,
     Vector,
+    accelerated,
     angle,
     distance,
     length,
@@ -202,12 +202,3 @@ def started(command: CommandedMotion) -> Running:
     if isinstance(command, PathCommand):
         return FollowingPath(command)
     return Jogging(command) if isinstance(command, JogCommand) else Moving(command)
-
-
-def accelerated(velocity: Vector, wanted: Vector, most: float) -> Vector:
-    """Return the velocity changed toward `wanted` by at most `most` (m/s)."""
-    change = subtract(wanted, velocity)
-    if change == ZERO:
-        return wanted
-    limited = shortened(change, most)
-    return (velocity[0] + limited[0], velocity[1] + limited[1], velocity[2] + limited[2])

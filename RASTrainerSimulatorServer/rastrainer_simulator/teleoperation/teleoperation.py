@@ -12,7 +12,6 @@ from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
     MotionOutcome,
     Running,
-    accelerated,
     started,
 )
 from rastrainer_simulator.teleoperation.tool_steering import (
@@ -21,7 +20,7 @@ from rastrainer_simulator.teleoperation.tool_steering import (
     ToolDirection,
     ToolSteering,
 )
-from rastrainer_simulator.vectors import ZERO, Vector, scale, vector
+from rastrainer_simulator.vectors import ZERO, Vector, accelerated, scale, vector
 
 
 @dataclass(frozen=True)

@@ -25,12 +25,12 @@ from rastrainer_simulator.ops.chinese_font import chinese_font
 
 _BASELINE_SHARE = 0.70
 
-WIDE = "\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef"
+_WIDE = "\u2e80-\u9fff\uf900-\ufaff\uff00-\uffef"
 """Chinese characters and their punctuation, for a class of characters of an expression."""
 _BEGINS_NO_LINE = r"\s。，、；：？！）”」》…—%°,.;:?!)"
 _ENDS_NO_LINE = r"\s（“「《("
-_AT_A_CHARACTER = f"(?<=[{WIDE}])|(?=[{WIDE}])"
-_BEFORE_THE_LAST = f"[{WIDE}][{_BEGINS_NO_LINE}]*$"
+_AT_A_CHARACTER = f"(?<=[{_WIDE}])|(?=[{_WIDE}])"
+_BEFORE_THE_LAST = f"[{_WIDE}][{_BEGINS_NO_LINE}]*$"
 _BREAK = re.compile(
     f"(?<![{_ENDS_NO_LINE}])(?:{_AT_A_CHARACTER})(?![{_BEGINS_NO_LINE}]|{_BEFORE_THE_LAST})"
 )
@@ -125,7 +125,7 @@ _BOLD_SHARE = 1 / 24
 """How much thicker a bold stroke is, of the size: a font file has one weight."""
 _IN_THE_FONT = str.maketrans({"\u202f": "\u00a0"})
 """What stands for what the font lacks: for the narrow no-break space, the wide one."""
-_RUNS = re.compile(f"([{WIDE}]+)")
+_RUNS = re.compile(f"([{_WIDE}]+)")
 
 
 @lru_cache(maxsize=2000)
