@@ -14,6 +14,7 @@ from rastrainer.study.curriculum.curriculum import Assignment, Curriculum, read_
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database import study_trainees, study_trials
+from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import TrialRecord
@@ -25,11 +26,11 @@ FIRST_DAY = datetime(2026, 11, 2, 9, 0, tzinfo=timezone.utc)
 
 
 def play_class(
-    path: Path, names: list[str], trials: int, curriculum: Curriculum | None = None
+    place: StudyPlace, names: list[str], trials: int, curriculum: Curriculum | None = None
 ) -> None:
     """Have each trainee practice up to so many trials, from a tempo of their own, by a seed."""
     rng, follows = random.Random(23), curriculum or read_curriculum(SHIPPED)
-    with Study.open(path) as study:
+    with Study.open(place) as study:
         CurriculumStore(study).choose(follows)
         # In one transaction: a trial alone costs a sync of the disk.
         with study.database.writing() as connection:
