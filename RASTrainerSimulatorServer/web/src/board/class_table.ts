@@ -50,7 +50,8 @@ export class ClassTable {
     private news: CurriculumNews,
     number: number,
   ) {
-    const caption = element("caption", news.title);
+    const caption = document.createElement("caption");
+    caption.append(element("span", news.title));
     caption.id = `class-${number}`;
     this.heads = { trainee: this.sortable("trainee"), reached: this.sortable("reached") };
     const row = document.createElement("tr");
