@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
 async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
     from rastrainer_simulator.board.board_server import BoardServer
     from rastrainer_simulator.board.seat_client import SeatClient
-    from rastrainer_simulator.server.server import stop_on_signals
+    from rastrainer_simulator.ops.processes import stop_on_signals
 
     stop = asyncio.Event()
     async with SeatClient() as client:
@@ -68,7 +68,7 @@ async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
             study=study,
         )
         try:
-            with stop_on_signals(asyncio.get_running_loop(), stop):
+            with stop_on_signals(stop):
                 found = await board.listen(DEFAULT_HOST, port)
                 address = f"http://{DEFAULT_HOST}:{found}"
                 code = board.code.code

@@ -95,13 +95,13 @@ async def _serve(
 ) -> None:
     from rastrainer_simulator.lti.lti_server import LtiServer
     from rastrainer_simulator.lti.platform_client import PlatformClient
-    from rastrainer_simulator.server.server import stop_on_signals
+    from rastrainer_simulator.ops.processes import stop_on_signals
 
     stop = asyncio.Event()
     async with PlatformClient() as client:
         server = LtiServer(arguments.study, settings, key, client, limits)
         try:
-            with stop_on_signals(asyncio.get_running_loop(), stop):
+            with stop_on_signals(stop):
                 host = "0.0.0.0" if arguments.lan else DEFAULT_HOST
                 port = await server.listen(host, arguments.port, tls)
                 server.return_grades()

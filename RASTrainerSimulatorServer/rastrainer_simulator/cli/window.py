@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.ops.desktop_process import VIEW_KEY_VARIABLE, has_display
+from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE, has_display
 
 DEFAULT_URL = "http://127.0.0.1:18945"
 LEAST_SIDE, MAX_SIDE = 320, 16_384

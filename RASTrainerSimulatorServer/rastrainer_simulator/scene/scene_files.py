@@ -21,7 +21,7 @@ import rastrainer
 from rastrainer.errors import InputError
 from rastrainer.python_environment import python_words
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.ops.desktop_process import BELOW_NORMAL, environment_without_secrets
+from rastrainer_simulator.ops.processes import BELOW_NORMAL, environment_without_secrets
 from rastrainer_simulator.robot.model import RobotModel
 
 

@@ -20,13 +20,12 @@ from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views.open_views import open_views
 from rastrainer_simulator.net.views.presenter import Presenter
 from rastrainer_simulator.ops.chinese_font import has_letters
-from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import config_folder, log_folder
+from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.replay_presenter import ReplayPresenter
-from rastrainer_simulator.server.server import stop_on_signals
 
 
 def show(
@@ -76,7 +75,7 @@ async def show_until(
     """
     window: DesktopProcess | None = None
     tasks: list[asyncio.Task[None]] = []
-    with stop_on_signals(asyncio.get_running_loop(), stop):
+    with stop_on_signals(stop):
         views = await open_views(source, presenter, announce, port, None)
         try:
             tasks.append(asyncio.create_task(run()))

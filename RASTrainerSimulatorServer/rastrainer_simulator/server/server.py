@@ -7,8 +7,7 @@ import contextlib
 import gc
 import itertools
 import logging
-import signal
-from collections.abc import Awaitable, Callable, Iterator, Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
@@ -38,9 +37,9 @@ from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, TrialLog
 from rastrainer_simulator.ops.chinese_font import has_letters
-from rastrainer_simulator.ops.desktop_process import DesktopProcess
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
+from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from rastrainer_simulator.record.recorded_setup import setup_of, versions
 from rastrainer_simulator.record.records_folder import RecordsFolder
@@ -169,7 +168,7 @@ class SimulatorServer:
         # Keep garbage collection between two ticks short: what is loaded now is never freed.
         gc.collect()
         gc.freeze()
-        with stop_on_signals(loop, stop):
+        with stop_on_signals(stop):
             self._control_loop.start()
             _log.info("The simulator has started.", extra={"data": versions()})
             try:
@@ -362,28 +361,3 @@ def _answered(answer: Answer) -> Future[Answer]:
 def _peers_host(options: ServerOptions) -> str:
     """Return the address by which peers are met."""
     return options.host if options.connect_to is None else options.connect_to[0]
-
-
-@contextlib.contextmanager
-def stop_on_signals(loop: asyncio.AbstractEventLoop, stop: asyncio.Event) -> Iterator[None]:
-    """Set the event on SIGTERM, on Ctrl-C and when the terminal is closed."""
-
-    def end(name: str) -> None:
-        _log.info("The simulator ends by %s.", name)
-        stop.set()
-
-    def request_stop(number: int, *_frame: object) -> None:
-        loop.call_soon_threadsafe(end, signal.Signals(number).name)
-
-    # Not by the event loop's own means, which Windows lacks.
-    numbers = [signal.SIGINT, signal.SIGTERM]
-    hang_up = getattr(signal, "SIGHUP", None)
-    # Who starts a program by nohup wants it to outlive the terminal.
-    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
-        numbers.append(hang_up)
-    before = {number: signal.signal(number, request_stop) for number in numbers}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

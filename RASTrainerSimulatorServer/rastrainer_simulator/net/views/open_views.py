@@ -15,8 +15,8 @@ from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views.presenter import Presenter
 from rastrainer_simulator.net.views.sessions import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.net.views.view_server import ViewServer
-from rastrainer_simulator.ops.desktop_process import VIEW_KEY_VARIABLE
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
+from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
 
 
 async def open_views(

@@ -1,13 +1,15 @@
-"""Child processes beside the control loop: their environment, and the desktop window."""
+"""Processes: the environment of ours and its children, its end by a signal, and the window's."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import os
+import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from rastrainer.python_environment import python_words
@@ -16,18 +18,18 @@ VIEW_KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
 """Environment variable with a key of the views, shared by a simulator and its window."""
 BELOW_NORMAL = getattr(subprocess, "BELOW_NORMAL_PRIORITY_CLASS", 0)
 """Windows' flag of a process of low priority; elsewhere such a process raises its niceness."""
-
-
-def environment_without_secrets() -> dict[str, str]:
-    """Return the environment without the views' key, which other processes must not know."""
-    return {name: value for name, value in os.environ.items() if name != VIEW_KEY_VARIABLE}
-
-
 ENDING_S = 3.0
 GONE = (
     "continues without its window, which ended with status {status}: open another with `rastrainer "
     "window --connect {url} --code` and the pairing code"
 )
+
+_log = logging.getLogger(__name__)
+
+
+def environment_without_secrets() -> dict[str, str]:
+    """Return the environment without the views' key, which other processes must not know."""
+    return {name: value for name, value in os.environ.items() if name != VIEW_KEY_VARIABLE}
 
 
 def has_display() -> bool:
@@ -74,3 +76,29 @@ class DesktopProcess:
         except asyncio.TimeoutError:
             process.kill()
             await process.wait()
+
+
+@contextlib.contextmanager
+def stop_on_signals(stop: asyncio.Event) -> Iterator[None]:
+    """Set the event on SIGTERM, on Ctrl-C and when the terminal is closed."""
+    loop = asyncio.get_running_loop()
+
+    def end(name: str) -> None:
+        _log.info("The simulator ends by %s.", name)
+        stop.set()
+
+    def request_stop(number: int, *_frame: object) -> None:
+        loop.call_soon_threadsafe(end, signal.Signals(number).name)
+
+    # Not by the event loop's own means, which Windows lacks.
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    hang_up = getattr(signal, "SIGHUP", None)
+    # Who starts a program by nohup wants it to outlive the terminal.
+    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
+        numbers.append(hang_up)
+    before = {number: signal.signal(number, request_stop) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
