@@ -38,8 +38,7 @@ class CurriculumLogic:
         self._stamps: dict[str, tuple[int | None, ...]] = {}
         self._followed: Study | None = None
         self._listening = Listening(
-            (trainees.changed, self._followTrainees),
-            (link.opened, self._tellAll),
+            (trainees.changed, self._followTrainees), (link.opened, self._tellAll)
         )
 
     def close(self) -> None:

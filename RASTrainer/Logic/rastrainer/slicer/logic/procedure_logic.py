@@ -124,8 +124,7 @@ class ProcedureLogic:
         self._trialId = ""
         self._registering = ""
         self._listening = Listening(
-            (link.stateChanged, self._follow),
-            (link.opened, self._beginAgain),
+            (link.stateChanged, self._follow), (link.opened, self._beginAgain)
         )
 
     def close(self) -> None:

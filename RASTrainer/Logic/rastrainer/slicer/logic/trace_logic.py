@@ -58,8 +58,7 @@ class TraceLogic:
         self._isAsking = False
         self._asked = -PERIOD_S
         self._listening = Listening(
-            (link.stateChanged, self._follow),
-            (link.opened, self._beginAgain),
+            (link.stateChanged, self._follow), (link.opened, self._beginAgain)
         )
 
     def close(self) -> None:

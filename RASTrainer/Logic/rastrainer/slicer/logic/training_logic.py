@@ -105,8 +105,7 @@ class TrainingLogic:
         self._shownTrial = ""
         self._total = FIDUCIAL_COUNT
         self._listening = Listening(
-            (link.stateChanged, self._follow),
-            (link.pointsChanged, self._emitChange),
+            (link.stateChanged, self._follow), (link.pointsChanged, self._emitChange)
         )
 
     def close(self) -> None:

@@ -109,8 +109,7 @@ class TrialLogic:
         )
         self.problemFound = self._queue.problemFound
         self._listening = Listening(
-            (link.stateChanged, self._followTraining),
-            (link.opened, self._resumeAll),
+            (link.stateChanged, self._followTraining), (link.opened, self._resumeAll)
         )
 
     def close(self) -> None:
