@@ -16,9 +16,11 @@ from Testing.study_places import postgres_server, study_place  # noqa: F401
 from Testing.touched_head import touched_head  # noqa: F401
 
 HERE = Path(__file__).parent
-LONGEST = ("end_to_end", "web", "security")
-"""Folders whose tests start processes, browsers and attacks. They are checked first, so that no
-worker waits for one of them in the end."""
+WAITING = ("end_to_end", "web", "security")
+"""Folders whose tests wait for processes, browsers and attacks."""
+SPREAD = 0.85
+"""Over which share of the run they are spread: side by side, they would leave processors idle, and
+at the end, the other workers."""
 TESTS_PER_FULL_COLLECTION = 100
 
 # Random examples are the same each time, and none depends on how fast the machine is.
@@ -92,7 +94,12 @@ def pytest_runtest_logfinish():
 
 
 def pytest_collection_modifyitems(items):
-    items.sort(key=lambda item: item.path.relative_to(HERE).parts[0] not in LONGEST)
+    files = list(dict.fromkeys(item.path for item in items))
+    waiting = [path for path in files if path.relative_to(HERE).parts[0] in WAITING]
+    others = [path for path in files if path not in set(waiting)]
+    share = {path: number / len(others) for number, path in enumerate(others)}
+    share |= {path: SPREAD * number / len(waiting) for number, path in enumerate(waiting)}
+    items.sort(key=lambda item: share[item.path])
 
 
 def pytest_collection_finish():

@@ -29,10 +29,8 @@ add_subdirectory("{source}" extension)
 """
 
 
-@pytest.fixture
-def checkout(tmp_path):
-    """A fresh clone of what CMake reads, without the simulator's wheel."""
-    folder = tmp_path / "clone"
+def make_checkout(folder):
+    """Return a fresh clone of what CMake reads, without the simulator's wheel."""
     without = shutil.ignore_patterns("*.whl*", "__pycache__")
     for part in PARTS:
         shutil.copytree(ROOT / part, folder / part, ignore=without)
@@ -41,13 +39,24 @@ def checkout(tmp_path):
     return folder
 
 
+def make_extension(checkout, wheel):
+    """Do in a clone what `make extension` does; return the clone."""
+    simulator_wheel.put_beside_module(
+        wheel, checkout / "RASTrainer" / "Resources" / "RASTrainerSimulator"
+    )
+    return checkout
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A fresh clone."""
+    return make_checkout(tmp_path / "clone")
+
+
 @pytest.fixture
 def with_wheel(checkout, built_wheel):
     """A clone in which `make extension` has run."""
-    simulator_wheel.put_beside_module(
-        built_wheel, checkout / "RASTrainer" / "Resources" / "RASTrainerSimulator"
-    )
-    return checkout
+    return make_extension(checkout, built_wheel)
 
 
 def configure(source, build, *options):
@@ -63,12 +72,14 @@ def install(build, tree):
     return tree / MODULES
 
 
-@pytest.fixture
-def tree(with_wheel, tmp_path):
-    """The folder of modules in an installed tree."""
-    status, said = configure(with_wheel, tmp_path / "build")
+@pytest.fixture(scope="module")
+def tree(built_wheel, tmp_path_factory):
+    """The folder of modules in an installed tree, which tests only read."""
+    folder = tmp_path_factory.mktemp("installed")
+    clone = make_extension(make_checkout(folder / "clone"), built_wheel)
+    status, said = configure(clone, folder / "build")
     assert status == 0, said
-    return install(tmp_path / "build", tmp_path / "tree")
+    return install(folder / "build", folder / "tree")
 
 
 def relative(folder, pattern="*"):
