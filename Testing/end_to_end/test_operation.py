@@ -148,6 +148,7 @@ def test_a_failing_window_is_reported_and_its_log_beside_the_simulator_s_says_wh
     assert log_lines(tmp_path)[-1]["message"] == "The simulator has ended."
 
 
+@pytest.mark.soak
 def test_a_view_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])

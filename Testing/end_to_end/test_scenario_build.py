@@ -14,6 +14,7 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
 from rastrainer.slicer.head.scenario_build import buildScenario
 from rastrainer_simulator.authoring.head_process import head_process
+from rastrainer_simulator.cli.main import main
 from Testing.domain.head.spheres import sphere_mesh
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.slicer.head.phantoms import CT, phantom
@@ -104,12 +105,11 @@ def test_a_build_that_is_terminated_leaves_nothing(ct, tmp_path, temporary):
     assert [path.name for path in tmp_path.iterdir()] == ["temporary"]
 
 
-def test_a_file_that_is_no_volume_ends_the_build_with_one_sentence(tmp_path):
+def test_a_file_that_is_no_volume_ends_the_build_with_one_sentence(tmp_path, capsys):
     (tmp_path / "noise.nrrd").write_bytes(b"no image" * 100)
     words = ["scenario", "build", str(tmp_path / "noise.nrrd"), "-o", str(tmp_path / "made")]
-    build = subprocess.run([*RASTRAINER, *words], capture_output=True, text=True)
-    assert build.returncode == 2
-    assert "noise.nrrd could not be read as a volume" in build.stderr.splitlines()[-1]
+    assert main(words) == 2
+    assert "noise.nrrd could not be read as a volume" in capsys.readouterr().err.splitlines()[-1]
     assert [path.name for path in tmp_path.iterdir()] == ["noise.nrrd"]
 
 

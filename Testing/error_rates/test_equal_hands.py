@@ -87,7 +87,9 @@ def assert_is_as_stored(key):
     assert again.safety.pressing_depth_mm == pytest.approx(kept.safety.pressing_depth_mm, abs=0.15)
 
 
-@pytest.mark.parametrize("head", HEADS)
+@pytest.mark.parametrize(
+    "head", [HEADS[0], *(pytest.param(head, marks=pytest.mark.soak) for head in HEADS[1:])]
+)
 def test_the_usual_hands_reproduce_a_stored_trial_of_each_head(head):
     assert_is_as_stored((USUAL, 1, head, "task-1"))
 

@@ -106,21 +106,13 @@ def test_what_is_canceled_ends(tmp_path, monkeypatch):
     assert not any(thread.is_alive() for thread in begun)
 
 
-def test_the_process_needs_neither_slicer_nor_qt():
+def test_showing_a_head_imports_no_scipy_and_finding_it_neither_slicer_nor_qt():
     program = (
         "import sys; sys.modules['slicer'] = sys.modules['qt'] = None\n"
         f"sys.path.insert(0, {str(LOGIC)!r})\n"
-        "import rastrainer.slicer.head.head_draft"
-    )
-    subprocess.run([PYTHON, "-c", program], check=True)
-
-
-def test_the_main_process_imports_neither_scipy_nor_the_filters_to_show_a_head():
-    program = (
-        "import sys\n"
-        f"sys.path.insert(0, {str(LOGIC)!r})\n"
         "import rastrainer.slicer.head.segment, rastrainer.slicer.head.head_body\n"
         "import rastrainer.slicer.head.scenario_build, rastrainer.slicer.program.own_process\n"
-        "assert 'scipy' not in sys.modules"
+        "assert 'scipy' not in sys.modules\n"
+        "import rastrainer.slicer.head.head_draft"
     )
     subprocess.run([PYTHON, "-c", program], check=True)

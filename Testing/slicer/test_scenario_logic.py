@@ -68,8 +68,18 @@ def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
     ("broken", "sentence"),
     [
         pytest.param(np.full((60, 60, 60), np.nan, np.float32), "not numbers", id="NaN"),
-        pytest.param(np.ones((1, 200, 200), np.float32), "needs a 3D volume", id="2D"),
-        pytest.param(np.zeros((60, 60, 60), np.float32), "volume is empty", id="empty"),
+        pytest.param(
+            np.ones((1, 200, 200), np.float32),
+            "needs a 3D volume",
+            id="2D",
+            marks=pytest.mark.soak,
+        ),
+        pytest.param(
+            np.zeros((60, 60, 60), np.float32),
+            "volume is empty",
+            id="empty",
+            marks=pytest.mark.soak,
+        ),
     ],
 )
 def test_a_broken_volume_is_reported_and_the_head_stays(scene, logic, broken, sentence):

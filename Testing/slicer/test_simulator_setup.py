@@ -1,5 +1,6 @@
 """Pip sets the simulator up in a private folder, from known packages only."""
 
+import shutil
 import sys
 import zipfile
 from pathlib import Path
@@ -50,10 +51,24 @@ if __name__ == "__main__":
 """
 
 
+def write_bolt(folder):
+    """Write a wheel of others into a folder of wheels."""
+    return write_wheel(folder / "wheels", "bolt", "1.0", {"bolt.py": "SIZE = 8\n"})
+
+
+def write_module(folder, bolt):
+    """Write a simulator that only says that it is ready, and needs a bolt."""
+    elsewhere = lock_entry(bolt, "sys_platform == 'elsewhere'").replace("bolt", "nut")
+    return write_package(folder / "module", CLI, [lock_entry(bolt), elsewhere])
+
+
+def setup_in(folder, package):
+    return SimulatorSetup(Path(sys.executable), folder / "private folder" / "simulator", package)
+
+
 @pytest.fixture
 def bolt(tmp_path):
-    """A wheel of others, in a folder of wheels."""
-    return write_wheel(tmp_path / "wheels", "bolt", "1.0", {"bolt.py": "SIZE = 8\n"})
+    return write_bolt(tmp_path)
 
 
 @pytest.fixture
@@ -63,14 +78,31 @@ def source(bolt):
 
 @pytest.fixture
 def package(tmp_path, bolt):
-    """A simulator that only says that it is ready, and needs a bolt."""
-    elsewhere = lock_entry(bolt, "sys_platform == 'elsewhere'").replace("bolt", "nut")
-    return write_package(tmp_path / "module", CLI, [lock_entry(bolt), elsewhere])
+    return write_module(tmp_path, bolt)
 
 
 @pytest.fixture
 def setup(tmp_path, package):
-    return SimulatorSetup(Path(sys.executable), tmp_path / "private folder" / "simulator", package)
+    return setup_in(tmp_path, package)
+
+
+@pytest.fixture(scope="module")
+def once_installed(tmp_path_factory):
+    """A folder of wheels, a module and the simulator that was set up, of which tests use copies."""
+    folder = tmp_path_factory.mktemp("installed")
+    bolt = write_bolt(folder)
+    lines, error = run_setup(
+        setup_in(folder, write_module(folder, bolt)), SetupSource(wheels=bolt.parent)
+    )
+    assert error == "", lines
+    return folder
+
+
+@pytest.fixture
+def installed(once_installed, tmp_path):
+    """The set-up of a simulator that is installed."""
+    shutil.copytree(once_installed, tmp_path, dirs_exist_ok=True)
+    return setup_in(tmp_path, SimulatorPackage(tmp_path / "module"))
 
 
 def run_setup(setup, source):
@@ -179,12 +211,10 @@ def test_a_simulator_that_is_missing_or_damaged_in_the_module_is_reported(setup,
     assert not setup.folder.parent.exists()
 
 
-def test_the_simulator_of_another_module_of_the_same_version_is_not_this_ones(
-    setup, source, package, bolt
-):
-    run_setup(setup, source)
-    write_package(package.folder, f"{CLI}# Mended.\n", [lock_entry(bolt)])
-    assert (setup.installedVersion, setup.isCurrent) == (__version__, False)
+def test_the_simulator_of_another_module_of_the_same_version_is_not_this_ones(installed):
+    assert (installed.installedVersion, installed.isCurrent) == (__version__, True)
+    write_package(installed.package.folder, f"{CLI}# Mended.\n")
+    assert (installed.installedVersion, installed.isCurrent) == (__version__, False)
 
 
 def test_in_a_checkout_its_sources_are_run_as_they_are(tmp_path):
@@ -204,14 +234,14 @@ def test_in_a_checkout_its_sources_are_run_as_they_are(tmp_path):
     assert told == ["Edited since."]
 
 
-def test_removing_the_simulator_leaves_nothing(setup, source):
-    run_setup(setup, source)
+def test_removing_the_simulator_leaves_nothing(installed):
+    assert installed.isCurrent
     changes = []
-    setup.changed.connect(lambda: changes.append(setup.isInstalled))
-    setup.remove()
-    assert (changes, setup.isCurrent, setup.isInstalled) == ([False], False, False)
-    assert left_beside(setup) == []
-    setup.remove()
+    installed.changed.connect(lambda: changes.append(installed.isInstalled))
+    installed.remove()
+    assert (changes, installed.isCurrent, installed.isInstalled) == ([False], False, False)
+    assert left_beside(installed) == []
+    installed.remove()
 
 
 def test_what_an_interrupted_removal_has_left_goes_at_the_next_set_up(setup, source):
@@ -222,10 +252,9 @@ def test_what_an_interrupted_removal_has_left_goes_at_the_next_set_up(setup, sou
     assert left_beside(setup) == ["simulator"]
 
 
-def test_an_installed_simulator_starts_reports_its_port_and_stops(setup, source):
-    run_setup(setup, source)
+def test_an_installed_simulator_starts_reports_its_port_and_stops(installed):
     program = SimulatorProgram()
-    command = setup.command(["simulator", "--port", "18999"])
+    command = installed.command(["simulator", "--port", "18999"])
     program.start(command)
     assert program.state is ProgramState.STARTING
     wait_until(lambda: program.state is ProgramState.READY, program.process)
@@ -235,11 +264,10 @@ def test_an_installed_simulator_starts_reports_its_port_and_stops(setup, source)
     assert program.state is ProgramState.STOPPED
 
 
-def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(setup, source):
-    run_setup(setup, source)
+def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installed):
     program, told = SimulatorProgram(), []
     program.pairingChanged.connect(lambda: told.append(program.pairingSentence))
-    program.start(setup.command(["simulator", "--port", "1", "--lan"]))
+    program.start(installed.command(["simulator", "--port", "1", "--lan"]))
     wait_until(lambda: program.pairingCode == "678901", program.process)
     program.stop()
     here = "In a browser or a headset open http://127.0.0.1:18945"
@@ -254,29 +282,27 @@ def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(setup, s
     ]
 
 
-def test_a_simulator_that_ends_by_itself_says_why(setup, source):
-    run_setup(setup, source)
+def test_a_simulator_that_ends_by_itself_says_why(installed):
     program = SimulatorProgram()
-    program.start(setup.command(["simulator", "--port", "1", "--end"]))
+    program.start(installed.command(["simulator", "--port", "1", "--end"]))
     wait_until(lambda: program.state is ProgramState.FAILED, program.process)
     assert program.sentence.endswith("(status 3): The port is taken.")
 
 
-def test_a_simulator_whose_window_is_closed_has_simply_ended(setup, source):
-    run_setup(setup, source)
+def test_a_simulator_whose_window_is_closed_has_simply_ended(installed):
     program = SimulatorProgram()
-    program.start(setup.command(["simulator", "--port", "1", "--close"]))
+    program.start(installed.command(["simulator", "--port", "1", "--close"]))
     wait_until(lambda: not program.isRunning, program.process)
     assert (program.state, program.sentence) == (ProgramState.STOPPED, "The simulator has ended.")
 
 
-def test_a_set_up_that_fails_leaves_the_old_one_and_says_what_to_do(setup, source, bolt):
-    run_setup(setup, source)
+def test_a_set_up_that_fails_leaves_the_old_one_and_says_what_to_do(installed, tmp_path):
+    (bolt,) = (tmp_path / "wheels").iterdir()
     replaced(bolt, "")
-    _lines, error = run_setup(setup, source)
+    _lines, error = run_setup(installed, SetupSource(wheels=bolt.parent))
     assert "choose a folder of wheels or your own package index" in error
-    assert setup.isCurrent
-    assert left_beside(setup) == ["simulator"]
+    assert installed.isCurrent
+    assert left_beside(installed) == ["simulator"]
 
 
 def test_what_was_installed_and_cannot_be_run_is_not_taken(setup, source, tmp_path, bolt):

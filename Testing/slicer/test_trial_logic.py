@@ -13,8 +13,7 @@ from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic import trial_logic
-from rastrainer.slicer.logic.trial_delivery import MAX_WAITING
+from rastrainer.slicer.logic import trial_delivery, trial_logic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.registration_nodes import isApplied
 from rastrainer.slicer.scene.scene import Role, findNode
@@ -379,23 +378,27 @@ def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, revie
         assert [trainee.pseudonym for trainee in study.trainees()] == ["T-001"]
 
 
-def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_reported(lab, make_record):
+def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_reported(
+    lab, make_record, monkeypatch
+):
+    waiting = 8
+    monkeypatch.setattr(trial_delivery, "MAX_WAITING", waiting)
     lab.logic.trialKept.connect(lambda _record: kept.append(True))
     kept = []
-    for number in range(3 * MAX_WAITING):
+    for number in range(3 * waiting):
         lab.link.trialCompleted.emit(make_record(str(uuid.UUID(int=100 + number))))
     assert lab.problems == [
         "Trials arrive faster than they can be scored; they are offered again later."
     ]
     before = 0
-    while len(kept) < MAX_WAITING:
+    while len(kept) < waiting:
         lab.work.process()
         assert len(kept) - before <= 1
         before = len(kept)
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: {"trialId": TRIAL} in lab.sent("AcknowledgeTrial"))
     with Study.open(lab.path) as study:
-        assert len(study.history("T-001")) == MAX_WAITING + 1
+        assert len(study.history("T-001")) == waiting + 1
 
 
 def test_a_trial_waits_while_another_program_has_the_study_locked(lab, make_record):

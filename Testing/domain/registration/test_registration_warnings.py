@@ -25,8 +25,9 @@ def direction(rng):
     return vector / np.linalg.norm(vector)
 
 
-def test_five_hundred_clean_heads_raise_no_alarm(touched_head):
-    for seed in range(500):
+@pytest.mark.parametrize("heads", [150, pytest.param(500, marks=pytest.mark.soak)])
+def test_clean_heads_raise_no_alarm(touched_head, heads):
+    for seed in range(heads):
         moving, fixed, _ = touched_head(seed)
         assert faults(moving, fixed, KINDS[seed % 3]) == []
 

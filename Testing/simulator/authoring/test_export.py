@@ -241,24 +241,22 @@ def with_procedure(folder):
     return planned
 
 
-def test_by_default_procedures_are_left_out_with_the_skull_that_they_need(folder, tmp_path, capsys):
-    package = tmp_path / "out.zip"
-    assert main(["scenario", "pack", str(with_procedure(folder)), str(package)]) == 0
-    told = "Removed: the face, the skull, the procedures, which need the skull, its title"
-    assert told in capsys.readouterr().out
-    given = load_scenario(unpack(package, tmp_path / "library"))
-    assert given.procedures == ()
-    assert not (given.folder / "no-go").exists()
-
-
-def test_landmarks_of_the_face_are_left_out_with_it(folder, tmp_path, capsys):
-    path = folder / "scenario.json"
+def test_by_default_landmarks_are_left_out_with_the_face_and_procedures_with_the_skull(
+    folder, tmp_path, capsys
+):
+    planned = with_procedure(folder)
+    path = planned / "scenario.json"
     nasion = [{"name": "Nasion", "positionRas": [0.0, 90.0, -40.0]}]
     path.write_text(json.dumps(json.loads(path.read_text()) | {"landmarks": nasion}))
     package = tmp_path / "out.zip"
-    assert main(["scenario", "pack", str(folder), str(package)]) == 0
-    assert "the landmarks, most of which were on the face" in capsys.readouterr().out
-    assert load_scenario(unpack(package, tmp_path / "library")).landmarks == ()
+    assert main(["scenario", "pack", str(planned), str(package)]) == 0
+    assert (
+        "Removed: the face, the skull, the landmarks, most of which were on the face, the "
+        "procedures, which need the skull, its title"
+    ) in capsys.readouterr().out
+    given = load_scenario(unpack(package, tmp_path / "library"))
+    assert (given.landmarks, given.procedures) == ((), ())
+    assert not (given.folder / "no-go").exists()
 
 
 def test_with_the_face_procedures_are_kept_and_their_sources_are_not(folder, tmp_path):

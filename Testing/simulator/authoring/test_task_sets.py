@@ -154,22 +154,20 @@ def placed(tmp_path, tasks):
     return replace(WISHES, task_files=(path,))
 
 
-def test_fiducials_placed_by_hand_become_tasks(tmp_path, tasks, placed):
-    scenario = make_scenario(HeadDraft(egg(), "made up"), placed, tmp_path / "egg")
-    assert [task.title for task in scenario.tasks] == ["Trial run"]
-    assert scenario.tasks[0].complexity == pytest.approx(tasks[0].complexity, abs=0.02)
-    assert scenario.preview is not None
-    again = read_task(placed.task_files[0], "trial-run", "Trial run", 0.0)
-    assert np.array_equal(scenario.tasks[0].fiducials, again.fiducials)
-
-
-def test_a_skull_that_is_made_meanwhile_goes_into_the_scenario(tmp_path, placed):
+def test_fiducials_placed_by_hand_become_tasks_and_a_skull_that_is_made_meanwhile_goes_in(
+    tmp_path, tasks, placed
+):
     skull = HeadMesh(0.9 * egg().vertices, egg().triangles)
     first, whole = HeadDraft(egg(), "made up"), HeadDraft(egg(), "with skull", skull, True)
     scenario = make_scenario(first, placed, tmp_path / "egg", wait_for_skull=lambda: whole)
     assert scenario.provenance.method == "with skull"
     assert scenario.is_skull_approximate
     assert len(read_head_mesh(scenario.skull_mesh).triangles) == len(skull.triangles)
+    assert [task.title for task in scenario.tasks] == ["Trial run"]
+    assert scenario.tasks[0].complexity == pytest.approx(tasks[0].complexity, abs=0.02)
+    assert scenario.preview is not None
+    again = read_task(placed.task_files[0], "trial-run", "Trial run", 0.0)
+    assert np.array_equal(scenario.tasks[0].fiducials, again.fiducials)
 
 
 def test_a_skull_that_cannot_be_made_leaves_nothing_of_the_scenario(tmp_path, placed):

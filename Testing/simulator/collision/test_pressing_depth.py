@@ -32,7 +32,8 @@ def simulation(setup):
     truth = simulation.truth
     move(simulation, truth.in_world(truth.target) + np.array([0.0, 0.0, 130.0]))
     while simulation.state.proximity is not Proximity.CONTACT:
-        do(simulation, CommandName.JOG, velocityMmS=[0, 0, -5], durationS=DT)
+        speed = 50 if simulation.state.clearance > 0.002 else 5
+        do(simulation, CommandName.JOG, velocityMmS=[0, 0, -speed], durationS=DT)
     return simulation
 
 

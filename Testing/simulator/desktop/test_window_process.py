@@ -153,7 +153,9 @@ def test_without_a_display_the_window_ends_with_one_sentence_which_its_log_keeps
     assert line["message"] == done.stderr.removeprefix("rastrainer: ").rstrip()
 
 
-@pytest.mark.parametrize("command", ["window", "simulator --desktop"])
+@pytest.mark.parametrize(
+    "command", [pytest.param("window", marks=pytest.mark.soak), "simulator --desktop"]
+)
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there always is a display")
 def test_without_a_display_nothing_runs_invisibly(tmp_path, command):
     hidden = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER")

@@ -71,8 +71,10 @@ def take_preset(pilot, preset):
 
 @pytest.mark.parametrize(
     ("preset", "title"),
-    [(RIGHT_ALONE, "Right hand alone"), (LEFT_ALONE, "Left hand alone")],
-    ids=lambda case: case,
+    [
+        pytest.param(RIGHT_ALONE, "Right hand alone", id="right"),
+        pytest.param(LEFT_ALONE, "Left hand alone", id="left", marks=pytest.mark.soak),
+    ],
 )
 def test_one_hand_goes_through_the_menus_and_touches_all_points(pilot, tmp_path, preset, title):
     take_preset(pilot, title)
