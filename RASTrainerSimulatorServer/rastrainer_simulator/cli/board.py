@@ -28,7 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     add_study(
         parser,
         "--study",
-        help_text=f"show the class, too; only read: {STUDY_HELP}",
+        help_text=f"also show the class of this study, which is only read: {STUDY_HELP}",
     )
     parser.add_argument(
         "--port",

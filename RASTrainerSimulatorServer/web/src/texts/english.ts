@@ -154,7 +154,7 @@ export const BOARD = {
   nextTask: "Next",
   seat: "Seat",
   goal: "{label} ({name}): {goal}",
-  "legend.reached": "reached, with the day",
+  "legend.reached": "reached, with the date",
   "legend.open": "open: trials in a row that pass, or percent of the way to competence",
   "legend.locked": "locked: others come first",
 };

@@ -155,7 +155,7 @@ export const BOARD: BoardTexts = french({
   nextTask: "Suivant",
   seat: "Poste",
   goal: "{label} ({name}) : {goal}",
-  "legend.reached": "atteint, avec le jour",
+  "legend.reached": "atteint, avec la date",
   "legend.open": "ouvert : essais réussis de suite, ou pourcentage du chemin vers la compétence",
   "legend.locked": "verrouillé : d’autres viennent d’abord",
 });

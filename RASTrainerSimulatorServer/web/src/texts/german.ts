@@ -154,7 +154,7 @@ export const BOARD: BoardTexts = {
   nextTask: "Als Nächstes",
   seat: "Platz",
   goal: "{label} ({name}): {goal}",
-  "legend.reached": "erreicht, mit dem Tag",
+  "legend.reached": "erreicht, mit Datum",
   "legend.open": "offen: bestandene Versuche in Folge oder Prozent des Weges zur Kompetenz",
   "legend.locked": "gesperrt: Andere kommen zuerst",
 };

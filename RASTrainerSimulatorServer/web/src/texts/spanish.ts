@@ -154,7 +154,7 @@ export const BOARD: BoardTexts = {
   nextTask: "Siguiente",
   seat: "Puesto",
   goal: "{label} ({name}): {goal}",
-  "legend.reached": "alcanzado, con el día",
+  "legend.reached": "alcanzado, con la fecha",
   "legend.open": "abierto: ensayos aprobados seguidos, o porcentaje del camino a la competencia",
   "legend.locked": "bloqueado: otros van primero",
 };
