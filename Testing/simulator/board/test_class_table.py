@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import sqlite3
+import time
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,7 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from Testing.domain.study.old_study import write_old_study
 from Testing.simulator.board.class_study import SHIPPED, play_class
+from Testing.simulator.net.igtl.servers import PATIENCE_S
 from Testing.simulator.net.views.served import request
 
 PAGE = Path(__file__).parents[3] / "RASTrainerSimulatorServer" / "web" / "src" / "board"
@@ -182,11 +184,13 @@ def test_more_trainees_than_a_table_shows_are_said(reader, monkeypatch):
 
 def until(board, is_wanted):
     """Return what the board says of the class once it is as wanted."""
+    give_up = time.monotonic() + PATIENCE_S
     while True:
         status, found = board.ask("/class?language=en")
         assert status == 200
         if is_wanted(found):
             return found
+        assert time.monotonic() < give_up, found
 
 
 def test_while_the_study_is_away_the_last_table_stays_and_the_page_is_told(
