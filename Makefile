@@ -1,7 +1,9 @@
 # Everything runs in .venv, which any target makes first. `make test KINEMATICS=numpy` runs the
-# whole suite on the kinematics that Windows uses.
+# whole suite on the kinematics that Windows uses; `make test SLOW=7` as on a slow machine, the files
+# in another order (7 is the seed; see Testing/slow_machine).
 PYTHON ?= python3
 KINEMATICS ?=
+SLOW ?=
 BIN := .venv/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 VENV_PYTHON := $(BIN)/python$(if $(filter Windows_NT,$(OS)),.exe)
 UNAME := $(shell uname 2>/dev/null)
@@ -20,6 +22,7 @@ simulator: .venv/installed page
 # OpenBLAS computes in one thread: several in each of many processes only wait for one another, which
 # took three times the processors' time.
 ONE_THREAD := OPENBLAS_NUM_THREADS=1
+AS_SLOW := $(if $(SLOW),RASTRAINER_SLOW=$(SLOW) PYTHONPATH=$(CURDIR)/Testing/slow_machine)
 
 # A test that hangs says where and ends the run, and so does a worker that crashes: xdist would wait
 # for the rest of its file for ever. Python keeps what it has compiled, whatever the environment says:
@@ -28,7 +31,7 @@ ENDING := --max-worker-restart=0 -o faulthandler_timeout=900 -o faulthandler_exi
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ENDING) -q
+	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(AS_SLOW) $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ENDING) -q
 
 # What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
 soak: .venv/soak-installed page

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import gc
 import logging
+import os
+import random
 import sys
 from importlib import import_module
 from pathlib import Path
@@ -99,6 +101,10 @@ def pytest_collection_modifyitems(items):
     others = [path for path in files if path not in set(waiting)]
     share = {path: number / len(others) for number, path in enumerate(others)}
     share |= {path: SPREAD * number / len(waiting) for number, path in enumerate(waiting)}
+    slow = os.environ.get("RASTRAINER_SLOW")
+    if slow:
+        draw = random.Random(slow)
+        share = {path: draw.random() for path in files}
     items.sort(key=lambda item: share[item.path])
 
 

@@ -12,7 +12,7 @@ from rastrainer.protocol import CommandName, DeviceName, Proximity
 
 SINK_MM = 1.0
 """How far below the skin the tip is sent: it stops on the skin."""
-TIMEOUT_S = 30.0
+TIMEOUT_S = 120.0
 
 
 def lowered(place: np.ndarray, center: np.ndarray) -> list[float]:

@@ -18,7 +18,7 @@ MAX_MORE_DESCRIPTORS = 4
 MAX_MORE_MISSED = 0.5
 """Of the ticks, beside a loop that does nothing: coarse, for a slow machine makes a loop that works
 late sooner than one that does not. The share itself is printed."""
-TIMEOUT_S = 30.0
+TIMEOUT_S = 120.0
 COUNTED = re.compile(r"(\d+) × 127\.0\.0\.1: ([^;\n]+)")
 
 

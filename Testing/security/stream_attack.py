@@ -10,7 +10,7 @@ from Testing.security.hostile_content import HOSTILE_JSON, mutations
 
 HOST = "127.0.0.1"
 SUBPROTOCOL = "rastrainer.views.1"
-TIMEOUT_S = 30.0
+TIMEOUT_S = 120.0
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 
 HELLO = {"type": "hello", "kind": "headset", "device": "", "refreshHz": 60}

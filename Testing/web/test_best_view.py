@@ -16,7 +16,7 @@ from Testing.web.place import WITHOUT_GRAPHICS, Place
 SIZE = {"width": 960, "height": 540}
 BEHIND = ("9", "10", "11", "12", "13", "14", "15")
 MIDDLE = 36
-PATIENCE_S = 30
+PATIENCE_S = 120
 
 
 @pytest.fixture(scope="module")

@@ -243,7 +243,8 @@ class TrialScreen(ArmScreen):
         elapsed = session.state.elapsed
         if session.training.task != TRIAL_RUN:
             return session.duration(elapsed)
-        left = math.ceil(max(0.0, self._practice_s - elapsed))
+        # What is rounded up must not be a whole second and a float's last digit.
+        left = math.ceil(max(0.0, round(self._practice_s - elapsed, 6)))
         return session.texts.say("status.left", time=session.duration(left))
 
     def _is_off_the_way(self) -> bool:

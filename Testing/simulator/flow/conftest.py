@@ -16,8 +16,8 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
-from rastrainer_simulator.state import Answer
-from rastrainer_simulator.viewpoint.touch_views import TouchViews
+from rastrainer_simulator.state import Answer, StartingPoint
+from rastrainer_simulator.viewpoint import touch_views
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Pad, Trainee
 from Testing.without_tutorial import WITHOUT_TUTORIAL, leave_tutorial_out
@@ -26,7 +26,7 @@ from Testing.without_tutorial import WITHOUT_TUTORIAL, leave_tutorial_out
 @pytest.fixture(scope="session", autouse=True)
 def _known_marks():
     """Look once for where the numbers of a task are on the skin, not for each presenter again."""
-    known, on_skin = {}, TouchViews._on_skin
+    known, on_skin = {}, touch_views.TouchViews._on_skin
 
     def kept(views, task):
         key = views._scenario.head_mesh, task.fiducials.tobytes()
@@ -34,7 +34,7 @@ def _known_marks():
             known[key] = on_skin(views, task)
         return known[key]
 
-    with mock.patch.object(TouchViews, "_on_skin", kept):
+    with mock.patch.object(touch_views.TouchViews, "_on_skin", kept):
         yield
 
 
@@ -88,11 +88,26 @@ def shared(setup):
     return Simulation(setup, 3)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _views_at_once():
+    """Have a trial's best views found before it is shown, however busy the machine is."""
+
+    def look(views, setup, task, head_to_world):
+        views._found = {}
+        with mock.patch.object(touch_views, "raise_thread_priority"):
+            views._look(setup, task, head_to_world, views._found)
+
+    with mock.patch.object(touch_views.BestViews, "look", look):
+        yield
+
+
 def put_back(simulation):
-    """End whatever trial another test has left."""
-    start = OperatorCommand("StartTask", {"task": "task-1", "trainee": "nobody", "mode": "desktop"})
-    commands = (OperatorCommand("Abort"), start, OperatorCommand("Abort"))
-    simulation.step(0.004, OperatorInput(commands=commands))
+    """End whatever trial another test has left, and have heads lie as if it had not been."""
+    start = {"task": "task-1", "trainee": "nobody", "mode": "desktop", "seed": 3}
+    commands = (OperatorCommand("Abort"), OperatorCommand("StartTask", start))
+    simulation.step(0.004, OperatorInput(commands=(*commands, OperatorCommand("Abort"))))
+    simulation._training._number = 0
+    simulation.restart_from(StartingPoint())
 
 
 @pytest.fixture

@@ -114,7 +114,8 @@ def test_the_ghost_goes_the_recorded_way_on_the_head_of_the_present_trial(place,
             atol=1e-9,
         )
         ways.add(tuple(shown[:3, 3]))
-    assert len(ways) >= 5
+    # The arm rests while the disk keeps a touch, as long as that may take.
+    assert len(ways) > 1
     assert place.submit("Pause").ok
     place.until_menu("trial")
     stopped = place.ghost[TOOL]

@@ -15,9 +15,10 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.teleoperation.axes import camera_axes
+from rastrainer_simulator.training.rules import TOO_DEEP_MM
 from rastrainer_simulator.vectors import dot, subtract
 
-PATIENCE_S = 40.0
+PATIENCE_S = 120.0
 RATE_HZ = 62.5
 """Of a trainee's control loop: it ticks as often as a view is drawn, and costs a quarter."""
 STEP_S = 1.0 / RATE_HZ
@@ -55,6 +56,7 @@ class LockStep:
     """Lets a control loop tick only when a test says so: nothing depends on how fast it is."""
 
     def __init__(self, loop):
+        self._loop = loop
         self._go, self._done = threading.Semaphore(0), threading.Semaphore(0)
         self._is_free = False
         loop.subscribe(self._tick)
@@ -71,7 +73,9 @@ class LockStep:
     def _tick(self, _result) -> None:
         if not self._is_free:
             self._done.release()
-            self._go.acquire()
+            # A test that has failed stops the loop without freeing it.
+            while not self._go.acquire(timeout=0.5) and not self._loop._is_stopping.is_set():
+                pass
 
 
 class Trainee:
@@ -206,6 +210,11 @@ class Trainee:
         self.steer_to(point - SINK_M * outward, 0.0, fine=True, ends_in_contact=True)
         self.hands.push(0.0, 0.0, 0.0, False)
         self.step(2)
+        while MM_PER_M * self.state.depth > TOO_DEEP_MM:
+            self.hands.push(0.0, 0.0, 0.7, True)
+            self.step()
+            self.hands.push(0.0, 0.0, 0.0, False)
+            self.step(2)
 
     @property
     def tip(self):
@@ -215,8 +224,6 @@ class Trainee:
         self, place: np.ndarray, near: float, fine: bool = False, ends_in_contact: bool = False
     ) -> None:
         """Push the sticks toward a place (3,) World, m, until the tip is near it, or in contact."""
-        view = self.presenter.pictures(self.state).main
-        axes = camera_axes(subtract(view.focal_point, view.position), view.view_up)
         give_up = self.state.sim_time + 6.0
         full = 0.01 if fine else 0.03
         while True:
@@ -228,6 +235,8 @@ class Trainee:
             wanted = away / max(full, float(np.linalg.norm(away)))
             # Sticks hardly answer near their middle.
             wanted *= max(1.0, 0.7 / np.linalg.norm(wanted))
+            view = self.presenter.pictures(self.state).main
+            axes = camera_axes(subtract(view.focal_point, view.position), view.view_up)
             right, forward, up = (dot(wanted, a) for a in (axes.right, axes.forward, axes.up))
             self.hands.push(right, forward, up, fine)
             self.step()

@@ -115,9 +115,10 @@ def test_a_trial_run_is_kept_too_and_marked(simulation, tmp_path):
 
 
 def test_one_that_was_only_looked_at_is_not_kept(simulation, tmp_path):
-    with Server(simulation, tmp_path) as server:
+    # So slow that its ten seconds are not over while the disk keeps the start.
+    with Server(simulation, tmp_path, speed=0.1) as server:
         server.start()
-        server.move(ticks=20)
+        server.move(ticks=5)
         assert server.do(CommandName.ABORT).ok
         assert wait_for_offer(server) == ()
     assert read_journal(server.path).integrity is Integrity.INTACT

@@ -17,7 +17,7 @@ from rastrainer_simulator.ops import stamps
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 
-TIMEOUT_S = 30.0
+TIMEOUT_S = 120.0
 
 
 @pytest.fixture

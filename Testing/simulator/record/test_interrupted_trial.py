@@ -21,19 +21,19 @@ from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 
-TIMEOUT_S = 30.0
+TIMEOUT_S = 120.0
 
 
 class Server:
     """A control loop over a folder, as a server runs it; `end` is its end in the middle."""
 
-    def __init__(self, simulation, folder):
+    def __init__(self, simulation, folder, speed=None):
         found = find_interrupted(folder)
         reading = None
         if found is not None:
             reading, interrupted = found
             simulation.resume_trial(interrupted)
-        self.loop = ControlLoop(simulation, folder, speed=None, interrupted=reading)
+        self.loop = ControlLoop(simulation, folder, speed=speed, interrupted=reading)
         self.folder = folder
         self.taken_up = self.loop.latest
 

@@ -17,7 +17,7 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.server import server
 from Testing.forked_child import in_child
 
-TIMEOUT_S = 30.0
+TIMEOUT_S = 120.0
 
 
 def take(folder):
