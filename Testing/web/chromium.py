@@ -22,7 +22,7 @@ ARGUMENTS = [
     *("--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"),
     "--disable-gpu-compositing",
 ]
-PATIENCE_MS = 60_000
+PATIENCE_MS = 120_000
 POLL_MS = 50
 SMALL = {"width": 400, "height": 220}
 EYES_M = (0.1, 1.62, 0.2)
