@@ -9,11 +9,23 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
-from rastrainer.procedure.plan import Procedure, read_procedure
 from rastrainer.progress import print_progress, print_warning
-from rastrainer.scenario.library import list_scenarios, user_library
+from rastrainer.scenario.library import list_scenarios
 from rastrainer.scenario.package import unpack
-from rastrainer.scenario.scenario import UNKNOWN_LICENSE
+from rastrainer_simulator.cli.scenario_options import (
+    add_head_options,
+    add_library,
+    add_options,
+    add_output,
+    add_plan,
+    add_procedure,
+    head_words,
+    options_of,
+    procedure_of,
+    targets_of,
+    title_of,
+    trajectory_of,
+)
 
 ALL_RIGHT = "Set-up, plan and fiducials can be used."
 
@@ -28,28 +40,28 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     parts = parser.add_subparsers(title="what to do", required=True, metavar="ACTION")
     build = parts.add_parser("build", help="make a scenario of a volume")
     build.add_argument("volume", type=Path, metavar="VOLUME", help="NRRD, NIfTI or DICOM folder")
-    _add_head_options(build)
+    add_head_options(build)
     build.add_argument("--no-skull", action="store_true", help="leave the skull out")
     build.add_argument("--no-volume", action="store_true", help="leave the images out")
-    _add_options(build)
+    add_options(build)
     build.set_defaults(run=_build)
     tasks = parts.add_parser("tasks", help="propose tasks on a head that was made elsewhere")
     tasks.add_argument("draft", type=Path, metavar="DRAFT", help="folder with the head's draft")
-    _add_options(tasks)
+    add_options(tasks)
     tasks.set_defaults(run=_tasks)
     preview = parts.add_parser("preview", help="draw the head in a volume, to adjust it")
     preview.add_argument("volume", type=Path, metavar="VOLUME")
     preview.add_argument("picture", type=Path, metavar="PNG")
-    _add_head_options(preview)
+    add_head_options(preview)
     preview.set_defaults(run=_preview)
     check = parts.add_parser("check", help="list the errors of a scenario; status 1 if any")
     check.add_argument("folder", type=Path, metavar="DIR")
     check.set_defaults(run=_check)
     plan = parts.add_parser("plan", help="copy a scenario with other targets or trajectory")
     plan.add_argument("folder", type=Path, metavar="DIR")
-    _add_output(plan)
-    _add_plan(plan)
-    _add_procedure(plan, "added, or in the place of the one of the same name")
+    add_output(plan)
+    add_plan(plan)
+    add_procedure(plan, "added, or in the place of the one of the same name")
     plan.set_defaults(run=_plan)
     plan.add_argument(
         "--landmarks",
@@ -68,7 +80,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "lines", help="measure the planned lines of procedures; status 1 if any is wrong"
     )
     lines.add_argument("folder", type=Path, metavar="DIR")
-    _add_procedure(lines, "measured in the place of the scenario's own")
+    add_procedure(lines, "measured in the place of the scenario's own")
     lines.add_argument("--json", type=Path, metavar="FILE", help="write everything there, too")
     lines.set_defaults(run=_lines)
     packing = parts.add_parser(
@@ -83,91 +95,22 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     packing.set_defaults(run=_pack)
     unpacking = parts.add_parser("unpack", help="unpack a scenario into your library")
     unpacking.add_argument("package", type=Path, metavar="ZIP")
-    _add_library(unpacking)
+    add_library(unpacking)
     unpacking.set_defaults(run=_unpack)
     listing = parts.add_parser("list", help="list the available scenarios")
-    _add_library(listing)
+    add_library(listing)
     listing.set_defaults(run=_list)
-
-
-def _add_head_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--threshold", type=float, help="value that separates air from skin (default: estimated)"
-    )
-    parser.add_argument(
-        "--cut", type=float, metavar="S", help="height of the flat base, mm superior"
-    )
-
-
-def _add_library(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--library", type=Path, default=user_library(), metavar="DIR", help="default: %(default)s"
-    )
-
-
-def _add_output(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="a new one")
-    parser.add_argument("--title", help="default: the name of the new folder")
-
-
-def _add_procedure(parser: argparse.ArgumentParser, what: str) -> None:
-    parser.add_argument(
-        "--procedure",
-        type=Path,
-        metavar="JSON",
-        help=f"a procedure as in scenario.json, its meshes in the folder no-go beside it: {what}",
-    )
-
-
-def _add_options(parser: argparse.ArgumentParser) -> None:
-    _add_output(parser)
-    _add_plan(parser)
-    parser.add_argument("--source", help="where the images come from (default: the volume's name)")
-    parser.add_argument("--license", default=UNKNOWN_LICENSE, help="under which it may be used")
-    parser.add_argument("--setup", type=Path, metavar="JSON", help="head, table and robot base")
-    parser.add_argument("--seed", type=int, default=1, help="of the proposed tasks (default: 1)")
-    parser.add_argument(
-        "--tasks",
-        nargs="+",
-        type=Path,
-        default=[],
-        metavar="MRK_JSON",
-        help="manually placed fiducials: the trial run, Task 1, Task 2 …",
-    )
-    parser.add_argument(
-        "--check",
-        action="store_true",
-        help="only check whether set-up, plan and placed fiducials can be used",
-    )
-
-
-def _add_plan(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--target",
-        nargs=4,
-        action="append",
-        default=[],
-        metavar=("NAME", "R", "A", "S"),
-        help="a planned target, RAS mm; may be repeated: the error is reported at the first",
-    )
-    parser.add_argument(
-        "--trajectory",
-        nargs=7,
-        metavar=("NAME", "ER", "EA", "ES", "TR", "TA", "TS"),
-        help="a planned trajectory from entry to target, RAS mm",
-    )
 
 
 def _build(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.head_process import head_process
     from rastrainer_simulator.authoring.make import check_options, make_scenario
-    from rastrainer_simulator.authoring.scenario_options import options_of
 
     _clear_away_when_terminated()
     options = options_of(arguments, arguments.volume.name)
     if arguments.output.exists() and any(arguments.output.iterdir()):
         raise InputError(f"{arguments.output} exists already; name a new folder.")
-    head_options = _head_options(arguments)
+    head_options = head_words(arguments)
     head_options += ["--no-skull"] if arguments.no_skull or arguments.check else []
     head_options += ["--no-volume"] if arguments.no_volume or arguments.check else []
     with head_process(arguments.volume, head_options) as process:
@@ -194,7 +137,6 @@ def _build(arguments: argparse.Namespace) -> int:
 def _tasks(arguments: argparse.Namespace) -> int:
     from rastrainer.scenario.writer import read_draft
     from rastrainer_simulator.authoring.make import check_options, make_scenario
-    from rastrainer_simulator.authoring.scenario_options import options_of
 
     _clear_away_when_terminated()
     options, draft = options_of(arguments, "unknown"), read_draft(arguments.draft)
@@ -211,7 +153,7 @@ def _preview(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
     from rastrainer_simulator.rendering.picture import draw_preview
 
-    options = [*_head_options(arguments), "--no-skull", "--no-volume"]
+    options = [*head_words(arguments), "--no-skull", "--no-volume"]
     with head_process(arguments.volume, options) as process:
         draft = process.head(print_progress, print_warning)
     scenario = without_tasks(draft, ScenarioOptions("Preview", "none", "none"))
@@ -231,21 +173,16 @@ def _check(arguments: argparse.Namespace) -> int:
 def _lines(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.procedure_plan import line_table, measure_procedures
 
-    measured = measure_procedures(arguments.folder, _procedure_of(arguments))
+    measured = measure_procedures(arguments.folder, procedure_of(arguments))
     print("\n".join(line_table(measured)))
     if arguments.json is not None:
         write_json(arguments.json, [each.to_json() for each in measured])
     return 1 if any(each.wrong for each in measured) else 0
 
 
-def _procedure_of(arguments: argparse.Namespace) -> Procedure | None:
-    return None if arguments.procedure is None else read_procedure(arguments.procedure)
-
-
 def _plan(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.landmark_plan import read_placed_landmarks
     from rastrainer_simulator.authoring.make import copy_with_plan
-    from rastrainer_simulator.authoring.scenario_options import targets_of, title_of, trajectory_of
 
     scenario = copy_with_plan(
         arguments.folder,
@@ -254,7 +191,7 @@ def _plan(arguments: argparse.Namespace) -> int:
         targets_of(arguments),
         trajectory_of(arguments),
         print_warning,
-        _procedure_of(arguments),
+        procedure_of(arguments),
         None if arguments.landmarks is None else read_placed_landmarks(arguments.landmarks),
     )
     print(f"{scenario.title} is in {arguments.output}.")
@@ -302,8 +239,3 @@ def _list(arguments: argparse.Namespace) -> int:
 def _clear_away_when_terminated() -> None:
     """Exit like an error on SIGTERM, by which Slicer cancels, so that everything is cleaned up."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-
-
-def _head_options(arguments: argparse.Namespace) -> list[str]:
-    named = (("--threshold", arguments.threshold), ("--cut", arguments.cut))
-    return [f"{name}={value!r}" for name, value in named if value is not None]

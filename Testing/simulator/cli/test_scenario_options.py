@@ -9,9 +9,9 @@ import pytest
 from rastrainer.head.pose import Perturbation
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.authoring.scenario_options import options_of
 from rastrainer_simulator.cli import scenario as scenario_command
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.cli.scenario_options import options_of
 
 
 def wished(*words):
