@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from rastrainer.transforms import MM_PER_M
+
 Vector = tuple[float, float, float]
 
 ZERO: Vector = (0.0, 0.0, 0.0)
@@ -14,6 +16,16 @@ def vector(values: Iterable[float]) -> Vector:
     """Return three numbers as a vector of plain floats."""
     x, y, z = map(float, values)
     return (x, y, z)
+
+
+def in_meters(position_mm: Iterable[float]) -> Vector:
+    """Return a position that is given in mm in m."""
+    return vector(float(value) / MM_PER_M for value in position_mm)
+
+
+def in_millimeters(position: Iterable[float]) -> Vector:
+    """Return a position that is given in m in mm."""
+    return vector(MM_PER_M * value for value in position)
 
 
 def add(a: Vector, b: Vector) -> Vector:

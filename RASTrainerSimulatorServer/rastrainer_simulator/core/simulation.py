@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -44,7 +44,7 @@ from rastrainer_simulator.training.replies import TrainingReply
 from rastrainer_simulator.training.rules import TouchMoment, refusal, touch_stage
 from rastrainer_simulator.training.training import Training
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, subtract, vector
+from rastrainer_simulator.vectors import Vector, in_meters, subtract
 
 if TYPE_CHECKING:
     from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
@@ -193,8 +193,8 @@ class Simulation:
 
     def _plan(self, arguments: Mapping[str, Any], sim_time: float) -> TrainingReply:
         """Show what was planned and answer whether the robot can carry it out."""
-        position, entry = _meters(arguments["positionMm"]), arguments["entryMm"]
-        entry = None if entry is None else _meters(entry)
+        position, entry = in_meters(arguments["positionMm"]), arguments["entryMm"]
+        entry = None if entry is None else in_meters(entry)
         answer = self._plan_reach.judge(position, entry)
         self._planned_target = PlanInWorld(arguments["name"], position, entry, answer.reachable)
         event = Event(EventKind.PLAN, sim_time, {**arguments, "reachable": answer.reachable})
@@ -344,10 +344,6 @@ def _collision(setup: SimulationSetup, head: HeadMesh) -> Collision:
         stand_radius=setup.scenario.furniture.stand_diameter / 2.0 / MM_PER_M
     )
     return Collision(setup.shape, head.vertices / MM_PER_M, head.triangles, surroundings)
-
-
-def _meters(position_mm: Sequence[float]) -> Vector:
-    return vector(value / MM_PER_M for value in position_mm)
 
 
 def _ended(outcome: MotionOutcome, sim_time: float) -> Event:

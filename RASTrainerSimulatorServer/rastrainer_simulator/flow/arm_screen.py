@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rastrainer.protocol import CommandName
@@ -20,7 +20,6 @@ from rastrainer_simulator.vectors import (
     distance,
     dot,
     length,
-    scale,
     subtract,
     unit,
 )
@@ -216,9 +215,3 @@ def direction_words(tip: Vector, target: Vector, axes: Axes) -> tuple[str, ...]:
     named = [each for each in parts if abs(each[0]) > ABOVE_LEAST * largest]
     named.sort(key=lambda each: -abs(each[0]))
     return tuple(words[part > 0.0] for part, words in named)
-
-
-def in_m(point_mm: Iterable[float]) -> Vector:
-    """Return a point that is given in mm in m."""
-    x, y, z = point_mm
-    return scale((float(x), float(y), float(z)), 1.0 / MM_PER_M)

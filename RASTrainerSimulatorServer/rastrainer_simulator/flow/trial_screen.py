@@ -16,7 +16,7 @@ from rastrainer.protocol import (
     StepKind,
 )
 from rastrainer.study.protocol.study_step import StudyStep
-from rastrainer_simulator.flow.arm_screen import BACK_WITHIN, FARTHEST, ArmScreen, PathArc, in_m
+from rastrainer_simulator.flow.arm_screen import BACK_WITHIN, FARTHEST, ArmScreen, PathArc
 from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
@@ -27,7 +27,7 @@ from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, TouchStage
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, distance
+from rastrainer_simulator.vectors import Vector, distance, in_meters
 from rastrainer_simulator.viewpoint.orbit import orbit_to
 
 TRIAL_RUN_S = 300.0
@@ -262,5 +262,5 @@ class TrialScreen(ArmScreen):
 
 def points_in_world(truth: Truth) -> tuple[dict[str, Vector], Vector]:
     """Return the fiducials of a trial and the head's center in World, m."""
-    points = {label: in_m(truth.in_world(point)) for label, point in truth.fiducials.items()}
-    return points, in_m(truth.in_world(truth.target))
+    points = {label: in_meters(truth.in_world(point)) for label, point in truth.fiducials.items()}
+    return points, in_meters(truth.in_world(truth.target))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rastrainer_simulator.flow.arm_screen import ArmScreen, in_m
+from rastrainer_simulator.flow.arm_screen import ArmScreen
 from rastrainer_simulator.flow.homing import Homing
 from rastrainer_simulator.flow.pages.errors import error_arrow, error_tone
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, stick_hints
@@ -18,7 +18,7 @@ from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, ScreenMessag
 from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, in_meters
 
 STEP_MM, STEP_DEG = 5, 5
 """How much of a step is done is shown in such steps: a running figure cannot be read."""
@@ -191,7 +191,7 @@ class TutorialScreen(ArmScreen):
 
     def _begin(self, tutorial: Tutorial) -> None:
         self._seen, self._homing = tutorial, Homing(self._session)
-        self._points = {label: in_m(point) for label, point in tutorial.fiducials.items()}
+        self._points = {label: in_meters(point) for label, point in tutorial.fiducials.items()}
         self._was_refused = self._has_paused = False
 
     def _observation(self) -> TutorialObservation:

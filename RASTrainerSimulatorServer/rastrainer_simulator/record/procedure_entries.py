@@ -25,7 +25,7 @@ from rastrainer_simulator.registration_state import (
     RegistrationAttempt,
 )
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import in_meters, in_millimeters, vector
 
 MEANINGFUL_MM = 0.05
 """The way back after which a feed counts as reversed."""
@@ -130,11 +130,13 @@ def procedure_record(
 
 def _attempt(attempt: RegistrationAttempt) -> RecordedAttempt:
     return RecordedAttempt(
-        touches=tuple(RegisteredTouch(t.label, _mm(t.position)) for t in attempt.touches),
+        touches=tuple(
+            RegisteredTouch(t.label, in_millimeters(t.position)) for t in attempt.touches
+        ),
         registration=None if attempt.registration is None else _used(attempt.registration),
         checkpoints=tuple(
             TouchedCheckpoint(
-                point.name, _mm(point.position), MM_PER_M * point.error, point.sim_time
+                point.name, in_millimeters(point.position), MM_PER_M * point.error, point.sim_time
             )
             for point in attempt.checkpoints
         ),
@@ -155,7 +157,7 @@ def _instrument(
         entry_ras=vector(planned.entry.tolist()),
         target_ras=vector(planned.target.tolist()),
         diameter_mm=planned.diameter_mm,
-        guide_tip_mm=_mm(done.guide.tip),
+        guide_tip_mm=in_millimeters(done.guide.tip),
         guide_direction=done.guide.direction,
         alignments=done.alignments,
         drill_depth_mm=MM_PER_M * done.drill_depth,
@@ -172,10 +174,6 @@ def _times(parts: Iterable[Mapping[Phase, float]]) -> dict[str, float]:
         for phase, seconds in part.items():
             total[phase.value] = total.get(phase.value, 0.0) + seconds
     return total
-
-
-def _mm(position: Vector) -> Vector:
-    return vector(MM_PER_M * value for value in position)
 
 
 def procedure_after(
@@ -195,7 +193,7 @@ def procedure_after(
     if entry["kind"] == "checkpoint":
         touched = CheckedPoint(
             entry["checkpoint"],
-            vector(value / MM_PER_M for value in entry["positionMm"]),
+            in_meters(entry["positionMm"]),
             entry["errorMm"] / MM_PER_M,
             entry["simTime"],
             time_s,
@@ -226,7 +224,7 @@ def _registered(
 
 
 def _locked(before: ProcedureState, entry: Mapping[str, Any]) -> ProcedureState:
-    tip = vector(value / MM_PER_M for value in entry["positionMm"])
+    tip = in_meters(entry["positionMm"])
     here = before.trajectories[before.trajectory]
     guide = GuideAxis(tip, vector(entry["direction"]))
     return before.with_present(replace(here, alignments=here.alignments + 1, guide=guide))

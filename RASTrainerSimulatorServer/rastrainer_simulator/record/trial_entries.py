@@ -38,7 +38,7 @@ from rastrainer_simulator.state import (
     StepResult,
     TrainingState,
 )
-from rastrainer_simulator.vectors import vector
+from rastrainer_simulator.vectors import in_millimeters
 
 if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
@@ -287,7 +287,7 @@ class TrialEntries:
         return tuple(
             TouchedPoint(
                 label=touch.label,
-                position_mm=vector(MM_PER_M * value for value in touch.position),
+                position_mm=in_millimeters(touch.position),
                 sim_time_s=touch.sim_time,
                 utc=self._utc[touch.sim_time],
             )
@@ -330,9 +330,7 @@ class TrialEntries:
 
 def _trace(training: TrainingState) -> tuple[TracePoint, ...]:
     points = () if training.trace is None else training.trace.points
-    return tuple(
-        (*vector(MM_PER_M * value for value in point.position), point.sim_time) for point in points
-    )
+    return tuple((*in_millimeters(point.position), point.sim_time) for point in points)
 
 
 def _input_entry(times: dict[str, Any], operator_input: OperatorInput) -> dict[str, Any]:

@@ -33,7 +33,7 @@ from rastrainer_simulator.state import (
     TrainingState,
 )
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import in_meters
 
 AFTER_S = 0.25
 """How long after the worst touch its replay ends."""
@@ -236,8 +236,8 @@ def _after(before: _Situation, event: RecordedEvent, labels: tuple[str, ...]) ->
     if kind == "camera":
         return replace(before, camera=entry["camera"])
     if kind == "plan":
-        position, entry_point = _metres(entry["positionMm"]), entry["entryMm"]
-        entry_point = None if entry_point is None else _metres(entry_point)
+        position, entry_point = in_meters(entry["positionMm"]), entry["entryMm"]
+        entry_point = None if entry_point is None else in_meters(entry_point)
         plan = PlanInWorld(entry["name"], position, entry_point, entry["reachable"])
         return replace(before, planned_target=plan)
     return replace(before, training=_training_after(before.training, event, labels))
@@ -255,7 +255,7 @@ def _training_after(
     if before.trace is not None and entry["kind"] in ("trace", "stroke"):
         return replace(before, trace=_trace_after(before.trace, event))
     if entry["kind"] == "touch":
-        place = _metres(entry["positionMm"])
+        place = in_meters(entry["positionMm"])
         touch = TouchState(entry["label"], place, entry["simTime"], event.time_s)
         touches = (*touches, touch)
         following = labels[len(touches)] if len(touches) < len(labels) else None
@@ -283,7 +283,7 @@ def _training_after(
 def _trace_after(before: TraceState, event: RecordedEvent) -> TraceState:
     entry = event.entry
     if entry["kind"] == "trace":
-        place = _metres(entry["positionMm"])
+        place = in_meters(entry["positionMm"])
         return before.with_point(TracedPoint(place, entry["simTime"], event.time_s))
     if entry["on"]:
         return before.begun()
@@ -318,8 +318,3 @@ def _worst(track: ReplayTrack, setup: SimulationSetup) -> tuple[str, float, floa
     place = labels.index(worst.label)
     begin = ends[labels[place - 1]] if place else 0.0
     return worst.label, begin, ends[worst.label] + AFTER_S
-
-
-def _metres(position_mm: tuple[float, float, float]) -> Vector:
-    x, y, z = position_mm
-    return x / MM_PER_M, y / MM_PER_M, z / MM_PER_M

@@ -15,7 +15,7 @@ from rastrainer_simulator.registration_state import FinalRegistration
 from rastrainer_simulator.state import EventKind, TrainingState, TrialResult
 from rastrainer_simulator.training.replies import TrainingReply, TrialStep, summary
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import vector
+from rastrainer_simulator.vectors import in_millimeters
 
 
 def given(state: TrainingState) -> dict[str, Any]:
@@ -40,10 +40,7 @@ def _touched(state: TrainingState) -> list[dict[str, Any]]:
 
 def revealed(truth: Truth, state: TrainingState, matrix: tuple[float, ...]) -> dict[str, Any]:
     """Return the truth that a registration reveals; `matrix` is WorldToHead, 16 floats, mm."""
-    touches = (
-        (touch.label, vector(MM_PER_M * value for value in touch.position))
-        for touch in state.touches
-    )
+    touches = ((touch.label, in_millimeters(touch.position)) for touch in state.touches)
     return truth.revealed(np.array(matrix, dtype=float).reshape(4, 4), touches)
 
 

@@ -12,7 +12,7 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.skin_shift import UNMOVED, SkinShift
 from rastrainer.registration.target_error import true_errors
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import Vector, in_meters
 
 if TYPE_CHECKING:
     from rastrainer.scenario.scenario import Scenario
@@ -151,4 +151,4 @@ class PlacedHead:
         if self._mesh is None:
             return tip
         measured = self.truth.measured(MM_PER_M * np.array(tip), self._mesh)
-        return vector((measured / MM_PER_M).tolist())
+        return in_meters(measured)

@@ -5,12 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from rastrainer.scenario.scenario import Camera
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.teleoperation.axes import camera_axes
-from rastrainer_simulator.vectors import ZERO, Vector, add, length, scale, subtract, vector
+from rastrainer_simulator.vectors import (
+    ZERO,
+    Vector,
+    add,
+    in_meters,
+    length,
+    scale,
+    subtract,
+    vector,
+)
 
 LOWEST_DEG, HIGHEST_DEG = -15.0, 85.0
 """How far below and above its focal point a turned camera may stand, seen from there."""
@@ -81,7 +87,7 @@ class _Place:
 def camera_pose(camera: Camera, orbit: Orbit = FRONT) -> CameraPose:
     """Return where a scenario's camera stands once it is turned."""
     if orbit == FRONT:
-        position, focal_point = _metres(camera.position), _metres(camera.focal_point)
+        position, focal_point = in_meters(camera.position), in_meters(camera.focal_point)
         up = vector(camera.view_up.tolist())
         return CameraPose(position, focal_point, up, camera.view_angle_deg)
     place = _place(camera)
@@ -132,13 +138,9 @@ def heading_deg(camera: Camera) -> float:
 
 
 def _place(camera: Camera) -> _Place:
-    position, focal_point = _metres(camera.position), _metres(camera.focal_point)
+    position, focal_point = in_meters(camera.position), in_meters(camera.focal_point)
     line = subtract(position, focal_point)
     away = length(line)
     forward = camera_axes(scale(line, -1.0), vector(camera.view_up.tolist())).forward
     azimuth = math.atan2(-forward[1], -forward[0])
     return _Place(focal_point, azimuth, math.asin(line[2] / away), away)
-
-
-def _metres(position: np.ndarray) -> Vector:
-    return vector((position / MM_PER_M).tolist())

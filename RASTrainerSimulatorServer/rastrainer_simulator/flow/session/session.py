@@ -16,7 +16,6 @@ from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode, Regis
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
-from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.curricula import AssignmentWords, newly_reached
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
@@ -55,7 +54,7 @@ from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import Answer, SimulationState, TrainingState
-from rastrainer_simulator.vectors import Vector, vector
+from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.orbit import Orbit
 
 REACHED_S = 20.0
@@ -273,7 +272,7 @@ class TrainingSession:
 
     def truly_in_world(self, point: np.ndarray) -> Vector:
         """Return where a point of the MRI (RAS mm) truly is, World, m: only after the score."""
-        return vector((self._control_loop.truth.in_world(point) / MM_PER_M).tolist())
+        return in_meters(self._control_loop.truth.in_world(point))
 
     @property
     def planned_bone(self) -> tuple[BoneAhead | None, ...]:

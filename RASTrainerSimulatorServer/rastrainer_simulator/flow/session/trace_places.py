@@ -20,7 +20,7 @@ from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
 from rastrainer_simulator.registration_state import TraceState
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, add, scale, subtract, unit, vector
+from rastrainer_simulator.vectors import Vector, add, in_meters, scale, subtract, unit, vector
 
 LOOK_S = 0.25
 """Between two searches; one takes about 10 ms."""
@@ -90,7 +90,7 @@ class TracePlaces:
         if self._trial is None or self._place is None:
             return None
         place = self._trial[2].in_world(np.array(self._place.position))
-        return vector((place / MM_PER_M).tolist())
+        return in_meters(place)
 
     def eye(self, camera: Camera) -> Vector | None:
         """Return from where the next place is seen well, World, m; None where there is none.

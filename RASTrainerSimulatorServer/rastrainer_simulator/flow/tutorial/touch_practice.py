@@ -18,7 +18,7 @@ from rastrainer_simulator.state import SimulationState, TouchStage, TrainingStat
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
 from rastrainer_simulator.training.true_error import Truth
-from rastrainer_simulator.vectors import Vector, distance, vector
+from rastrainer_simulator.vectors import Vector, distance, in_millimeters, vector
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
 
@@ -92,7 +92,7 @@ class TouchPractice:
 
     def errors_mm(self) -> tuple[float, ...]:
         """Return how far each kept touch is from its point, in mm."""
-        touches = ((t.label, vector(MM_PER_M * v for v in t.position)) for t in self.state.touches)
+        touches = ((t.label, in_millimeters(t.position)) for t in self.state.touches)
         return tuple(self.truth.touch_errors_mm(touches).values())
 
     def shown(self, state: SimulationState) -> SimulationState:
