@@ -5,40 +5,32 @@ from __future__ import annotations
 import hashlib
 import struct
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, RegistrationMethod
 from rastrainer.scenario.method_task import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
-from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.procedure_state import Tool
 from rastrainer_simulator.record.beside_the_trial import (
     DisplayReport,
-    DisplayUse,
     GhostReport,
     GuidanceReport,
     NotedReport,
 )
-from rastrainer_simulator.record.procedure_entries import FeedRecording, procedure_record
-from rastrainer_simulator.record.recorded_setup import versions
-from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
+from rastrainer_simulator.record.trial_records import TrialRecords, UnmeasuredRecord
 from rastrainer_simulator.state import (
     Event,
     EventKind,
     SimulationState,
     StartingPoint,
     StepResult,
-    TrainingState,
 )
-from rastrainer_simulator.vectors import in_millimeters
 
 if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
@@ -64,24 +56,23 @@ _Q = struct.Struct("<7d")
 
 
 class TrialEntries:
-    """The entries of one trial; `pending` are those that are not submitted to the writer yet."""
+    """The entries of one trial.
+
+    Attributes:
+        trial_id: its UUID.
+        records: what its record is made of.
+        pending: entries that are not submitted to the writer yet.
+    """
 
     def __init__(self, simulation: Simulation, trial_id: str, started_utc: str, dt: float) -> None:
         """Prepare the entries of the simulation's trial; use `started` or `resumed` instead."""
         self.trial_id = trial_id
-        self.started_utc = started_utc
         self._seed = simulation.trial_seed
-        # Its seed is revealed with the truth.
-        self._skin = replace(simulation.truth.skin, seed=0)
-        self._setup = simulation.setup
-        self.versions = versions() | {"kinematics": simulation.kinematics_name}
+        self.records = TrialRecords(simulation, started_utc)
         self._every = max(1, round(1.0 / (SAMPLE_HZ * dt)))
         self._sticks: tuple[Any, ...] | None = None
         self._trajectory = hashlib.sha256()
-        self._utc: dict[float, str] = {}
         self._recording = Recording()
-        self._feeds = FeedRecording()
-        self._display = DisplayUse()
         self.pending: list[dict[str, Any]] = []
 
     @classmethod
@@ -121,7 +112,7 @@ class TrialEntries:
                     "" if training.procedure is None else training.procedure.name,
                     training.method,
                 ),
-                "versions": entries.versions,
+                "versions": entries.records.versions,
             }
         )
         return entries
@@ -145,15 +136,15 @@ class TrialEntries:
         for entry in earlier:
             entries._collect(entry)
             if entry["kind"] in _TOUCHED:
-                entries._utc[entry["simTime"] - dt] = entry["utc"]
+                entries.records.date(entry["simTime"] - dt, entry["utc"])
             elif entry["kind"] == EventKind.TRACE.value:
-                entries._utc[entry["simTime"]] = entry["utc"]
+                entries.records.date(entry["simTime"], entry["utc"])
             elif entry["kind"] == "display":
-                entries._display.add(DisplayReport.of(entry))
+                entries.records.display.add(DisplayReport.of(entry))
             elif entry["kind"] == "guidance":
-                entries._display.guidance = entry["guidance"]
+                entries.records.display.guidance = entry["guidance"]
             elif entry["kind"] == "ghost":
-                entries._display.ghost = entry["ghost"]
+                entries.records.display.ghost = entry["ghost"]
         entries._append(
             {
                 "kind": "continued",
@@ -163,7 +154,7 @@ class TrialEntries:
                 "phase": training.phase.value,
                 "kept": len(training.touches),
                 "nextPoint": training.next_point,
-                "versions": entries.versions,
+                "versions": entries.records.versions,
             }
         )
         return entries
@@ -191,7 +182,7 @@ class TrialEntries:
         registered = None
         for event in result.events:
             if event.kind.value in _DATED:
-                self._utc[event.sim_time] = times["utc"]
+                self.records.date(event.sim_time, times["utc"])
             entry = self._event_entry(times, event)
             if entry["kind"] == "registered":
                 entry["truth"] = simulation.truth.to_json()
@@ -202,16 +193,17 @@ class TrialEntries:
         if registered is None:
             return None
         # Of the whole tick: the tip may have touched the head after the command in it.
-        return UnmeasuredRecord(self._record(state), self._recording.trajectory(), registered)
+        record = self.records.registered(state)
+        return UnmeasuredRecord(record, self._recording.trajectory(), registered)
 
     def add_display(self, report: NotedReport, state: SimulationState) -> None:
         """Take note of what is seen, and how: it is recorded, but nothing follows from it."""
         if isinstance(report, DisplayReport):
-            self._display.add(report)
+            self.records.display.add(report)
         elif isinstance(report, GuidanceReport):
-            self._display.guidance = report.guidance
+            self.records.display.guidance = report.guidance
         elif isinstance(report, GhostReport):
-            self._display.ghost = report.ghost
+            self.records.display.ghost = report.ghost
         self._append(report.entry() | stamp(state.tick, state.sim_time))
 
     def _append(self, entry: dict[str, Any]) -> None:
@@ -220,7 +212,7 @@ class TrialEntries:
 
     def _collect(self, entry: Mapping[str, Any]) -> None:
         self._recording.add(entry)
-        self._feeds.add(entry)
+        self.records.feeds.add(entry)
 
     def motion(self) -> dict[str, float]:
         """Return the motion metrics of the trial so far."""
@@ -257,80 +249,6 @@ class TrialEntries:
         if event.kind in MUST_LAST:
             entry["trajectorySha256"] = self._trajectory.hexdigest()
         return entry
-
-    def aborted(self, before: SimulationState, reason: str, utc: str) -> AbortedTrial:
-        """Return the record of a trial that was aborted in a state, for a reason, at a time."""
-        training = before.training
-        stage = training.phase if training.procedure is None else training.procedure.stage
-        return AbortedTrial(
-            trial_id=training.trial_id,
-            trainee=training.trainee,
-            task=training.task,
-            mode=training.mode,
-            scenario=self._setup.scenario.name,
-            started_utc=self.started_utc,
-            aborted_utc=utc,
-            elapsed_s=before.elapsed,
-            # A procedure that is paused is aborted in what it was paused in.
-            phase=(stage if stage in PROCEDURE_PHASES else training.phase).value,
-            reason=reason,
-            points=self._points(training),
-            rejected_touches=training.rejected,
-            undone_touches=training.undone,
-            versions=self.versions,
-            touch_rule=self._setup.settings.training.touch_rule.value,
-            method=training.method,
-            traced=0 if training.trace is None else len(training.trace.points),
-        )
-
-    def _points(self, training: TrainingState) -> tuple[TouchedPoint, ...]:
-        return tuple(
-            TouchedPoint(
-                label=touch.label,
-                position_mm=in_millimeters(touch.position),
-                sim_time_s=touch.sim_time,
-                utc=self._utc[touch.sim_time],
-            )
-            for touch in training.touches
-        )
-
-    def _record(self, state: SimulationState) -> TrialRecord:
-        training = state.training
-        points, trace = self._points(training), _trace(training)
-        completed = trace[-1][3] if trace else training.touches[-1].sim_time
-        return TrialRecord(
-            trial_id=training.trial_id,
-            trainee=training.trainee,
-            task=training.task,
-            mode=training.mode,
-            scenario=self._setup.scenario.name,
-            started_utc=self.started_utc,
-            completed_utc=self._utc[completed],
-            completion_time_s=training.completed_s,
-            points=points,
-            rejected_touches=training.rejected,
-            undone_touches=training.undone,
-            versions=self.versions,
-            touch_rule=self._setup.settings.training.touch_rule.value,
-            display=self._display.summary(),
-            procedure=self._procedure_record(training),
-            method=training.method,
-            trace=trace,
-            skin=self._skin,
-        )
-
-    def _procedure_record(self, training: TrainingState) -> ProcedureRecord | None:
-        done = training.procedure
-        if done is None:
-            return None
-        plan = self._setup.scenario.procedure(done.name)
-        sha256 = self._setup.procedure_sha256[done.name]
-        return procedure_record(done, plan, sha256, self._feeds)
-
-
-def _trace(training: TrainingState) -> tuple[TracePoint, ...]:
-    points = () if training.trace is None else training.trace.points
-    return tuple((*in_millimeters(point.position), point.sim_time) for point in points)
 
 
 def _input_entry(times: dict[str, Any], operator_input: OperatorInput) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from rastrainer_simulator.record.beside_the_trial import NotedReport
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
-from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
+from rastrainer_simulator.record.trial_records import UnmeasuredRecord
 from rastrainer_simulator.state import SimulationState, StepResult
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 
@@ -131,7 +131,7 @@ class TrialRecorder:
             self._interrupted = None
         self._number += 1
         entries = TrialEntries.started(simulation, before, result, self._dt, self._number)
-        name = f"{file_stamp(entries.started_utc)}_{entries.trial_id}{SUFFIX}"
+        name = f"{file_stamp(entries.records.started_utc)}_{entries.trial_id}{SUFFIX}"
         self._open = _OpenTrial(entries, Journal(self._folder / name))
         self._registering = None
         self._is_stuck = False
@@ -198,7 +198,9 @@ class TrialRecorder:
         times = stamp(result.state.tick, result.state.sim_time)
         given = [c for c in operator_input.commands if c.name == CommandName.ABORT]
         reason = given[-1].arguments.get("reason") if given else None
-        record = trial.entries.aborted(before, reason or AbortReason.CLIENT.value, times["utc"])
+        record = trial.entries.records.aborted(
+            before, reason or AbortReason.CLIENT.value, times["utc"]
+        )
         if not record.is_kept:
             return self._submit_and_close(trial)
         trial.entries.pending.append(attempt_entry(record, times))

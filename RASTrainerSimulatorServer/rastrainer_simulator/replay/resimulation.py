@@ -169,7 +169,7 @@ class _Player:
         self._play(part)
         if self._entries is None:
             return []
-        self.versions = self._entries.versions
+        self.versions = self._entries.records.versions
         # A registered trial ends with its record: motion until the score came is not part of it.
         if self._simulation.state.training.phase not in FINISHED_PHASES:
             self.motion = self._entries.motion()

@@ -25,7 +25,7 @@ from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.stamps import file_stamp, iso
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.record.unmeasured_record import UnmeasuredRecord
+from rastrainer_simulator.record.trial_records import UnmeasuredRecord
 from rastrainer_simulator.state import SimulationState, StartingPoint, StepResult
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.virtual.population import TrialJob

@@ -12,7 +12,7 @@ from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record import unmeasured_record
+from rastrainer_simulator.record import trial_records
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.virtual.scripted_trainee import Skill
@@ -47,7 +47,7 @@ def test_the_tick_of_register_leaves_the_metrics_to_the_journals_writer(
         measured_in.append(threading.current_thread())
         return trial_motion(trajectory)
 
-    monkeypatch.setattr(unmeasured_record, "trial_motion", measure)
+    monkeypatch.setattr(trial_records, "trial_motion", measure)
     play(setup, tmp_path)
     assert len(measured_in) == 1
     assert measured_in[0] is not threading.current_thread()
