@@ -111,7 +111,7 @@ def led(tmp_path_factory):
     folder = tmp_path_factory.mktemp("led")
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     seen: dict = {"scenario": scenario, "lost": [], "found": []}
-    with SimulatorProcess(folder / "records", "--speed", SPEED) as simulator:
+    with SimulatorProcess(folder / "records", "--no-views", "--speed", SPEED) as simulator:
         leader = Leader(folder, simulator.port)
         leader.until(lambda: leader.session.link.isOpen)
         with Player(simulator.port) as player:

@@ -19,7 +19,7 @@ STROKE_S = 2.0
 @pytest.fixture(scope="module")
 def simulator(tmp_path_factory):
     records = tmp_path_factory.mktemp("lab") / "records"
-    with SimulatorProcess(records) as simulator:
+    with SimulatorProcess(records, "--no-views") as simulator:
         yield simulator
 
 

@@ -25,7 +25,7 @@ def test_simulator_ends_cleanly_on_ctrl_c_while_a_client_is_connected(tmp_path):
 def test_simulator_connects_to_a_listening_slicer_and_takes_its_commands(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as slicer:
         address = "{}:{}".format(*slicer.getsockname())
-        with SimulatorProcess(tmp_path, "--connect", address) as simulator:
+        with SimulatorProcess(tmp_path, "--no-views", "--connect", address) as simulator:
             assert simulator.ready == f"RASTrainer simulator ready; it connects to {address}"
             slicer.settimeout(60)
             connection, _address = slicer.accept()
@@ -61,7 +61,7 @@ def test_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])
         places = ["--records", str(tmp_path), "--config", str(tmp_path)]
-        command = [*COMMAND, *places, "--port", port]
+        command = [*COMMAND, *places, "--no-views", "--port", port]
         done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(f"rastrainer: Cannot listen on 127.0.0.1:{port}")

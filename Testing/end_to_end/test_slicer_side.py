@@ -105,7 +105,7 @@ def slicer_side(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lab")
     side = SlicerSide(folder / "study.db")
     port = ("--port", str(free_port()))
-    with SimulatorProcess(folder / "records", "--speed", "20", *port) as simulator:
+    with SimulatorProcess(folder / "records", "--no-views", "--speed", "20", *port) as simulator:
         side.link.connectTo(port=simulator.port)
         side.run_until(side.is_in(LinkState.CONNECTED))
         side.run_until(start_playing(simulator.port))
@@ -114,7 +114,7 @@ def slicer_side(tmp_path_factory):
     side.run_until(side.is_in(LinkState.ABSENT))
     side.live_counts, side.live_points = list(side.counts), side.points
     side.open_logic()
-    with SimulatorProcess(folder / "records", *port):
+    with SimulatorProcess(folder / "records", "--no-views", *port):
         side.run_until(lambda: side.scored)
         side.run_until(side.is_in(LinkState.CONNECTED))
     side.link.disconnect()

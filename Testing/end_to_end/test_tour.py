@@ -16,10 +16,8 @@ from Testing.slicer.test_module_widget import NOT_IN_THE_TOUR
 TOUR = Path(__file__).parents[1] / "slicer" / "real" / "tour.py"
 
 
-@pytest.fixture
-def program(tmp_path):
-    """A simulator that is installed elsewhere, quick and without a window."""
-    return write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", FAST)
+QUIET = ("--no-views", "--no-gamepad")
+"""The options of a simulator in which nobody plays."""
 
 
 WITHOUT_A_TRIAL = (
@@ -32,22 +30,22 @@ WITHOUT_A_TRIAL = (
 )
 
 
-def test_the_steps_of_the_tour_that_need_no_trial_go_well_in_the_host(host, program, tmp_path):
-    assert [step["name"] for step in tour(host, program, tmp_path, "--only", *WITHOUT_A_TRIAL)] == [
-        *WITHOUT_A_TRIAL
-    ]
+def test_the_steps_of_the_tour_that_need_no_trial_go_well_in_the_host(host, tmp_path):
+    steps = tour(host, tmp_path, QUIET, "--only", *WITHOUT_A_TRIAL)
+    assert [step["name"] for step in steps] == [*WITHOUT_A_TRIAL]
 
 
 @pytest.mark.soak
-def test_the_tour_of_a_release_goes_well_in_the_host(host, program, tmp_path):
-    steps = tour(host, program, tmp_path, "--patience", "1200")
+def test_the_tour_of_a_release_goes_well_in_the_host(host, tmp_path):
+    steps = tour(host, tmp_path, FAST, "--patience", "1200")
     assert len(steps) > 32
     told = json.loads((tmp_path / "tour" / "tour.json").read_text())
     assert told["unused"] == sorted(NOT_IN_THE_TOUR)
 
 
-def tour(host, program, tmp_path, *words):
-    """Take the tour, and return its steps, which have gone well."""
+def tour(host, tmp_path, options, *words):
+    """Take the tour with a simulator that is installed elsewhere; return its steps, all good."""
+    program = write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", options)
     slicer.app.settings().setValue(PROGRAM.key, str(program))
     # The usual port may be another test's, which runs beside this one.
     slicer.app.settings().setValue(PORT.key, free_port())

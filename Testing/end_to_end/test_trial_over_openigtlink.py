@@ -99,7 +99,10 @@ def scenario() -> Scenario:
 def trial(scenario, tmp_path_factory) -> dict:
     """What clients saw of a trial whose simulator crashes twice before it is put away."""
     records = tmp_path_factory.mktemp("records")
-    with SimulatorProcess(records, "--speed", SPEED) as simulator, Player(simulator.port) as player:
+    with (
+        SimulatorProcess(records, "--no-views", "--speed", SPEED) as simulator,
+        Player(simulator.port) as player,
+    ):
         seen = {"tasks": player.do("ListTasks")["tasks"]}
         seen |= play(player, scenario)
         seen["offers"] = [player.next_offer(), player.next_offer()]
@@ -110,11 +113,11 @@ def trial(scenario, tmp_path_factory) -> dict:
         player.do("TrialScored", trialId=trial_id, score=80)
         seen["phase"] = phase_of(player, "scored")
         simulator.kill()
-    with SimulatorProcess(records) as simulator, Player(simulator.port) as player:
+    with SimulatorProcess(records, "--no-views") as simulator, Player(simulator.port) as player:
         seen["offer after a crash"] = player.next_offer()
         player.do("AcknowledgeTrial", trialId=trial_id)
         simulator.kill()
-    with SimulatorProcess(records) as simulator, Player(simulator.port) as player:
+    with SimulatorProcess(records, "--no-views") as simulator, Player(simulator.port) as player:
         seen["after"] = player.do("GetTrial", trialId=trial_id)
         player.wait_for_heartbeats(3)
         seen["offers at last"] = player.offers

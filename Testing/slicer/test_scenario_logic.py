@@ -50,8 +50,8 @@ def test_showing_a_scenario_places_the_robots_world_as_planned(scene, logic):
 def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
     logic.show("ball", "task-1")
     former = findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
-    grid = np.indices((60, 60, 60)) - 30.0
-    ball = (np.linalg.norm(grid, axis=0) < 24).astype(np.float32) * 100.0
+    grid = np.indices((50, 50, 50)) - 25.0
+    ball = (np.linalg.norm(grid, axis=0) < 20).astype(np.float32) * 100.0
     steps = []
     mri = volume(scene, ball, 3.0)
     model, warnings = logic.useHead(mri, lambda step, _share: steps.append(step))
@@ -59,7 +59,7 @@ def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
     assert model.GetName() == "Head of MRI"
     assert not former.GetDisplayVisibility()
     bounds = np.array(model.GetPolyData().GetBounds())
-    np.testing.assert_allclose(bounds[1] - bounds[0], 2 * 24 * 3.0, atol=4.0)
+    np.testing.assert_allclose(bounds[1] - bounds[0], 2 * 20 * 3.0, atol=4.0)
     assert "Filling cavities" in steps
     assert "The slices are 3.0 mm apart" in warnings[0]
 

@@ -323,6 +323,14 @@ def test_a_trial_of_touches_has_nothing_of_a_procedure_in_its_journal(simulation
     assert "procedure" not in record.to_json()
 
 
+@pytest.fixture(scope="module")
+def drilled(simulation, tmp_path_factory):
+    """The entries of a procedure that ended while it was drilled."""
+    with Theatre(simulation, tmp_path_factory.mktemp("drilled")) as server:
+        server.to(Phase.DRILLING)
+    return read_journal(server.path).entries
+
+
 @pytest.mark.parametrize(
     ("kind", "change"),
     [
@@ -335,10 +343,8 @@ def test_a_trial_of_touches_has_nothing_of_a_procedure_in_its_journal(simulation
     ],
     ids=["no object", "no phase", "no distance", "no direction", "no depth", "no number"],
 )
-def test_a_forged_procedure_is_refused_with_a_sentence(simulation, tmp_path, kind, change):
-    with Theatre(simulation, tmp_path) as server:
-        server.to(Phase.DRILLING)
-    entries = [dict(entry) for entry in read_journal(server.path).entries]
+def test_a_forged_procedure_is_refused_with_a_sentence(drilled, kind, change):
+    entries = [dict(entry) for entry in drilled]
     for entry in entries:
         if entry["kind"] == kind:
             entry.update(change)
