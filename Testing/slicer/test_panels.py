@@ -37,27 +37,12 @@ if "--lan" in sys.argv:
 threading.Event().wait()
 """
 """A simulator that only says how a headset is paired."""
-SECTIONS = (
-    "setup",
-    "simulator",
-    "trainees",
-    "scenario",
-    "training",
-    "registration",
-    "plan",
-    "score",
-)
 
 
 @pytest.fixture
 def panels(host):
-    """The module with every section open."""
+    """The module; a section is opened where something in it is used."""
     host.open()
-    for section in SECTIONS:
-        host.find(f"{section}CollapsibleButton").collapsed = False
-    for group in ("setupGroupBox", "otherHeadGroupBox", "motionGroupBox"):
-        host.find(group).collapsed = False
-    host.process_events()
     return host
 
 
