@@ -2,6 +2,7 @@
 
 import gc
 import threading
+from collections import Counter
 
 import pytest
 from PySide6 import QtWidgets
@@ -15,13 +16,21 @@ KEPT = (
 )
 
 
+def objects(host):
+    """Count our objects."""
+    host.process_events()
+    gc.collect()
+    named = Counter()
+    # A module that is reloaded makes its classes anew, with the same names.
+    for kind, count in Counter(map(type, gc.get_objects())).items():
+        named[f"{kind.__module__}.{kind.__name__}"] += count
+    return {name: named[name] for name in KEPT}
+
+
 def living(host):
     """Count what must not become more: our objects, observers of the scene, widgets, threads."""
     for _round in range(3):
-        host.process_events()
-        gc.collect()
-    kinds = [f"{type(one).__module__}.{type(one).__name__}" for one in gc.get_objects()]
-    counts = {name: kinds.count(name) for name in KEPT}
+        counts = objects(host)
     nodes = [host.scene.GetNthNode(index) for index in range(host.scene.GetNumberOfNodes())]
     counts["observers"] = sum(str(one).count("vtkObserver (") for one in (host.scene, *nodes))
     counts["nodes"] = len(nodes)
@@ -37,7 +46,7 @@ def settled(host, before):
     """
 
     def is_one():
-        now = living(host)
+        now = objects(host)
         return all(now[name] - before[name] == 1 for name in KEPT)
 
     host.wait_until(is_one, "only one module lives")

@@ -20,14 +20,11 @@ from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.population import trial_jobs
 from rastrainer_simulator.virtual.scripted_trainee import STUCK_AFTER_S
 from Testing.simulator.virtual.conftest import AIM_FACTOR, BRISK
+from Testing.simulator.virtual.small_jobs import squared
 
 
 def numbers(trial):
     return trial.job, trial.record.positions_mm.tolist(), trial.analysis.score.score
-
-
-def squared(number):
-    return number * number
 
 
 @pytest.fixture(scope="module")

@@ -21,39 +21,20 @@ from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS, run_jobs, sim
 from rastrainer_simulator.virtual.play import PlaySettings, play_job
 from rastrainer_simulator.virtual.worker_pool import ATTEMPTS, WorkerDiedError
 from Testing.running_process import runs, started_by
+from Testing.simulator.virtual.small_jobs import (
+    kill_self,
+    own_process,
+    refused,
+    squared_by_mortals,
+)
 
 STORED_WHEN = {"stored_utc", "created_utc", "finished_utc"}
-
-
-def kill_self(folder: Path, job, times: int) -> None:
-    """Kill this process by SIGKILL the first so many times that it is given a job."""
-    for number in range(times):
-        try:
-            (folder / f"{job}-{number}").touch(exist_ok=False)
-        except FileExistsError:
-            continue
-        os.kill(os.getpid(), signal.SIGKILL)
-
-
-def squared_by_mortals(folder, doomed, times, number):
-    if number in doomed:
-        kill_self(folder, number, times)
-    return number * number
 
 
 def played_by_mortals(folder, doomed, times, job, settings):
     if job.trial_id in doomed:
         kill_self(folder, job.trial_id, times)
     return play_job(job, settings)
-
-
-def refused(number):
-    raise ZeroDivisionError(f"not {number}")
-
-
-def own_process(_number):
-    time.sleep(0.05)
-    return os.getpid()
 
 
 def tables(path):

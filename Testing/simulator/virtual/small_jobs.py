@@ -1,0 +1,35 @@
+"""Jobs that square, fail or die, in a module of their own: a new process has it loaded at once."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+
+def squared(number):
+    return number * number
+
+
+def squared_by_mortals(folder, doomed, times, number):
+    if number in doomed:
+        kill_self(folder, number, times)
+    return squared(number)
+
+
+def kill_self(folder: Path, job, times: int) -> None:
+    """Kill this process by SIGKILL the first so many times that it is given a job."""
+    for number in range(times):
+        try:
+            (folder / f"{job}-{number}").touch(exist_ok=False)
+        except FileExistsError:
+            continue
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def refused(number):
+    raise ZeroDivisionError(f"not {number}")
+
+
+def own_process(_number):
+    time.sleep(0.05)
+    return os.getpid()
