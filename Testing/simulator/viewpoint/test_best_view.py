@@ -12,14 +12,16 @@ from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_check import check_tasks
 from rastrainer_simulator.viewpoint.best_view import BESIDE_DEG
 from rastrainer_simulator.viewpoint.touch_views import TouchViews
-from Testing.simulator.authoring.planned_heads import HEADS, setup_of
+from Testing.simulator.authoring.planned_heads import setup_of
 
 SEEDS = (None, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (11, 12)))
 """Of the poses of the head: the nominal one, and two of trials."""
 TASKS = ("trial-run", *(f"task-{number}" for number in range(1, 6)))
 
 
-@pytest.fixture(scope="module", params=["colin27", *HEADS])
+@pytest.fixture(
+    scope="module", params=["colin27", "egg", pytest.param("small", marks=pytest.mark.soak)]
+)
 def made(request, tmp_path_factory):
     return setup_of(request.param, tmp_path_factory.mktemp("heads"))
 
