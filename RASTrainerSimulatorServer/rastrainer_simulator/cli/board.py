@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import asyncio
+from functools import partial
 from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.address import StudyPlace
 from rastrainer_simulator.cli.options import STUDY_HELP, add_config, add_study, check_ports
+from rastrainer_simulator.cli.output import announce
 
 DEFAULT_BOARD_PORT = 18955
 
@@ -59,12 +61,12 @@ async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
     from rastrainer_simulator.board.seat_client import SeatClient
     from rastrainer_simulator.ops.processes import stop_on_signals
 
-    stop = asyncio.Event()
+    tell, stop = partial(announce, "board"), asyncio.Event()
     async with SeatClient() as client:
         board = BoardServer(
             config,
             client,
-            lambda code: _tell(f"has a new pairing code for browsers: {code}"),
+            lambda code: tell(f"has a new pairing code for browsers: {code}"),
             study=study,
         )
         try:
@@ -72,11 +74,7 @@ async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
                 found = await board.listen(DEFAULT_HOST, port)
                 address = f"http://{DEFAULT_HOST}:{found}"
                 code = board.code.code
-                _tell(f"is on {address}, pairing code {code}; open {address}/#code={code}")
+                tell(f"is on {address}, pairing code {code}; open {address}/#code={code}")
                 await stop.wait()
         finally:
             await board.close()
-
-
-def _tell(what: str) -> None:
-    print(f"RASTrainer board {what}", flush=True)

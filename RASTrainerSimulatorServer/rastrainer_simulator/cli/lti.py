@@ -13,6 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.cli.options import add_config, add_study, check_ports
+from rastrainer_simulator.cli.output import announce
 
 if TYPE_CHECKING:
     from rastrainer_simulator.lti.settings import LtiSettings
@@ -106,10 +107,7 @@ async def _serve(
                 port = await server.listen(host, arguments.port, tls)
                 server.return_grades()
                 names = ", ".join(each.name for each in settings.platforms) or "no platform yet"
-                print(
-                    f"RASTrainer LTI listens on {host}:{port} as {settings.address}: {names}",
-                    flush=True,
-                )
+                announce("LTI", f"listens on {host}:{port} as {settings.address}: {names}")
                 await stop.wait()
         finally:
             await server.close()

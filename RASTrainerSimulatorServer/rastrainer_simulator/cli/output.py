@@ -1,10 +1,15 @@
-"""What commands print: tables for people, and JSON for other programs."""
+"""What commands print: news and tables for people, and JSON for other programs."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
 from typing import Any
+
+
+def announce(program: str, what: str) -> None:
+    """Print at once what a program of ours does, such as "board" and "is on http://…"."""
+    print(f"RASTrainer {program} {what}", flush=True)
 
 
 def json_text(value: Any) -> str:

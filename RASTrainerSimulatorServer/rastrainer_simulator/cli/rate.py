@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import random
+from functools import partial
 from pathlib import Path
 
 from rastrainer.errors import InputError
@@ -12,6 +13,7 @@ from rastrainer.study.rating.forms import FORMS, find_form
 from rastrainer.study.rating.rating_store import RatingStore
 from rastrainer.study.rating.rating_work import RatingWork
 from rastrainer_simulator.cli.options import add_playback, add_records, add_study, check_ports
+from rastrainer_simulator.cli.output import announce
 
 REPLAYS = 20
 
@@ -67,18 +69,15 @@ def run(arguments: argparse.Namespace) -> int:
     # Only here: the robot and the scenario take time to import.
     from rastrainer_simulator.server.rating_server import serve_rating, trials_to_show
 
+    tell = partial(announce, "rating")
     forms = [find_form(name) for name in dict.fromkeys(arguments.form or FORMS)]
     with Study.open(arguments.study, must_exist=True) as study:
         store = RatingStore(study)
         trials = trials_to_show(study, arguments.records)
         order = store.assign(arguments.rater, trials, arguments.replays, random.SystemRandom())
         work = RatingWork(store, arguments.rater, order, forms)
-        _tell(f"has {len(order)} replays for {arguments.rater}, {work.rated} rated")
+        tell(f"has {len(order)} replays for {arguments.rater}, {work.rated} rated")
         playback = arguments.scenario, arguments.view_port, arguments.window
-        serve_rating(work, arguments.records, *playback, _tell)
-        _tell(f"is left: {work.rated} of {len(order)} replays are rated")
+        serve_rating(work, arguments.records, *playback, tell)
+        tell(f"is left: {work.rated} of {len(order)} replays are rated")
     return 0
-
-
-def _tell(what: str) -> None:
-    print(f"RASTrainer rating {what}", flush=True)

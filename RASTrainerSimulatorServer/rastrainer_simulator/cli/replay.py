@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 from rastrainer_simulator.cli.options import add_playback, check_ports
+from rastrainer_simulator.cli.output import announce
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -59,11 +61,8 @@ def _show(arguments: argparse.Namespace) -> int:
     check_ports(arguments)
     from rastrainer_simulator.server.replay_server import show
 
-    def announce(where: str) -> None:
-        print(f"RASTrainer replay {where}", flush=True)
-
     playback = arguments.scenario, arguments.view_port, arguments.window
-    show(arguments.journal, *playback, announce)
+    show(arguments.journal, *playback, partial(announce, "replay"))
     return 0
 
 

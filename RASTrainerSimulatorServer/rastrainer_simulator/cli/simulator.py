@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 import secrets
+from functools import partial
 from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
 from rastrainer_simulator.cli.options import add_config, add_records, check_ports
+from rastrainer_simulator.cli.output import announce
 from rastrainer_simulator.ops.processes import has_display
 
 FASTEST = 1000.0
@@ -135,7 +137,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     with keep_logs(logs, f"simulator-{arguments.port}"):
         server = SimulatorServer(options)
-        asyncio.run(server.run(lambda where: print(f"RASTrainer simulator {where}", flush=True)))
+        asyncio.run(server.run(partial(announce, "simulator")))
     return 0
 
 
