@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 
 import numpy as np
@@ -23,9 +24,14 @@ from Testing.slicer.host.cancels import cancels
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
 SIZE = 0.75
-SCAN = phantom(spacing=(2.0, 2.0, 2.0), size=SIZE)
 WEN, WEN_RADIUS = np.array([0.0, -55.0, 0.0]), 12.0
 """What is painted at the back of the head, RAS mm."""
+
+
+@functools.cache
+def scanned():
+    """Return the scan of a head, which no test changes."""
+    return phantom(spacing=(2.0, 2.0, 2.0), size=SIZE)
 
 
 @pytest.fixture(autouse=True)
@@ -39,17 +45,18 @@ def _scan_is_chosen(host, tmp_path):
     setPoints(placed, LABELS, fiducials(SIZE))
     host.check("handPlacedCheckBox")
     host.check("skullCheckBox", False)
-    host.choose("scanComboBox", add_volume(host.scene, SCAN, "Ms X"))
+    host.choose("scanComboBox", add_volume(host.scene, scanned(), "Ms X"))
 
 
 def paint_wen(node):
     """Paint a ball into the segment as the Segment Editor does: on the grid of the scan."""
-    ijk = np.indices(SCAN.values.shape).reshape(3, -1).T
-    ras = ijk @ SCAN.ijkToRas[:3, :3].T + SCAN.ijkToRas[:3, 3]
-    ball = (np.linalg.norm(ras - WEN, axis=1) < WEN_RADIUS).reshape(SCAN.values.shape)
+    scan = scanned()
+    ijk = np.indices(scan.values.shape).reshape(3, -1).T
+    ras = ijk @ scan.ijkToRas[:3, :3].T + scan.ijkToRas[:3, 3]
+    ball = (np.linalg.norm(ras - WEN, axis=1) < WEN_RADIUS).reshape(scan.values.shape)
     image = slicer.vtkOrientedImageData()
     image.SetDimensions(ball.shape)
-    image.SetImageToWorldMatrix(vtk_matrix(SCAN.ijkToRas))
+    image.SetImageToWorldMatrix(vtk_matrix(scan.ijkToRas))
     values = np.ascontiguousarray(ball.transpose(2, 1, 0), np.uint8).ravel()
     image.GetPointData().SetScalars(numpy_to_vtk(values, array_type=vtk.VTK_UNSIGNED_CHAR, deep=1))
     logic = slicer.vtkSlicerSegmentationsModuleLogic

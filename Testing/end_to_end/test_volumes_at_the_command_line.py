@@ -44,6 +44,10 @@ def nrrd(volume):
     return lambda folder: write_volume(folder / "head.nrrd", volume)
 
 
+def head_nrrd(**options):
+    return lambda folder: write_volume(folder / "head.nrrd", phantom(size=SIZE, **options))
+
+
 def cut(name, is_compressed=True, share=0.6):
     """Return what writes a head of which the file's end is missing."""
 
@@ -139,7 +143,7 @@ def test_the_process_that_makes_the_head_ends_with_that_sentence(place, capfd, n
 
 ODD = {
     "double oblique": (
-        nrrd(phantom(spacing=(2.0, 2.0, 2.0), axes=DOUBLE_OBLIQUE, size=SIZE)),
+        head_nrrd(spacing=(2.0, 2.0, 2.0), axes=DOUBLE_OBLIQUE),
         [],
         "",
         0.6,
@@ -152,7 +156,7 @@ ODD = {
         "",
         0.6,
     ),
-    "1 × 1 × 5 mm": (nrrd(phantom(spacing=(1.0, 1.0, 5.0), size=SIZE)), [], "5.0 mm apart", 1.0),
+    "1 × 1 × 5 mm": (head_nrrd(spacing=(1.0, 1.0, 5.0)), [], "5.0 mm apart", 1.0),
     "a folder of DICOM files": (dicom, [], "", 0.6),
 }
 """What writes the volume, options, an expected warning, and the largest mean error, mm."""

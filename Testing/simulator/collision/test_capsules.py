@@ -13,9 +13,8 @@ from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import SHAFT_START, capsules_along, robot_shape
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import load_robot
-from Testing.simulator.collision.heads_and_arms import KINEMATICS, ROBOT, ball
+from Testing.simulator.collision.heads_and_arms import KINEMATICS, ROBOT, SHAPE, ball
 
-SHAPE = robot_shape(ROBOT)
 MESHES = load_meshes(ROBOT, "collision")
 
 

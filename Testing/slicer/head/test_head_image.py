@@ -31,15 +31,12 @@ def depths(volume):
 
 
 @pytest.mark.parametrize(
-    "scan",
-    [
-        phantom(spacing=(2.0, 2.0, 2.0), size=SIZE),
-        phantom(spacing=(1.5, 2.0, 3.0), axes=DOUBLE_OBLIQUE, size=SIZE),
-    ],
+    ("spacing", "axes"),
+    [((2.0, 2.0, 2.0), None), ((1.5, 2.0, 3.0), DOUBLE_OBLIQUE)],
     ids=["RAS", "oblique"],
 )
-def test_mri_lies_on_a_grid_of_1_mm_where_the_head_is(scan):
-    made, told, _head = images(scan)
+def test_mri_lies_on_a_grid_of_1_mm_where_the_head_is(spacing, axes):
+    made, told, _head = images(phantom(spacing=spacing, axes=axes, size=SIZE))
     assert np.array_equal(made.ijk_to_ras[:3, :3], np.eye(3))
     assert made.values.dtype == np.uint8
     depth = depths(made)
