@@ -2,7 +2,6 @@
 
 import socket
 import threading
-import time
 
 import pytest
 
@@ -28,17 +27,17 @@ POSE = pack(Message("Tool", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))))
 
 
 class Clock:
-    """Runs, and jumps where a test lets it."""
+    """Stands still, however late a busy machine is, and goes on where a test lets it."""
 
     def __init__(self):
-        self.ahead = 0.0
+        self.now = 0.0
 
     def __call__(self):
-        return time.monotonic() + self.ahead
+        return self.now
 
 
-def ask(host, port, clock=time.monotonic):
-    probe = Probe(host, port, clock)
+def ask(host, port):
+    probe = Probe(host, port, Clock())
     found = []
     wait_until(lambda: found.append(probe.process()) or found[-1], lambda: None)
     return found[-1]
@@ -71,7 +70,7 @@ def ask_and_lose_patience(behavior):
         clock = Clock()
         probe = Probe("127.0.0.1", port, clock)
         wait_until(lambda: sockets and sockets[0].was_used.is_set(), probe.process)
-        clock.ahead = ANSWER_S
+        clock.now = ANSWER_S + 1.0
         return probe.process()
 
 
@@ -134,7 +133,7 @@ def test_a_name_is_looked_up_beside_the_main_thread_and_once_at_a_time(monkeypat
 
     monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)
     with SimulatorDouble() as simulator:
-        probes = [Probe("a-computer", simulator.port) for _ in range(2)]
+        probes = [Probe("a-computer", simulator.port, Clock()) for _ in range(2)]
         assert [probe.process() for probe in probes] == [None, None]
         answers.set()
         wait_until(lambda: all(probe.process() for probe in probes), lambda: None)
@@ -152,7 +151,7 @@ def test_a_name_that_is_looked_up_for_too_long_is_given_up(monkeypatch):
     monkeypatch.setattr("rastrainer.slicer.link.probe.socket.getaddrinfo", look_up)
     probe = Probe("a-slow-computer", 18944, clock)
     assert probe.process() is None
-    clock.ahead = LOOKUP_S
+    clock.now = LOOKUP_S + 1.0
     assert probe.process() == ProbeResult(Peer.UNKNOWN_HOST)
     answers.set()
 
