@@ -13,7 +13,7 @@ import socket
 import struct
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
@@ -23,6 +23,8 @@ from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.simulator_double import process_link
 
 PIECE_BYTES = 16_384
+TOO_FEW_BYTES = 1_000
+"""The record of a trial is longer."""
 HOST = "127.0.0.1"
 
 
@@ -63,11 +65,13 @@ class FaultyProxy:
         faults: how many connections had each kind of end.
     """
 
-    def __init__(self, target: int, rng: random.Random, longest_s: float):
+    def __init__(self, target: int, rng: random.Random, longest_s: float, at_least: int = 0):
+        """Before so many faults have struck, no connection is long enough for a whole trial."""
         self.target = target
         self.faults: dict[str, int] = {}
         self._rng = rng
         self._longest_s = longest_s
+        self._at_least = at_least
         self._is_peaceful = threading.Event()
         self._is_closed = threading.Event()
         self._listener = socket.create_server((HOST, 0))
@@ -95,6 +99,8 @@ class FaultyProxy:
             except OSError:
                 return
             fault = draw_fault(self._rng, self._longest_s)
+            if sum(self.faults.values()) < self._at_least:
+                fault = replace(fault, after_bytes=min(fault.after_bytes, TOO_FEW_BYTES))
             thread = threading.Thread(target=self._carry, args=(client, fault))
             self._threads.append(thread)
             thread.start()

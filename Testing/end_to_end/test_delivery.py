@@ -84,7 +84,7 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
     scenario = load_scenario(COLIN)
     ends, scored = [0, 0], []
     server = Server(thread, simulation, records)
-    proxy = FaultyProxy(server.port, rng, longest_s)
+    proxy = FaultyProxy(server.port, rng, longest_s, at_least=3)
     slicer = slicer_side(study, scenario, proxy.port, scored)
     try:
         while server.undelivered:

@@ -9,7 +9,8 @@ import numpy as np
 
 from rastrainer.igtl.client import Client
 from rastrainer.journal.journal_file import read_journal
-from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
+from Testing.end_to_end.hands import GamepadHands
+from Testing.web.place import Place
 
 TIMEOUT_S = 120.0
 AGAIN_S = 0.5
@@ -38,29 +39,35 @@ class Watch:
     def tip(self):
         return np.array(self._client.wait_for("ToolTipToWorld").content.matrix)[:3, 3]
 
-    def until_the_arm(self, moves):
-        """Wait until the arm moves, or is at rest."""
+    def until_moved_from(self, place):
+        """Wait until the tip is elsewhere, mm."""
+
+        def is_away(message):
+            return np.linalg.norm(np.array(message.content.matrix)[:3, 3] - place) > 0.01
+
+        self._client.wait_for("ToolTipToWorld", is_away, timeout=TIMEOUT_S)
+
+    def until_at_rest(self):
+        """Wait until the tip stays where it is."""
         give_up = time.monotonic() + TIMEOUT_S
         while True:
             before = self.tip()
             time.sleep(0.3)
-            if moves == (np.linalg.norm(self.tip() - before) > 0.01):
+            if np.linalg.norm(self.tip() - before) <= 0.01:
                 return
             assert time.monotonic() < give_up
 
 
 def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_path):
-    (tmp_path / "records-config").mkdir()
-    (tmp_path / "records-config" / "preferences.json").write_text('{"fine": 5}')
-    simulator = SimulatorWithGamepad(tmp_path / "records", "--view-port", "0", "--seed", "5")
-    with simulator, Client(port=simulator.port) as client:
-        watch = Watch(client)
-        watch.until(lambda state: state["phase"] == "idle")
-        # Start training, three pages of introduction, the controls, and the ID: "A".
-        for button in ("a", "a", "a", "a", "a", "a", "a", *["dpdown"] * 5, "a"):
-            simulator.tap(button)
-        for button in (*["dpdown"] * 5, "a"):
-            simulator.tap(button)
+    with (
+        Place(tmp_path, has_gamepad=True, fine=5, order="fixed") as place,
+        Client(port=place.simulator.port) as client,
+    ):
+        simulator, watch = place.simulator, Watch(client)
+        trainee = place.trainee(GamepadHands(simulator))
+        # The simulator takes every press, if late.
+        trainee.again_s = TIMEOUT_S
+        trainee.begin("trial-run")
         watch.until(lambda state: state["phase"] == "running")
         state = watch.state()
         assert (state["trainee"], state["task"], state["mode"]) == ("A", "trial-run", "desktop")
@@ -73,18 +80,19 @@ def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_pa
         while not (strengths := {strength for strength, _ in simulator.felt() if strength > 0}):
             assert time.monotonic() < give_up, "nothing vibrated"
         assert strengths == {45874 / 65535}
+        start = watch.tip()
         simulator.move(leftx=0.8)
-        watch.until_the_arm(moves=True)
+        watch.until_moved_from(start)
         simulator.plug_out()
-        watch.until_the_arm(moves=False)
+        watch.until_at_rest()
         watch.until(lambda state: state["phase"] == "paused")
         simulator.plug_in()
-        while watch.state()["phase"] != "running":
-            assert time.monotonic() < give_up, "the trial was not resumed"
-            simulator.tap("a")
-            time.sleep(AGAIN_S)
+        trainee.until_menu("trial")
+        trainee.choose("resume")
+        watch.until(lambda state: state["phase"] == "running")
+        start = watch.tip()
         simulator.move(leftx=-0.8)
-        watch.until_the_arm(moves=True)
+        watch.until_moved_from(start)
         simulator.move(leftx=0.0)
         simulator.tap("start")
         watch.until(lambda state: state["phase"] == "paused")

@@ -62,7 +62,7 @@ def test_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
         port = str(other.getsockname()[1])
         places = ["--records", str(tmp_path), "--config", str(tmp_path)]
         command = [*COMMAND, *places, "--no-views", "--port", port]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith(f"rastrainer: Cannot listen on 127.0.0.1:{port}")
     assert len(done.stderr.splitlines()) == 1

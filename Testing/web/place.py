@@ -29,7 +29,7 @@ from Testing.simulator.net.views.served import ViewClient
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
 TRAINEE = "P7"
-PATIENCE_S = 60
+PATIENCE_S = 300
 WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20, "gone_s": 300}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
 SETTLED_STATES = 20

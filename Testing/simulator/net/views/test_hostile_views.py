@@ -95,7 +95,7 @@ def flood(send):
 
 
 def test_a_flood_closes_only_that_view(serve, connect):
-    served = serve(messages_per_s=10.0)
+    served = serve(messages_per_s=2.0)
     good, bad = connect(served), connect(served)
     good.join()
     bad.join()
@@ -105,7 +105,7 @@ def test_a_flood_closes_only_that_view(serve, connect):
 
 
 def test_a_flood_of_pings_closes_only_that_view(serve, connect):
-    served = serve(messages_per_s=10.0)
+    served = serve(messages_per_s=2.0)
     good, bad = connect(served), connect(served)
     good.join()
     bad.join()
