@@ -32,6 +32,8 @@ TRAINEE = "P7"
 PATIENCE_S = 300
 WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20, "gone_s": 300}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
+PATIENT = {"silent_s": 60, "lost_s": 600, "gone_s": 600}
+"""A browser that is late, however busy the machine is, neither lets go nor pauses the trial."""
 SETTLED_STATES = 20
 """In how many states in a row a focus stays that nobody moves any more: a third of a second."""
 LEAVES = {"trial": "abort", "abort": "abort", "complete": "abort", "result": "menu"}

@@ -108,8 +108,8 @@ def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_remov
     press(page, "They are the same")
     tile = page.locator("#seats > li")
     page.wait_for_selector("#seats > li[data-link=watching] .who:has-text('P07')")
-    assert "71.5 / 100" in tile.inner_text()
-    assert page.inner_text("#count") == "1 of 1 seats connected, 0 training"
+    page.wait_for_selector("#seats > li:has-text('71.5 / 100')")
+    page.wait_for_selector("#count:text-is('1 of 1 seats connected, 0 training')")
     presenter.told_of_seat = Seat("<img src=x onerror=alert(1)>")
     page.wait_for_selector("#seats .who:has-text('<img src=x')")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from Testing.web.chromium import EYES_M, enter_headset, open_page
-from Testing.web.place import WITHOUT_GRAPHICS, Place
+from Testing.web.place import PATIENT, Place
 
 BEHIND_M = 1.24
 """From the place where the trainee stands to the one at the other side of the head."""
@@ -68,7 +68,7 @@ WRITTEN = """() => {
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    with Place(tmp_path_factory.mktemp("boards"), limits=WITHOUT_GRAPHICS) as place:
+    with Place(tmp_path_factory.mktemp("boards"), limits=PATIENT) as place:
         yield place
 
 

@@ -11,14 +11,12 @@ from Testing.end_to_end.view_learner import ViewLearner
 from Testing.tutorial_player import TutorialPlayer
 from Testing.web.chromium import open_page
 from Testing.web.hands import PageMouse
-from Testing.web.place import WITHOUT_GRAPHICS, Place, Trainee
+from Testing.web.place import PATIENT, Place, Trainee
 
 SIZE = {"width": 1280, "height": 720}
 SLOW, SLOWEST = "0.5", "0.25"
 """Simulated seconds in a second, so that a stick is let go of in time on a busy machine."""
 ON_SCREEN = {"order": "fixed"}
-PATIENT = {**WITHOUT_GRAPHICS, "lost_s": 600}
-"""A machine that is too busy to draw does not pause the trial."""
 
 
 class Clicks:
@@ -58,7 +56,7 @@ class ClickingTrainee(Clicks, Trainee):
 
 @pytest.fixture
 def place(tmp_path):
-    with Place(tmp_path, "--speed", SLOW, limits=WITHOUT_GRAPHICS, **ON_SCREEN) as place:
+    with Place(tmp_path, "--speed", SLOW, limits=PATIENT, **ON_SCREEN) as place:
         yield place
 
 

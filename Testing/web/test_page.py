@@ -8,7 +8,7 @@ import pytest
 
 from Testing.web.chromium import draw_a_while, open_page
 from Testing.web.hands import BrowserPad, PageKeys
-from Testing.web.place import WITHOUT_GRAPHICS, Place, scored_trial
+from Testing.web.place import PATIENT, Place, scored_trial
 
 LARGEST_PAGE = 1_000_000
 LARGEST_SCENE = 5_000_000
@@ -18,7 +18,7 @@ ACCENT = "#1b6ad6"
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("page")
-    with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS) as place:
+    with Place(folder, "--speed", "4", limits=PATIENT) as place:
         yield place
 
 
@@ -85,6 +85,7 @@ def test_the_introduction_shows_a_picture_of_what_is_held_with_its_inputs_colore
     for hands in (PageKeys, BrowserPad):
         trainee = place.trainee(hands(page))
         trainee.go_home()
+        page.wait_for_selector("body[data-menu=start]")
         trainee.choose("controls")
         page.wait_for_selector("body[data-menu=controls]")
         picture = page.wait_for_selector("#menu img")
@@ -102,8 +103,7 @@ def test_the_menu_of_heads_shows_the_picture_of_the_one_in_focus(place, page):
     trainee.choose("scenario")
     trainee.until(lambda: len(trainee.menu.items) > 1, "the heads at hand")
     trainee.focus("head colin27")
-    picture = page.wait_for_selector("#menu img")
-    assert picture.get_attribute("src").endswith("/scenarios/colin27.png")
+    picture = page.wait_for_selector("#menu img[src$='/scenarios/colin27.png']")
     assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") == 640
     trainee.focus("back")
     page.wait_for_selector("#menu img", state="detached")

@@ -9,7 +9,7 @@ from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
 
 LINE = {"offline": False, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1}
-SLOW_LINE = {**LINE, "downloadThroughput": 400_000}
+SLOW_LINE = {**LINE, "downloadThroughput": 150_000}
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ import pytest
 
 from rastrainer_simulator.net.views.screen import Hint, Menu, MenuItem, Screen, ScreenMessage
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 from Testing.web.chromium import (
@@ -116,7 +117,14 @@ def test_a_spectator_may_pair_to_take_part(served, page):
 
 
 def _joined(served) -> int:
-    (number,) = (call[1] for call in served.presenter.calls if call[0] == "view_joined")
+    joined: list[int] = []
+
+    def is_told() -> bool:
+        joined[:] = [call[1] for call in served.presenter.calls if call[0] == "view_joined"]
+        return bool(joined)
+
+    wait_until(is_told, "a view")
+    (number,) = joined
     return number
 
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from Testing.web.chromium import open_page
-from Testing.web.place import WITHOUT_GRAPHICS, Place
+from Testing.web.place import PATIENT, Place
 from Testing.web.tapping_trainee import PHONE, SteeringTrainee, TappingTrainee
-from Testing.web.test_mouse import PATIENT, SLOW
+from Testing.web.test_mouse import SLOW
 
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    with Place(tmp_path_factory.mktemp("phone"), limits=WITHOUT_GRAPHICS) as place:
+    with Place(tmp_path_factory.mktemp("phone"), limits=PATIENT) as place:
         yield place
 
 
@@ -67,9 +67,13 @@ def test_what_is_said_to_press_is_written_on_the_buttons(place, page, steering):
     steering.hands.push(0.0, 0.0, 0.5)
     steering.until_moved()
     steering.hands.push(0.0, 0.0, 0.0)
-    hints = {hint.control for hint in place.view.screen.hints if "stick" not in hint.control}
-    buttons = page.query_selector_all("#touch-controls button:not([hidden])")
-    assert hints == {button.inner_text() for button in buttons}
+    buttons = page.locator("#touch-controls button:not([hidden])")
+
+    def are_written():
+        hints = {hint.control for hint in place.view.screen.hints if "stick" not in hint.control}
+        return hints == {*buttons.all_inner_texts()}
+
+    steering.until(are_written, "the hints on the buttons")
 
 
 @pytest.mark.soak

@@ -8,7 +8,7 @@ import pytest
 from Testing.end_to_end.stream_trainee import LONGEST_WAY_S
 from Testing.web.chromium import enter_headset, open_page
 from Testing.web.hands import TrackedHands
-from Testing.web.place import WITHOUT_GRAPHICS, Place, Trainee
+from Testing.web.place import PATIENT, Place, Trainee
 
 SPEED = "0.5"
 
@@ -43,7 +43,7 @@ class HandTrainee(Trainee):
 
 @pytest.fixture
 def place(tmp_path):
-    with Place(tmp_path, "--speed", SPEED, limits={**WITHOUT_GRAPHICS, "lost_s": 600}) as place:
+    with Place(tmp_path, "--speed", SPEED, limits=PATIENT) as place:
         yield place
 
 
