@@ -62,10 +62,14 @@ def summary(before: Cost, after: Cost, watched: WatchedLoop) -> str:
     )
 
 
-def check_unharmed(before: Cost, after: Cost, watched: WatchedLoop) -> None:
-    """Check that an attack has left nothing behind and has not kept the loop from its ticks."""
+def check_unharmed(before: Cost, after: Cost) -> None:
+    """Check that an attack has left nothing behind."""
     assert after.descriptors <= before.descriptors + MAX_MORE_DESCRIPTORS
     assert after.resident_mb - before.resident_mb <= MAX_GROWTH_MB
+
+
+def check_punctual(watched: WatchedLoop) -> None:
+    """Check that an attack has not kept the loop from its ticks: nothing else may run beside it."""
     assert watched.measured.on_time >= watched.bare.on_time - MAX_MORE_MISSED
 
 

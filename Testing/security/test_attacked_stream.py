@@ -7,13 +7,19 @@ import pytest
 from rastrainer.igtl.client import Client
 from Testing.benchmarks.watched_loop import WatchedLoop
 from Testing.end_to_end.simulator_process import ViewedSimulator
-from Testing.security.attacked_process import check_unharmed, cost_of, settled, summary
+from Testing.security.attacked_process import (
+    check_punctual,
+    check_unharmed,
+    cost_of,
+    settled,
+    summary,
+)
 from Testing.security.stream_attack import StreamAttack
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 
 
-def attack(folder, warm_up: int, count: int, capsys) -> None:
+def attack(folder, warm_up: int, count: int, capsys) -> WatchedLoop:
     key = secrets.token_urlsafe()
     arguments = (folder, "--view-port", "0", "--seed", "1")
     with (
@@ -34,12 +40,13 @@ def attack(folder, warm_up: int, count: int, capsys) -> None:
             messages = f"{attacked.mutated} damaged and {attacked.good} good messages"
             print(f"\n{messages}: {summary(before, after, watched)}")
         assert attacked.closed == attacked.mutated == warm_up + count
-        check_unharmed(before, after, watched)
+        check_unharmed(before, after)
         assert view.next("state")["type"] == "state"
         status, errors = simulator.stop()
     assert status == 0
     assert "Traceback" not in errors
     assert " ERROR " not in errors
+    return watched
 
 
 def test_a_hundred_mutated_messages_of_views_harm_nobody_else(tmp_path, capsys):
@@ -48,4 +55,4 @@ def test_a_hundred_mutated_messages_of_views_harm_nobody_else(tmp_path, capsys):
 
 @pytest.mark.soak
 def test_ten_thousand_mutated_messages_of_views_harm_nobody_else(tmp_path, capsys):
-    attack(tmp_path / "records", 3_000, 10_000, capsys)
+    check_punctual(attack(tmp_path / "records", 3_000, 10_000, capsys))
