@@ -55,7 +55,8 @@ class Lab:
         opened = []
         self.link.opened.connect(lambda: opened.append(True))
         self.link.connectTo(port=self.simulator.port)
-        self.run_until(lambda: opened)
+        # The study is read as soon as the link is open.
+        self.run_until(lambda: opened and not self.work.isBusy)
 
     def answer(self, name, arguments):
         if name != "SubmitRegistration":
