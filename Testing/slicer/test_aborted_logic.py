@@ -31,7 +31,7 @@ class Lab:
         opened = []
         self.link.opened.connect(lambda: opened.append(True))
         self.link.connectTo(port=self.simulator.port)
-        self.run_until(lambda: opened)
+        self.run_until(lambda: opened and not self.work.isBusy)
 
     def open_study(self):
         if self.is_study_broken:

@@ -75,11 +75,16 @@ class Journal:
         self._unwritten.clear()
 
     def close(self) -> None:
-        """Close the file; a later `write` opens it again. A file without any line is removed."""
+        """Close the file; a later `write` opens it again."""
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
-        if self._is_new and self._size == 0:
+
+    def discard(self) -> None:
+        """Remove a new file, in which nothing was acknowledged, and forget its entries."""
+        self.close()
+        self._unwritten.clear()
+        if self._is_new and self._size is not None:
             self.path.unlink(missing_ok=True)
             self._size = None
 

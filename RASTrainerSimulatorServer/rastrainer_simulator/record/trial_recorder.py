@@ -156,10 +156,14 @@ class TrialRecorder:
         operator_input: OperatorInput,
         result: StepResult,
     ) -> None:
-        """Keep the entries that could not be written until the trainee resumes."""
+        """Keep the entries that could not be written until the trainee resumes.
+
+        Of a trial whose start was refused nothing stays, also if later entries were written.
+        """
         phase = result.state.training.phase
         if phase is Phase.IDLE:
-            self._close(trial)
+            self._writer.submit(trial.journal.discard)
+            self._open = self._registering = None
         elif not self._is_registered():
             self._registering = None
             self._is_stuck = True

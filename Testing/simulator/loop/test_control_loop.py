@@ -21,7 +21,9 @@ from rastrainer_simulator.loop import control_loop
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.rates import TrialLimits
 from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
+from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.record.trial_recorder import FLUSH_TICKS
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import StepResult
 
@@ -197,6 +199,30 @@ def test_a_trial_whose_journal_cannot_be_made_does_not_start(running, tmp_path):
     wait_for(lambda: "cannot be recorded" in running.loop.latest.training.instruction)
     assert running.loop.latest.training.phase is Phase.IDLE
     records.unlink()
+    running.start()
+    assert len(journals(tmp_path)) == 1
+
+
+def test_a_refused_start_leaves_no_journal_though_the_disk_took_what_came_after(
+    running, tmp_path, monkeypatch
+):
+    opened, refusals = Journal._opened, [OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))]
+
+    def full_at_first(journal):
+        if refusals:
+            raise refusals.pop()
+        return opened(journal)
+
+    monkeypatch.setattr(Journal, "_opened", full_at_first)
+    is_disk_slow = threading.Event()
+    running.loop._writer.submit(is_disk_slow.wait)
+    start = running.submit(CommandName.START_TASK, task="task-1", trainee="P01")
+    running.ticks(3 * FLUSH_TICKS)
+    is_disk_slow.set()
+    assert not start.result(TIMEOUT_S).ok
+    wait_for(lambda: "cannot be recorded" in running.loop.latest.training.instruction)
+    running.loop._writer.submit(lambda: None).result(TIMEOUT_S)
+    assert journals(tmp_path) == []
     running.start()
     assert len(journals(tmp_path)) == 1
 
