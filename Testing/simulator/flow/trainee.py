@@ -14,8 +14,8 @@ from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.teleoperation.axes import camera_axes
-from rastrainer_simulator.training.rules import TOO_DEEP_MM
 from rastrainer_simulator.vectors import dot, subtract
 
 PATIENCE_S = 120.0
@@ -25,6 +25,9 @@ STEP_S = 1.0 / RATE_HZ
 MAX_STEPS = 5_000
 SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
+ATTEMPTS = 3
+"""How often a fiducial is gone to until the ring on it is green."""
+SHORT_PUSHES = 40
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
 
@@ -196,7 +199,17 @@ class Trainee:
         self.until(lambda: self.touched > kept, f"touch {kept + 1}")
 
     def lower_onto(self, point: np.ndarray, center: np.ndarray) -> None:
-        """Carry the tip over the head to a point of the skin (3,) m, and lower it until contact."""
+        """Carry the tip over the head to a point of the skin (3,) m, and lower it until contact.
+
+        Where the ring does not turn green, it is done again, as a person would.
+        """
+        for _ in range(ATTEMPTS):
+            self._carry_over(point, center)
+            self._press_until_green((point - center) / np.linalg.norm(point - center))
+            if self._stage is TouchStage.ON_SKIN:
+                return
+
+    def _carry_over(self, point: np.ndarray, center: np.ndarray) -> None:
         outward = (point - center) / np.linalg.norm(point - center)
         start = np.array(self.tip) - center
         lifted = LIFT_M + max(np.linalg.norm(point - center), np.linalg.norm(start))
@@ -208,13 +221,25 @@ class Trainee:
         self.steer_to(point + 0.01 * outward, 0.005)
         self.steer_to(point, 0.004, fine=True)
         self.steer_to(point - SINK_M * outward, 0.0, fine=True, ends_in_contact=True)
+        self._let_go()
+
+    def _press_until_green(self, outward: np.ndarray) -> None:
+        """Press less or more, by short pushes, as far as the ring is that of the next point."""
+        pushes = {TouchStage.TOO_DEEP: outward, TouchStage.NEAR: -outward}
+        for _ in range(SHORT_PUSHES):
+            if self._stage not in pushes:
+                return
+            self._push_toward(0.7 * pushes[self._stage], fine=True)
+            self.step()
+            self._let_go()
+
+    @property
+    def _stage(self) -> TouchStage:
+        return self.presenter.shown.latest.touch
+
+    def _let_go(self) -> None:
         self.hands.push(0.0, 0.0, 0.0, False)
         self.step(2)
-        while MM_PER_M * self.state.depth > TOO_DEEP_MM:
-            self.hands.push(0.0, 0.0, 0.7, True)
-            self.step()
-            self.hands.push(0.0, 0.0, 0.0, False)
-            self.step(2)
 
     @property
     def tip(self):
@@ -235,11 +260,15 @@ class Trainee:
             wanted = away / max(full, float(np.linalg.norm(away)))
             # Sticks hardly answer near their middle.
             wanted *= max(1.0, 0.7 / np.linalg.norm(wanted))
-            view = self.presenter.pictures(self.state).main
-            axes = camera_axes(subtract(view.focal_point, view.position), view.view_up)
-            right, forward, up = (dot(wanted, a) for a in (axes.right, axes.forward, axes.up))
-            self.hands.push(right, forward, up, fine)
+            self._push_toward(wanted, fine)
             self.step()
+
+    def _push_toward(self, wanted: np.ndarray, fine: bool) -> None:
+        """Push the sticks so that the tip moves as wanted (3,) World, as the view is now."""
+        view = self.presenter.pictures(self.state).main
+        axes = camera_axes(subtract(view.focal_point, view.position), view.view_up)
+        right, forward, up = (dot(wanted, a) for a in (axes.right, axes.forward, axes.up))
+        self.hands.push(right, forward, up, fine)
 
     def play(self, task: str) -> None:
         """Touch all points of the trial that runs, as the head stands in it."""
