@@ -27,13 +27,23 @@ def scene(headless_scene):
 
 
 class Clock:
-    """Runs, and jumps where a test adds to `ahead`."""
+    """Runs until it is stopped, and jumps where a test adds to `ahead`."""
 
     def __init__(self):
         self.ahead = 0.0
+        self._stands_at = None
 
     def __call__(self):
-        return self.ahead + time.monotonic()
+        return self.ahead + (time.monotonic() if self._stands_at is None else self._stands_at)
+
+    def stop(self):
+        """Stand still: however late a busy machine is, no patience ends."""
+        self._stands_at = time.monotonic()
+
+    def goes_on(self):
+        """Let half a second pass; for conditions that are looked at again and again."""
+        self.ahead += 0.5
+        return True
 
 
 @pytest.fixture

@@ -158,7 +158,7 @@ def _close(open_socket: socket.socket) -> None:
     open_socket.close()
 
 
-def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeout: float = 60.0):
+def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeout: float = 120.0):
     """Call `process` every few ms until `condition()`; the host's timer, in a test."""
     end = time.monotonic() + timeout
     while not condition():
@@ -174,13 +174,13 @@ def process_link(link: Link) -> None:
     link.process()
 
 
-def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 30.0) -> None:
+def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 120.0) -> None:
     """Let the link work until `condition()`."""
     wait_until(condition, lambda: process_link(link), timeout)
 
 
 def run_logic_until(
-    link: Link, work: BackgroundWork, condition: Callable[[], Any], timeout: float = 90.0
+    link: Link, work: BackgroundWork, condition: Callable[[], Any], timeout: float = 180.0
 ) -> None:
     """Let the link and what is done in the background work until `condition()`."""
 

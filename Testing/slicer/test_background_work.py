@@ -159,7 +159,7 @@ def test_work_whose_user_has_canceled_is_broken_off():
 
     with pytest.raises(KeyboardInterrupt):
         inBackground(work, cancel)
-    assert ended.wait(30.0)
+    assert ended.wait(120.0)
 
 
 def test_a_worker_gives_the_lock_back_soon_and_afterwards_all_is_as_before():

@@ -88,7 +88,7 @@ def lines_of(text, event):
 def test_a_trial_is_played_to_its_files(colin_record, tmp_path, capfd):
     cohort = str(ASSETS / "studies" / "published.csv")
     with PlayingDouble(colin_record) as simulator:
-        words = arguments(tmp_path, simulator.port, "--timeout", "30", "--cohort", cohort)
+        words = arguments(tmp_path, simulator.port, "--timeout", "300", "--cohort", cohort)
         assert headless.main(words) == 0
     text = capfd.readouterr().out
     points = lines_of(text, "point")

@@ -102,7 +102,7 @@ def test_what_is_canceled_ends(tmp_path, monkeypatch):
     # The thread that looks after the end of the process ends with it.
     begun = [thread for thread in threading.enumerate() if thread not in before]
     for thread in begun:
-        thread.join(30.0)
+        thread.join(120.0)
     assert not any(thread.is_alive() for thread in begun)
 
 

@@ -14,6 +14,7 @@ from rastrainer.igtl.client import Client, LinkError
 from rastrainer.igtl.content import Command, CommandReply, String, Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
+from Testing.free_port import free_port
 
 TIP = Message("Tip", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 6, 7)), timestamp=1)
 SUCCESS = {"Status": "SUCCESS"}
@@ -165,8 +166,7 @@ def test_wait_for_returns_only_an_accepted_message(peer):
 
 
 def test_refused_connection_raises_a_one_sentence_error():
-    with socket.create_server(("127.0.0.1", 0)) as probe:
-        port = probe.getsockname()[1]
+    port = free_port()
     with pytest.raises(LinkError, match=f"No connection to 127.0.0.1:{port}: "):
         Client(port=port)
 
