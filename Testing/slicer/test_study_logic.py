@@ -11,6 +11,7 @@ from rastrainer.slicer.logic.study_logic import StudyLogic
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -41,6 +42,11 @@ class Lab:
 
     def skip(self, reason):
         self.logic.skipStep(self.next, reason)
+
+    def be_in_the_step_for(self, minutes):
+        """Set the clock to a time after the step has begun, however long the machine took."""
+        since = moment(self.logic.progress().since_utc)
+        self.moment = since + timedelta(minutes=minutes)
 
     def practice(self, seconds, **changes):
         """Play a trial run for a time, with a pause in it, and end it."""
@@ -186,8 +192,8 @@ def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab, tmp_path)
     lab.logic.enroll()
     lab.skip("the headset's battery was empty")
     assert lab.next == "desktop/break"
+    lab.be_in_the_step_for(9.9)
     lab.trainees.choose("")
-    lab.moment = datetime.now(timezone.utc) + timedelta(minutes=9.9)
     lab.logic.process()
     lab.trainees.choose("T001")
     assert lab.next == "desktop/break"
@@ -428,7 +434,7 @@ def test_a_simulator_that_connects_later_is_sent_the_elapsed_time_of_a_break(lab
     lab.logic.enroll()
     lab.skip("the headset's battery was empty")
     lab.room.run_until(lambda: told(lab).get("minutes") == 10.0)
-    lab.moment = datetime.now(timezone.utc) + timedelta(minutes=4)
+    lab.be_in_the_step_for(4.0)
     lab.room.link.disconnect()
     before = len(lab.room.sent("StudyStep"))
     lab.room.link.connectTo(port=lab.room.simulator.port)

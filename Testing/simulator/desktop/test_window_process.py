@@ -15,10 +15,10 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.presenter import Feedback, Hello
-from Testing.end_to_end.window_process import times_heard
+from Testing.end_to_end.window_process import BYTES_A_SECOND, times_heard
 from Testing.simulator.net.views.served import ServedViews
 
-PATIENCE_S = 60.0
+PATIENCE_S = 300.0
 PLAYED = ("touch", "proximity", "contact", "error", "finish", "undo", "touch")
 PAUSE_S = 1.0
 
@@ -88,11 +88,20 @@ def session(loop_thread, control_loop, tmp_path_factory):
         again = ServedViews(loop_thread, control_loop, port=port)
         loop_thread.call(again.server.sessions.admit, key)
         joined += _wait_for_join(again)
+        _hear_out(window)
         again.close()
     finally:
         window.process.send_signal(signal.SIGKILL)
         said = window.process.communicate()[0]
     return {"joined": joined, "said": said, "heard": window.heard}
+
+
+def _hear_out(window):
+    """Wait for another second of sound: a window that is late plays the last event only now."""
+    give_up, wanted = time.monotonic() + PATIENCE_S, window.heard.stat().st_size + BYTES_A_SECOND
+    while window.heard.stat().st_size < wanted:
+        assert time.monotonic() < give_up
+        time.sleep(0.02)
 
 
 def _wait_for_join(served):
