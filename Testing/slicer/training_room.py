@@ -28,7 +28,7 @@ class Room:
         opened = []
         self.link.opened.connect(lambda: opened.append(True))
         self.link.connectTo(port=self.simulator.port)
-        self.run_until(lambda: opened and not self.work.isBusy)
+        self.run_until(lambda: opened)
         self.simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
 
     def answer(self, name, _arguments):
