@@ -95,12 +95,12 @@ $(VENV_PYTHON):
 	$(PYTHON) -m venv .venv || (echo "RASTrainer needs Python 3.10 or newer with the venv module (Debian: python3-venv)." >&2; exit 1)
 
 .venv/installed: $(VENV_PYTHON) requirements.lock pyproject.toml
-	$(BIN)/python -m pip install -q --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install -q --no-compile --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install -q --no-deps --no-build-isolation -e .
 	touch $@
 
 .venv/test-installed: .venv/installed requirements-test.lock
-	$(BIN)/python -m pip install -q --require-hashes -r requirements-test.lock
+	$(BIN)/python -m pip install -q --no-compile --require-hashes -r requirements-test.lock
 	touch $@
 
 .venv/bench-installed: .venv/test-installed requirements-bench.lock
