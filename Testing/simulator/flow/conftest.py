@@ -19,6 +19,7 @@ from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.state import Answer, StartingPoint
 from rastrainer_simulator.viewpoint import touch_views
 from Testing.sdl_virtual_gamepad import VirtualGamepad
+from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Pad, Trainee
 from Testing.without_tutorial import WITHOUT_TUTORIAL, leave_tutorial_out
 
@@ -39,9 +40,8 @@ def _known_marks():
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _quick_disk():
-    """Let no answer wait for the disk: the loop would tick meanwhile."""
-    with mock.patch("os.fsync"):
+def _at_once():
+    with at_once():
         yield
 
 
@@ -86,19 +86,6 @@ class Outside:
 @pytest.fixture(scope="session")
 def shared(setup):
     return Simulation(setup, 3)
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _views_at_once():
-    """Have a trial's best views found before it is shown, however busy the machine is."""
-
-    def look(views, setup, task, head_to_world):
-        views._found = {}
-        with mock.patch.object(touch_views, "raise_thread_priority"):
-            views._look(setup, task, head_to_world, views._found)
-
-    with mock.patch.object(touch_views.BestViews, "look", look):
-        yield
 
 
 def put_back(simulation):

@@ -125,6 +125,12 @@ class Trainee:
             self._advance(self.step_s)
             for _ in range(self.ticks_a_step):
                 self._lock_step.tick()
+                self._wait_for_disk()
+
+    def _wait_for_disk(self) -> None:
+        """Let no time pass in the simulation while a change of the trial is being written."""
+        if self.loop._held.is_waiting:
+            self.loop._writer.submit(lambda: None).result(PATIENCE_S)
 
     def until(self, condition: Callable[[], bool], what: str = "it") -> None:
         """Step until a condition is true."""

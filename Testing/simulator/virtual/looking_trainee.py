@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-
 import numpy as np
 
 from rastrainer.protocol import Phase
@@ -59,10 +57,6 @@ class LookingTrainee:
         trainee = self._trainee
         task = trainee.loop.setup.scenario.task(trainee.state.training.task)
         self._pictures.use(task, trainee.state.head_to_world)
-        for thread in threading.enumerate():
-            if thread.name == "best views":
-                # How fast they are found is the machine's; on a quiet one it is no wait.
-                thread.join()
         while trainee.state.training.phase is Phase.RUNNING and trainee.state.elapsed < limit_s:
             self._label = trainee.state.training.next_point or ""
             self._touch()

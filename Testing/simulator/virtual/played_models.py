@@ -11,7 +11,6 @@ from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from unittest import mock
 
 import numpy as np
 from scipy.stats import t
@@ -26,6 +25,7 @@ from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.state import Answer
 from Testing.sdl_virtual_gamepad import VirtualGamepad
+from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import Trainee
 from Testing.simulator.virtual.drawn_pictures import DrawnPictures
 from Testing.simulator.virtual.looking_trainee import LookingTrainee
@@ -74,8 +74,6 @@ def play(
     """
     with (
         tempfile.TemporaryDirectory() as folder,
-        # A touch is told when it is on the disk: how long that takes is the machine's.
-        mock.patch("os.fsync"),
         _at_work(setup, seed, Path(folder), model) as trainee,
     ):
         trainee.start(task)
@@ -115,7 +113,8 @@ def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Ite
         preferences = json.loads(path.read_text(encoding="utf-8"))
         path.write_text(json.dumps({**preferences, "view": "never"}), encoding="utf-8")
     gamepad = VirtualGamepad(lambda *_strengths: None)
-    with ControlLoop(Simulation(setup, seed), folder / "records", speed=None) as loop:
+    loop = ControlLoop(Simulation(setup, seed), folder / "records", speed=None)
+    with at_once(), loop:
         running = RunningPresenter(loop, services, has_gamepad=True)
         gamepad.plug_in()
         trainee = SteadyTrainee(
