@@ -26,6 +26,7 @@ from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.main import main
 from Testing.slicer.recorded_trial import scored_analysis, write_recorded_trial
+from Testing.slicer.test_images_in_module import wait_for_images
 
 PROTOCOL = asset_path("studies", "published-protocol.json")
 PAIRED = """
@@ -321,6 +322,8 @@ def test_a_warning_has_a_button_that_mends_it_and_undo_brings_it_back(panels, to
 
 def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched, colin):
     touch(panels, touched)
+    # Slice views are fitted to the images once they come.
+    wait_for_images(panels)
     view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
     panels.choose("residualsTable", 4)
     assert view.GetSliceToRAS().GetElement(2, 3) == pytest.approx(
