@@ -75,8 +75,7 @@ class Boards:
 
     async def close(self, message: str) -> None:
         """Send them away because the simulator ends."""
-        for board in tuple(self._joined.values()):
-            await board.close(message)
+        await asyncio.gather(*(board.close(message) for board in self._joined.values()))
 
 
 def seat_text(now: SimulationState, seat: Seat) -> str:

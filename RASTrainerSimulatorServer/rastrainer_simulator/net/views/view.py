@@ -35,6 +35,8 @@ TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
 ONLY_WATCHES = f"A spectator drives nothing: it may send {messages.ALIVE} and nothing else."
 MAX_KEYS = 32
+CLOSE_S = 3.0
+"""How long a view has to read what waits for it, and to agree that it ends."""
 _BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING, SEAT)
 
 
@@ -175,8 +177,10 @@ class View:
 
     async def _close(self, code: int, reason: str) -> None:
         # The protocol has room for 123 bytes.
-        with contextlib.suppress(ConnectionError):
-            await self._socket.close(code=code, message=reason.encode()[:120])
+        closing = self._socket.close(code=code, message=reason.encode()[:120])
+        with contextlib.suppress(ConnectionError, asyncio.TimeoutError):
+            # A peer that no longer reads would hold it up forever.
+            await asyncio.wait_for(closing, CLOSE_S)
 
 
 class HeldInput:

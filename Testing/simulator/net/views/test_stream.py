@@ -1,3 +1,4 @@
+import asyncio
 import hashlib
 
 import aiohttp
@@ -151,6 +152,23 @@ def test_a_view_that_has_not_read_gets_the_latest_screen_and_not_all_before(serv
     messages = view.all_until(lambda m: m["type"] == "screen" and text in str(m) and _is(m, last))
     screens = [message for message in messages if message["type"] == "screen"]
     assert len(screens) < count / 2, "what nobody read was replaced, not kept"
+
+
+def test_a_view_that_reads_no_more_does_not_hold_up_the_end(served, connect):
+    view = connect(served)
+    view.join()
+    view.next("state")
+    handlers = served.server._http._runner.server.connections
+
+    def is_held_up():
+        return any(each.transport.get_write_buffer_size() > 0 for each in handlers)
+
+    text, held_up = "x" * 20_000, 0
+    while held_up < 100:
+        served.tell(Screen(instruction=ScreenMessage(f"{held_up} {text}")))
+        served.thread.run(asyncio.sleep(0.005))
+        held_up = held_up + 1 if served.thread.call(is_held_up) else 0
+    served.close()
 
 
 def _is(message: dict, text: str) -> bool:
