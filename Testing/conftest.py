@@ -97,15 +97,22 @@ def pytest_runtest_logfinish():
 
 def pytest_collection_modifyitems(items):
     files = list(dict.fromkeys(item.path for item in items))
+    slow = os.environ.get("RASTRAINER_SLOW")
+    share = _shuffled(files, slow) if slow else _spread(files)
+    items.sort(key=lambda item: share[item.path])
+
+
+def _shuffled(files, seed):
+    draw = random.Random(seed)
+    return {path: draw.random() for path in files}
+
+
+def _spread(files):
+    """Return after which share of the run each file of tests comes."""
     waiting = [path for path in files if path.relative_to(HERE).parts[0] in WAITING]
     others = [path for path in files if path not in set(waiting)]
     share = {path: number / len(others) for number, path in enumerate(others)}
-    share |= {path: SPREAD * number / len(waiting) for number, path in enumerate(waiting)}
-    slow = os.environ.get("RASTRAINER_SLOW")
-    if slow:
-        draw = random.Random(slow)
-        share = {path: draw.random() for path in files}
-    items.sort(key=lambda item: share[item.path])
+    return share | {path: SPREAD * number / len(waiting) for number, path in enumerate(waiting)}
 
 
 def pytest_collection_finish():

@@ -102,6 +102,17 @@ def accessibility_checker() -> str:
     return AXE.read_text(encoding="utf-8")
 
 
+def open_board_page(browser: Browser, url: str, code: str, locale: str = "en-US") -> Page:
+    """Open a teacher's board, paired by the code in its address; `problems` are what went wrong."""
+    context = browser.new_context(viewport={"width": 1280, "height": 720}, locale=locale)
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    page.problems = []
+    page.on("pageerror", lambda error: page.problems.append(str(error)))
+    page.goto(f"{url}/#code={code}")
+    return page
+
+
 def open_page(
     browser: Browser,
     url: str,

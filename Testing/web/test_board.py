@@ -10,7 +10,12 @@ from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import PIN, BoardClient, WatchedSimulator
 from Testing.simulator.net.views.served import ServedViews
-from Testing.web.chromium import PATIENCE_MS, accessibility_checker, draw_nothing, wait_for
+from Testing.web.chromium import (
+    accessibility_checker,
+    draw_nothing,
+    open_board_page,
+    wait_for,
+)
 from Testing.web.test_page_access import SIZES, VIOLATIONS
 
 AT_WORK = Seat("P07", "Task 2", 15, instruction="Touch 3", score=71.5, holder="gamepad")
@@ -73,13 +78,8 @@ def board(loop_thread, tmp_path, study):
 
 
 def open_board(browser, board, locale: str = "en-US"):
-    """Return the board's page, paired by the code in its address."""
-    context = browser.new_context(viewport={"width": 1280, "height": 720}, locale=locale)
-    context.set_default_timeout(PATIENCE_MS)
-    page = context.new_page()
-    page.problems = []
-    page.on("pageerror", lambda error: page.problems.append(str(error)))
-    page.goto(f"{board.url}/#code={board.server.code.code}")
+    """Return the board's page once a seat can be added."""
+    page = open_board_page(browser, board.url, board.server.code.code, locale)
     page.wait_for_selector("#add:not([hidden])")
     return page
 

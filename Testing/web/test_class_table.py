@@ -14,7 +14,7 @@ import pytest
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.study import Study
 from Testing.simulator.board.class_study import play_class
-from Testing.web.chromium import PATIENCE_MS, accessibility_checker, wait_for
+from Testing.web.chromium import accessibility_checker, open_board_page, wait_for
 from Testing.web.test_page_access import VIOLATIONS
 
 COMMAND = (sys.executable, "-m", "rastrainer_simulator.cli.main", "board", "--port", "0")
@@ -37,15 +37,10 @@ def open_class(browser, folder: Path, *options: str, locale: str = "en-US") -> I
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             url, code = LINE.search(process.stdout.readline()).groups()
-            context = browser.new_context(viewport={"width": 1280, "height": 720}, locale=locale)
-            context.set_default_timeout(PATIENCE_MS)
-            page = context.new_page()
-            page.problems = []
-            page.on("pageerror", lambda error: page.problems.append(str(error)))
-            page.goto(f"{url}/#code={code}")
+            page = open_board_page(browser, url, code, locale)
             yield page
             assert page.problems == []
-            context.close()
+            page.context.close()
         finally:
             process.terminate()
 
