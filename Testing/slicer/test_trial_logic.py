@@ -11,6 +11,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
+from rastrainer.slicer import background_work
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic import trial_delivery, trial_logic
@@ -419,17 +420,21 @@ def test_a_trial_waits_while_another_program_has_the_study_locked(lab, make_reco
 
 
 def test_a_trial_kept_when_slicer_ends_is_acknowledged_and_counted_once_by_the_next(
-    lab, make_record
+    lab, make_record, monkeypatch
 ):
+    monkeypatch.setattr(background_work, "CLOSING_S", 120.0)
     lab.link.trialCompleted.emit(make_record(TRIAL))
+    lab.link.disconnect()
     lab.logic.close()
     lab.work.close()
+    assert lab.stored().true_tre_mm is None
     assert not lab.sent("AcknowledgeTrial")
     lab.work = BackgroundWork()
     lab.logic = lab.new_logic()
     lab.logic.trialScored.connect(lab.scored.append)
+    lab.connect()
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
-    lab.run_until(lambda: lab.scored)
+    lab.run_until(lambda: lab.scored and lab.sent("AcknowledgeTrial"))
     with Study.open(lab.path) as study:
         assert len(study.history("T-001")) == 1
 
