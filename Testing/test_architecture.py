@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import functools
+import re
 import sys
 from collections import Counter
 from collections.abc import Iterator
@@ -51,6 +52,7 @@ LAYERS = {
     """,
     "the simulator": """
         rastrainer_simulator
+        rastrainer_simulator.export
         rastrainer_simulator.input, rastrainer_simulator.ops.texts, rastrainer_simulator.robot
         rastrainer_simulator.collision, rastrainer_simulator.teleoperation
         rastrainer_simulator.ops, rastrainer_simulator.training
@@ -176,6 +178,30 @@ def test_no_file_imports_itself_by_way_of_others():
 
 def test_no_floor_has_more_than_twelve_rooms():
     assert max(len(floor) for table in LAYERS for floor in floors(table)) <= 12
+
+
+def named_in_strings(module: str) -> set[str]:
+    """Return our modules that a file's strings name, such as a process to start; not docstrings."""
+    prose = {node.value for node in nodes_of(module) if isinstance(node, ast.Expr)}
+    texts = [
+        node.value
+        for node in nodes_of(module)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in prose
+    ]
+    return {name for text in texts for name in re.findall(r"rastrainer[\w.]+", text)} & set(FILES)
+
+
+def test_slicer_reaches_every_module_of_its_extension():
+    extension = {name for name, path in FILES.items() if path.is_relative_to(MODULE.parent)}
+    reached: set[str] = set()
+    found = {MODULE.stem}
+    while found:
+        module = found.pop()
+        reached.add(module)
+        package = module.rpartition(".")[0]
+        named = {package, *our_imports()[module], *named_in_strings(module)}
+        found |= named & extension - reached
+    assert extension - reached == set()
 
 
 def outsiders(modules: Iterator[str]) -> set[str]:

@@ -1,1 +1,1 @@
-"""Slicer's part without Slicer, on slicer-core's MRML nodes: for the demo and the tests."""
+"""Slicer's part without Slicer, on slicer-core's MRML nodes: for demo, tests and heads."""

@@ -14,7 +14,7 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import LABELS
-from rastrainer.slicer.head.__main__ import main as make_head
+from rastrainer_headless.make_head import main as make_head
 from rastrainer_simulator.cli.main import main
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE
 from Testing.slicer.head.dicom_series import write_series

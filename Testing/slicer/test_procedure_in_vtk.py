@@ -12,12 +12,12 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer import transforms
-from rastrainer.export.slicer_files import write_slicer_files
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.record import ProcedureRecord, RecordedAttempt, UsedRegistration
 from rastrainer.registration.registration import register
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.trial.record import TrialRecord
+from rastrainer_simulator.export.slicer_files import write_slicer_files
 from Testing.domain.procedure.made_up_procedure import (
     VESSEL_CENTER,
     made_up_meshes,

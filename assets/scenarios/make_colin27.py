@@ -20,7 +20,7 @@ from rastrainer.files.nrrd import read_nrrd
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, write_head_volume
 from rastrainer.slicer.head.head_draft import makeDraft
-from rastrainer.slicer.head.volume import readVolume
+from rastrainer_headless.volume_files import readVolume
 
 MRI = Path("/usr/share/mricron/templates/ch2.nii.gz")
 MRI_SHA256 = "a009051127f64dc3dd554d5f5b589870ea72106d9642c21b4e7093e478cfc309"

@@ -20,12 +20,12 @@ from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import write_text
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.pose import Perturbation, perturbed_pose
-from rastrainer.head.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer.head.surface_queries import outward_normal
 from rastrainer.scenario.scenario import FILE_NAME
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import touchable
+from rastrainer_simulator.authoring.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer_simulator.authoring.task_proposal import (
     PLANS,
     Proposal,

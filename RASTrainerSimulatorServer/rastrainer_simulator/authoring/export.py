@@ -17,7 +17,6 @@ from vtkmodules.vtkImagingStencil import vtkImageStencilToImage, vtkPolyDataToIm
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.head.face_removal import RADIUS_MM, face_vertices, nose_tip, without_face
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
@@ -25,6 +24,12 @@ from rastrainer.procedure.meshes import read_all_no_go
 from rastrainer.scenario.package import checked_scenario, pack
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario
 from rastrainer.scenario.writer import scenario_name, write_scenario
+from rastrainer_simulator.authoring.face_removal import (
+    RADIUS_MM,
+    face_vertices,
+    nose_tip,
+    without_face,
+)
 from rastrainer_simulator.authoring.task_check import ON_SKIN_MM
 from rastrainer_simulator.rendering.picture import draw_preview
 from rastrainer_simulator.scene.surfaces import surface

@@ -1,4 +1,4 @@
-"""Run Slicer's side, which knows MRML, in a separate process to make the draft of a head."""
+"""Make the draft of a head in a separate process, which knows MRML."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from rastrainer.errors import InputError
 from rastrainer.progress import HEAD_MADE, Progress, Warn, report_line
 from rastrainer.python_environment import python_words
 from rastrainer.scenario.writer import HeadDraft, read_draft
+
+MAKE_HEAD = "rastrainer_headless.make_head"
 
 
 class HeadProcess:
@@ -66,11 +68,11 @@ def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
 
     Args:
         volume: NRRD, NIfTI, or a folder of DICOM files.
-        options: further arguments of `python -m rastrainer.slicer.head`.
+        options: further arguments of `python -m rastrainer_headless.make_head`.
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "draft"
-        words = python_words("rastrainer.slicer.head", str(volume), "-o", str(folder), *options)
+        words = python_words(MAKE_HEAD, str(volume), "-o", str(folder), *options)
         with (
             tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors,
             subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True) as process,

@@ -15,7 +15,6 @@ from functools import cache
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.head.face_removal import nose_tip
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
 from rastrainer.registration.fits import RIGID, fit
@@ -24,6 +23,7 @@ from rastrainer.scenario.landmark_checks import FACE_LANDMARKS, NOSE_TIP, spread
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Landmark
 from rastrainer_simulator.assets import asset_path
+from rastrainer_simulator.authoring.face_removal import nose_tip
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 
 REFERENCE = {

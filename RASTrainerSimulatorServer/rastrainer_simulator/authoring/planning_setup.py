@@ -11,9 +11,9 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.pose import Perturbation, perturbed_pose
-from rastrainer.head.surface_path import SurfaceGraph
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.authoring.surface_path import SurfaceGraph
 from rastrainer_simulator.collision.collision import Collision, Surroundings
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup

@@ -12,11 +12,11 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.markups import read_markups
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_path import shortest_path_mm
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
 from rastrainer.progress import Progress, Warn
 from rastrainer.scenario.tasks import LABELS, Task, touch_order
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
+from rastrainer_simulator.authoring.surface_path import shortest_path_mm
 from rastrainer_simulator.authoring.task_proposal import PLANS, TaskPlan, target_spread
 from rastrainer_simulator.authoring.touch_order import complexity
 from rastrainer_simulator.scene.skin import Skin

@@ -9,8 +9,8 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_path import SurfaceGraph
 from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer_simulator.authoring.surface_path import SurfaceGraph
 from rastrainer_simulator.authoring.touch_order import (
     Complexity,
     Transitions,

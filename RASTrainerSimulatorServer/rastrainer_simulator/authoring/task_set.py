@@ -8,13 +8,13 @@ from functools import cached_property
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.head.face_removal import face_vertices
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_path import shortest_path_mm
 from rastrainer.head.surface_queries import outward_normals
 from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.tasks import LABELS, Task
+from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
+from rastrainer_simulator.authoring.surface_path import shortest_path_mm
 from rastrainer_simulator.authoring.task_proposal import (
     PLANS,
     CandidatePlaces,

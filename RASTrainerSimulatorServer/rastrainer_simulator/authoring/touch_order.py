@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_path import SurfaceGraph
 from rastrainer.head.surface_queries import hides, outward_normal
+from rastrainer_simulator.authoring.surface_path import SurfaceGraph
 
 LENGTH_UNIT_MM = 100.0
 ANGLE_UNIT_DEG = 90.0

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.export.motion_bids import write_motion_bids
-from rastrainer.export.slicer_files import write_slicer_files
 from rastrainer.export.tidy_csv import (
     aborted_csv,
     aborted_touches_csv,
@@ -19,7 +17,6 @@ from rastrainer.export.tidy_csv import (
     touches_csv,
     trials_csv,
 )
-from rastrainer.export.xapi import HOME_PAGE, statements_text
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.folder import read_trajectory
 from rastrainer.json_checks import accepted
@@ -33,6 +30,9 @@ from rastrainer_simulator.cli.record_store_settings import (
     home_page_url,
     read_record_store_settings,
 )
+from rastrainer_simulator.export.motion_bids import write_motion_bids
+from rastrainer_simulator.export.slicer_files import write_slicer_files
+from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.export.xapi import statements
 from rastrainer.files.reading import printable_name, read_json, read_text
 from rastrainer.files.writing import write_json
 from rastrainer.json_checks import accepted
@@ -24,6 +23,7 @@ from rastrainer_simulator.cli.record_store_settings import (
     home_page_url,
     read_record_store_settings,
 )
+from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.net.record_store import BATCH, Delivery, RecordStore, StoreAwayError
 
 CREDENTIALS_VARIABLE = "RASTRAINER_XAPI_CREDENTIALS"

@@ -7,11 +7,11 @@ from typing import Any, Protocol
 
 from rastrainer.errors import InputError
 from rastrainer.study.rating.forms import HIGHEST, LOWEST, MARKS, RatingDomain, RatingForm
-from rastrainer.study.rating.rating_work import RatingWork
 from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
 from rastrainer_simulator.input.inputs import InputDevice
 from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem
 from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.replay.playback import Playback
 
 _MARK = "mark "

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 
 from rastrainer.errors import InputError
-from rastrainer.study.rating.rating_work import RatingWork
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.control_name import ControlContext, ControlName
@@ -26,6 +25,7 @@ from rastrainer_simulator.net.views.presenter import (
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
+from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import SimulationState

@@ -14,9 +14,9 @@ from rastrainer.journal.folder import journals_of
 from rastrainer.journal.replay_track import find_track
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.study.database.study import Study
-from rastrainer.study.rating.rating_work import RatingWork
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
+from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial

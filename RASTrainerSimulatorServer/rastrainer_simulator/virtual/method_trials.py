@@ -20,7 +20,7 @@ from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
 from rastrainer.registration.trace_guidance import guided_vertices
 from rastrainer.scenario.method_task import COARSE_LANDMARKS
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.method_comparison import (
+from rastrainer_simulator.virtual.method_comparison import (
     MethodPoints,
     MethodResult,
     register_by,

@@ -8,11 +8,11 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
 from rastrainer.motion.trial_motion import trial_motion
+from rastrainer_simulator.authoring.surface_path import SurfaceGraph, shortest_path_mm
 from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
 

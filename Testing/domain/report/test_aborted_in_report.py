@@ -8,7 +8,6 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.export.tidy_csv import aborted_csv, aborted_touches_csv, write_history
-from rastrainer.export.xapi import statements
 from rastrainer.report.report import report_html
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.study import Study
@@ -17,6 +16,7 @@ from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.trainee_progress import competence_of
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.export.xapi import statements
 from Testing.domain.report.test_report import words_of
 from Testing.domain.study.played_study import study_with_trials
 from Testing.domain.trial.trial_records import make_aborted

@@ -8,7 +8,6 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
 from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import register
@@ -17,6 +16,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.planning_setup import touchable
+from rastrainer_simulator.authoring.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer_simulator.authoring.task_proposal import target_spread
 from rastrainer_simulator.authoring.touch_order import complexity
 from rastrainer_simulator.collision.collision import Collision

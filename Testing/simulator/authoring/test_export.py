@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.face_removal import RADIUS_MM, face_vertices, nose_tip, without_face
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
@@ -22,8 +21,13 @@ from rastrainer.slicer.head.mask import squaredDistances
 from rastrainer.slicer.head.volume import Volume
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.export import Grid, without_face_in
+from rastrainer_simulator.authoring.face_removal import (
+    RADIUS_MM,
+    face_vertices,
+    nose_tip,
+    without_face,
+)
 from rastrainer_simulator.cli.main import main
-from Testing.domain.head.test_face_removal import head as ball_with_a_face
 from Testing.domain.procedure.made_up_procedure import (
     made_up_procedure,
     shell,
@@ -32,6 +36,7 @@ from Testing.domain.procedure.made_up_procedure import (
 )
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario, png
 from Testing.simulator.authoring.heads import egg
+from Testing.simulator.authoring.test_face_removal import head as ball_with_a_face
 
 
 def written(folder, spots):

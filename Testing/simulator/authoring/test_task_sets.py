@@ -9,12 +9,12 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.files.markups import write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.head.face_removal import face_vertices
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import nearest_on_mesh
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.tasks import LABELS, PlannedTarget, PlannedTrajectory, read_task
 from rastrainer.scenario.writer import HeadDraft
+from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.make import ScenarioOptions, make_scenario, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.scenario_check import check_plan

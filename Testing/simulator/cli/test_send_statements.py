@@ -5,7 +5,6 @@ import json
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.export.xapi import statements
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.cli.record_store_settings import (
@@ -13,6 +12,7 @@ from rastrainer_simulator.cli.record_store_settings import (
     read_record_store_settings,
 )
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
+from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.net.record_store import BATCH, RecordStore
 from Testing.domain.study.played_study import study_with_trials
 from Testing.simulator.cli.record_store_double import CREDENTIALS, RecordStoreDouble

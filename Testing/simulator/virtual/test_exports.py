@@ -14,8 +14,6 @@ import vtk
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.export.motion_bids import participant_labels, write_motion_bids
-from rastrainer.export.slicer_files import transform_text
 from rastrainer.journal.folder import read_trajectory
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import FIDUCIAL_COUNT
@@ -23,6 +21,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.export.motion_bids import participant_labels, write_motion_bids
+from rastrainer_simulator.export.slicer_files import transform_text
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
 
 VALIDATOR = Path(sys.executable).with_name("bids-validator-deno")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head import dicom_series
-from rastrainer.slicer.head.dicom_series import isCutDicom
+from rastrainer_headless import dicom_series
+from rastrainer_headless.dicom_series import isCutDicom
 from Testing.slicer.head.dicom_series import element, slice_file
 
 SLICE = slice_file(np.zeros((8, 8), np.int16), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), "1.2.3", 0)

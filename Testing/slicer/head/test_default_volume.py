@@ -9,7 +9,7 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.head.volume import readVolume
+from rastrainer_headless.volume_files import readVolume
 from rastrainer_simulator.assets import asset_path
 
 SCENARIO = load_scenario(asset_path("scenarios", "colin27"))

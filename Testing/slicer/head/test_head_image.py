@@ -10,7 +10,8 @@ from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.head_draft import makeDraft
 from rastrainer.slicer.head.images_and_skull import HOUNSFIELD, imageOf
-from rastrainer.slicer.head.volume import Volume, readVolume
+from rastrainer.slicer.head.volume import Volume
+from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, depth_mm, phantom
 
 SIZE = 0.5

@@ -4,7 +4,8 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.volume import Volume, readVolume, volumeFromNode
+from rastrainer.slicer.head.volume import Volume, volumeFromNode
+from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.placed import add_transform, add_volume
 
 

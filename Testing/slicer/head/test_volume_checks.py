@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.dicom_series import readDicomFolder
 from rastrainer.slicer.head.head_draft import checkVolume, makeDraft
+from rastrainer_headless.dicom_series import readDicomFolder
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE, block
 from Testing.slicer.head.dicom_series import write_series
 

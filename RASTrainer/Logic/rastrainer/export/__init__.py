@@ -1,1 +1,1 @@
-"""What leaves a study for other programs: tables, Motion-BIDS, xAPI, Slicer's files."""
+"""What leaves a study: tables for other programs, and all that it has of one trainee."""

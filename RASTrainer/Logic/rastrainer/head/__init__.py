@@ -1,1 +1,1 @@
-"""A head: its mesh, surface paths, normals, pose, images, and the removal of its face."""
+"""A head: its mesh, surface, pose and images."""

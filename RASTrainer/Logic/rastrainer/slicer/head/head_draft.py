@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -17,18 +16,7 @@ from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
 from rastrainer.slicer.head.images_and_skull import BONE_MM, SCALP_MM, imageOf, skullOf
 from rastrainer.slicer.head.level_set import isHounsfield
 from rastrainer.slicer.head.segment import SegmentImage, forSegment, volumeOfSegment
-from rastrainer.slicer.head.volume import Volume, asFloat, readVolume
-
-
-def readAnyVolume(path: Path) -> Volume:
-    """Read an NRRD or NIfTI file, or a folder with a DICOM series.
-
-    Raises:
-        InputError: it cannot be read.
-    """
-    from rastrainer.slicer.head.dicom_series import readDicomFolder
-
-    return readDicomFolder(path) if Path(path).is_dir() else readVolume(path)
+from rastrainer.slicer.head.volume import Volume, asFloat
 
 
 def makeDraft(

@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-import gzip
-import math
-import os
-import struct
-import zlib
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -86,28 +80,6 @@ def matrixOf(matrix: vtk.vtkMatrix4x4) -> np.ndarray:
     return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
 
 
-def readVolume(path: Path) -> Volume:
-    """Read a volume of any format that Slicer's volume reader knows, such as NRRD or NIfTI.
-
-    Raises:
-        InputError: the file is missing or is no such volume.
-    """
-    if not Path(path).is_file():
-        raise InputError(f"{path} does not exist; give a volume such as a .nii.gz or .nrrd file.")
-    if str(path).endswith((".nii", ".nii.gz")) and isCutNifti(path):
-        raise InputError(f"{path} is cut short; copy the file again.")
-    # Only here: the process that makes heads does without MRML.
-    import slicer
-
-    scene = slicer.vtkMRMLScene()
-    node = scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode")
-    storage = slicer.vtkMRMLVolumeArchetypeStorageNode()
-    storage.SetFileName(str(path))
-    if not storage.ReadData(node) or node.GetImageData() is None:
-        raise InputError(f"{path} could not be read as a volume such as NIfTI or NRRD.")
-    return volumeFromNode(node)
-
-
 def onRasGrid(volume: Volume, spacingMm: float) -> Volume:
     """Return the volume on a cubic grid whose axes run to the right, anterior and superior.
 
@@ -160,34 +132,3 @@ def _repeated(volume: Volume, axis: int, end: int, downMm: float) -> Volume:
     matrix = volume.ijkToRas.copy()
     matrix[:3, 3] -= widths[axis][0] * matrix[:3, axis]
     return Volume(np.pad(volume.values, widths, mode="edge"), matrix)
-
-
-_HEADER_SIZE = 348
-_DIMENSIONS, _BITS, _IMAGE_BEGINS = 40, 72, 108
-"""Where the header of NIfTI-1 (nifti1.h) has `dim`, `bitpix` and `vox_offset`."""
-
-
-def isCutNifti(path: Path) -> bool:
-    """Return whether a `.nii` or `.nii.gz` file ends too early; False for any other file."""
-    opened = gzip.open if path.suffix == ".gz" else open
-    try:
-        with opened(path, "rb") as file:
-            header = file.read(_HEADER_SIZE)
-            return file.seek(0, os.SEEK_END) < _niftiSize(header)
-    except (EOFError, zlib.error):
-        return True
-    except OSError:
-        return False
-
-
-def _niftiSize(header: bytes) -> float:
-    """Return how many bytes a NIfTI-1 file has at least, 0 where it is none."""
-    for order in "<>":
-        if len(header) == _HEADER_SIZE and struct.unpack_from(f"{order}i", header)[0] == len(
-            header
-        ):
-            count, *sizes = struct.unpack_from(f"{order}8h", header, _DIMENSIONS)
-            (bits,) = struct.unpack_from(f"{order}h", header, _BITS)
-            (begins,) = struct.unpack_from(f"{order}f", header, _IMAGE_BEGINS)
-            return begins + math.prod(sizes[: max(0, count)]) * bits / 8
-    return 0.0

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from rastrainer.head.surface_path import SurfaceGraph
+from rastrainer_simulator.authoring.surface_path import SurfaceGraph
 from rastrainer_simulator.authoring.touch_order import Complexity, complexity, turns_deg
 from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
 

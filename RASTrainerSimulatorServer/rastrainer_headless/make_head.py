@@ -1,6 +1,6 @@
 """Make the draft of a head from a volume.
 
-    python -m rastrainer.slicer.head VOLUME -o DIR [--threshold T] [--cut S] [--no-skull]
+    python -m rastrainer_headless.make_head VOLUME -o DIR [--threshold T] [--cut S] [--no-skull]
         [--no-volume]
 
 Standard output has a line such as ` 30%  Filling cavities` a step, and `Warning: …` lines. At the
@@ -25,7 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _parser().parse_args(argv)
     try:
         from rastrainer.slicer.head.head_body import HeadSettings
-        from rastrainer.slicer.head.head_draft import makeDraft, readAnyVolume
+        from rastrainer.slicer.head.head_draft import makeDraft
+        from rastrainer_headless.volume_files import readAnyVolume
     except ImportError as error:
         print(
             f"A head cannot be made here, {error.name} is missing: pip install slicer-core scipy",
@@ -62,7 +63,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m rastrainer.slicer.head")
+    parser = argparse.ArgumentParser(prog="python -m rastrainer_headless.make_head")
     parser.add_argument("volume", type=Path)
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
     parser.add_argument("--threshold", type=float, help="value that parts air from skin")

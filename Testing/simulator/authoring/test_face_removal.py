@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from rastrainer.head.face_removal import RADIUS_MM, face_vertices, nose_tip, without_face
 from rastrainer.head.mesh import HeadMesh
+from rastrainer_simulator.authoring.face_removal import (
+    RADIUS_MM,
+    face_vertices,
+    nose_tip,
+    without_face,
+)
 from Testing.domain.head.spheres import sphere_mesh
 
 NOSE = np.array([4.0, 90.0, -35.0])
