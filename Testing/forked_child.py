@@ -11,7 +11,7 @@ def in_child(function, *arguments):
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=lambda: sender.send(function(*arguments)))
     process.start()
-    assert receiver.poll(30)
+    assert receiver.poll(120)
     result = receiver.recv()
     process.join()
     return result

@@ -63,6 +63,7 @@ class PeerSockets:
         self._received = received
         self._changed = changed
         self._peers: dict[int, socket.socket] = {}
+        self._receivers: dict[int, threading.Thread] = {}
         self._lock = threading.Lock()
         self._stopped = threading.Event()
         self._nextPeer = 0
@@ -105,9 +106,11 @@ class PeerSockets:
         if self._listener is not None:
             self._listener.close()
         with self._lock:
-            peers = list(self._peers.values())
+            peers, receivers = list(self._peers.values()), list(self._receivers.values())
         for peer in peers:
             _shut(peer)
+        for receiver in receivers:
+            receiver.join()
 
     def _keepConnected(self) -> None:
         while not self._stopped.is_set():
@@ -134,11 +137,12 @@ class PeerSockets:
 
     def _add(self, peer: socket.socket) -> None:
         peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        number = self._nextPeer
+        self._nextPeer += 1
+        receiver = threading.Thread(target=self._receive, args=(number, peer), daemon=True)
         with self._lock:
-            number = self._nextPeer
-            self._nextPeer += 1
-            self._peers[number] = peer
-        threading.Thread(target=self._receive, args=(number, peer), daemon=True).start()
+            self._peers[number], self._receivers[number] = peer, receiver
+        receiver.start()
 
     def _receive(self, number: int, peer: socket.socket) -> None:
         try:
@@ -150,7 +154,7 @@ class PeerSockets:
         finally:
             _shut(peer)
             with self._lock:
-                del self._peers[number]
+                del self._peers[number], self._receivers[number]
 
 
 def _readMessage(stream) -> tuple[wire.Header, bytes] | None:

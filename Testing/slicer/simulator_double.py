@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from rastrainer.igtl.client import Reply
 from rastrainer.igtl.content import (
     ERROR_KEY,
     FAIL,
@@ -22,7 +23,7 @@ from rastrainer.igtl.content import (
 )
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
-from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from Testing.free_port import free_port
@@ -104,6 +105,9 @@ class SimulatorDouble:
                 return
             with self._lock:
                 self._peers.append(peer)
+            if self._isClosed.is_set():
+                # Whoever closes all peers may have missed this one.
+                _close(peer)
             threading.Thread(target=self._receive, args=(peer,), daemon=True).start()
 
     def _receive(self, peer: socket.socket) -> None:
@@ -118,7 +122,7 @@ class SimulatorDouble:
                         self._greet(peer, message)
                     self.received.put(message)
                     if type(message.content) is Command:
-                        self._answer(message.content)
+                        self._answer(peer, message.content)
         except OSError:
             pass
 
@@ -137,7 +141,7 @@ class SimulatorDouble:
                     with contextlib.suppress(OSError):
                         peer.sendall(pack(self.heartbeat))
 
-    def _answer(self, command: Command) -> None:
+    def _answer(self, peer: socket.socket, command: Command) -> None:
         arguments = json.loads(command.body or "{}")
         self.commands.append((command.name, arguments))
         answer = self.responder(command.name, arguments)
@@ -146,9 +150,9 @@ class SimulatorDouble:
         is_refusal = isinstance(answer, str)
         metadata = {STATUS_KEY: FAIL, ERROR_KEY: answer} if is_refusal else {STATUS_KEY: SUCCESS}
         body = "{}" if is_refusal else json.dumps(answer)
-        self.send(
-            DeviceName.COMMAND, CommandReply(command.command_id, command.name, body), metadata
-        )
+        reply = CommandReply(command.command_id, command.name, body)
+        with self._lock:
+            peer.sendall(pack(Message(DeviceName.COMMAND, reply, metadata)))
 
 
 def _close(open_socket: socket.socket) -> None:
@@ -177,6 +181,16 @@ def process_link(link: Link) -> None:
 def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 120.0) -> None:
     """Let the link work until `condition()`."""
     wait_until(condition, lambda: process_link(link), timeout)
+
+
+def run_until_received(link: Link) -> None:
+    """Let the link work until the simulator has received all commands that were sent before.
+
+    They arrive in their order: once one that is sent now is answered, none is on its way.
+    """
+    replies: list[Reply] = []
+    link.send(CommandName.LIST_TASKS, onReply=replies.append)
+    run_link_until(link, lambda: replies)
 
 
 def run_logic_until(

@@ -71,9 +71,9 @@ def test_it_is_in_the_study_before_it_is_acknowledged(lab):
 
 
 def test_twice_is_once(lab):
-    for _ in range(3):
+    for count in range(1, 4):
         lab.offer(make_aborted())
-        lab.run_until(lambda: lab.acknowledged())
+        lab.run_until(lambda count=count: len(lab.acknowledged()) == count)
     with Study.open(lab.path) as study:
         assert len(AbortedTrials(study).of("T-001")) == 1
 
@@ -81,8 +81,8 @@ def test_twice_is_once(lab):
 def test_what_cannot_be_kept_is_reported_once_and_not_acknowledged(lab):
     lab.is_study_broken = True
     for _ in range(3):
-        lab.offer(make_aborted())
-    lab.run_until(lambda: lab.problems)
+        lab.link.trialAborted.emit(make_aborted())
+        lab.run_until(lambda: not lab.work.isBusy)
     lab.is_study_broken = False
     lab.offer(make_aborted())
     lab.run_until(lambda: lab.acknowledged())

@@ -99,7 +99,7 @@ def test_a_command_that_is_not_utf_8_is_logged_and_the_next_one_is_read(
 def test_an_answer_that_is_not_utf_8_is_a_reply_with_a_sentence(
     link, simulator, monkeypatch, status, body, error
 ):
-    def answer(command):
+    def answer(_peer, command):
         reply = CommandReply(command.command_id, command.name, body)
         metadata = {"Status": status, "ErrorMessage": "No Geh?use."}
         simulator.send_bytes(with_latin_1(Message(DeviceName.COMMAND, reply, metadata)))

@@ -212,11 +212,13 @@ def test_a_crash_of_slicer_leaves_the_simulator_alone(tmp_path):
         "import sys, time\n"
         "from rastrainer.slicer.program.child_process import ChildProcess\n"
         "child = ChildProcess([sys.executable, '-c', sys.argv[1], sys.argv[2]])\n"
+        "while not any('kinematics' in line for line in child.takeLines()):\n"
+        "    time.sleep(0.01)\n"
+        "print('It has said all.', flush=True)\n"
         "time.sleep(600)\n"
     )
     child = ChildProcess([sys.executable, "-c", slicer, SIMULATOR, tmp_path])
-    wait_until((tmp_path / "pid").exists, lambda: None, LONG_S)
-    wait_until(lambda: (tmp_path / "pid").read_text(), lambda: None, LONG_S)
+    wait_until(lambda: "It has said all." in child.takeLines(), lambda: None, LONG_S)
     kill(child._process.pid)
     wait_until(lambda: child.exitStatus is not None, lambda: None, LONG_S)
     try:

@@ -200,11 +200,8 @@ def test_each_connection_opens_with_the_nameless_status_that_slicer_sends(connec
 def test_an_answer_completes_its_command(scene):
     with SimulatorDouble(lambda name, arguments: {"echo": name, **arguments}) as simulator:
         connector = started_connector(scene, simulator)
-        command = HeadlessCommand()
-        command.SetName("ListTasks")
-        command.SetCommandContent('{"a": 1}')
+        command = sent(connector, "ListTasks", '{"a": 1}')
         completed = count_events(command, command.CommandCompletedEvent)
-        connector.SendCommand(command)
         wait_for(connector, lambda: completed)
         assert command.GetSuccessful()
         assert command.GetResponseContent() == '{"echo": "ListTasks", "a": 1}'

@@ -4,6 +4,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Point, Points, Status, String
+from rastrainer.igtl.message import Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.link.heartbeat import RECONNECT_AFTER_S, LinkState
 from rastrainer.slicer.link.link import POSES_HZ, Link
@@ -11,8 +12,8 @@ from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 
-def beat(simulator, version=PROTOCOL_VERSION):
-    simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=version))
+def beat(simulator):
+    simulator.send_bytes(pack(simulator.heartbeat))
 
 
 def connect(link, simulator):
@@ -68,6 +69,7 @@ def test_each_state_is_emitted_once(link, simulator, clock):
 
 
 def test_silence_is_reported_and_a_long_one_ends_the_half_open_connection(link, simulator, clock):
+    clock.stop()
     connect(link, simulator)
     # One that is on its way may end the silence once.
     simulator.beats = False
@@ -81,6 +83,7 @@ def test_silence_is_reported_and_a_long_one_ends_the_half_open_connection(link, 
 
 
 def test_a_connection_that_was_dead_before_the_first_heartbeat_is_made_anew(link, simulator, clock):
+    clock.stop()
     simulator.beats = False
     link.connectTo(port=simulator.port)
     run_link_until(link, lambda: simulator.commands)
@@ -92,7 +95,10 @@ def test_a_connection_that_was_dead_before_the_first_heartbeat_is_made_anew(link
 
 def test_a_simulator_of_another_version_is_named_and_gets_no_commands(link, simulator):
     connect(link, simulator)
-    beat(simulator, PROTOCOL_VERSION + 1)
+    # Of two heartbeats that come at once, the link sees the later alone.
+    other = Status(Status.OK, subcode=PROTOCOL_VERSION + 1)
+    simulator.heartbeat = Message(DeviceName.SIM_SERVER, other)
+    beat(simulator)
     run_link_until(link, lambda: link.status.state is LinkState.WRONG_VERSION)
     replies = []
     link.send("ListTasks", onReply=replies.append)

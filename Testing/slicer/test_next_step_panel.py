@@ -10,6 +10,7 @@ from PySide6 import QtCore, QtTest
 
 from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from Testing.slicer.simulator_double import run_until_received
 
 UI = Path(__file__).parents[2] / "RASTrainer" / "Resources" / "UI"
 SCREEN_HEIGHT = 730
@@ -129,6 +130,7 @@ def test_the_trial_run_waits_for_the_tutorial_unless_the_instructor_unchecks_it(
     instructor.wait_for("Start the trial run")
     host.press("nextStepButton")
     instructor.wait_until(lambda: "tutorial first" in host.text("nextStepText"), "it says so")
+    run_until_received(host.widget.logic.session.link)
     names = [name for name, _arguments in simulator.commands]
     assert ("StartTutorial" in names, "StartTask" in names) == (True, False)
     host.check("tutorialCheckBox", False)

@@ -58,8 +58,13 @@ def study_path(panels):
 
 
 @pytest.fixture
-def add_trial(study_path, make_record, colin):
-    """Returns a function that puts a scored trial on the built-in head into the study."""
+def add_trial(panels, make_record, colin):
+    """Returns a function that puts a scored trial on the built-in head into the study.
+
+    The module does so itself: what another program has done, it would notice and show at any time,
+    in place of what has been said since.
+    """
+    study = panels.widget.logic.session.trainees.study
 
     def add(number, trainee, **changes):
         fiducials = colin.task("task-1").fiducials
@@ -75,8 +80,7 @@ def add_trial(study_path, make_record, colin):
         for point, position in zip(record["points"], touched.tolist(), strict=True):
             point["positionMm"] = position
         analysis = scored_analysis(record, colin)
-        with Study.open(study_path) as study:
-            study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
+        study.add_trial(record, analysis.fits.values(), analysis.target_errors, analysis.score)
 
     return add
 

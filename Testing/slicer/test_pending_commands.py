@@ -52,8 +52,8 @@ class Room:
         """Let the connector work until it has asked for a turn; the link's own poll does not."""
         wait_until(lambda: self.soon, self.link.connector.PeriodicProcess)
 
-    def ask(self, name="ListTasks", **more):
-        self.link.send(name, onReply=self.replies.append, **more)
+    def ask(self, timeoutS=600.0):  # noqa: N803 (its name in Slicer)
+        self.link.send("ListTasks", onReply=self.replies.append, timeoutS=timeoutS)
 
     def asked(self):
         return [name for name, _arguments in self.simulator.commands if name != "Hello"]

@@ -17,7 +17,7 @@ from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer_simulator.assets import asset_path
-from Testing.slicer.simulator_double import SimulatorDouble
+from Testing.slicer.simulator_double import SimulatorDouble, run_until_received
 
 LEFT = QtCore.Qt.MouseButton.LeftButton
 
@@ -93,7 +93,7 @@ def trial(host):
 def test_pause_stays_pause_though_the_trainee_pauses_meanwhile(trial, name):
     trial.tell("running")
     press_slowly(trial.host, name, lambda: trial.tell("paused"))
-    trial.wait_until(lambda: trial.commands)
+    run_until_received(trial.host.widget.logic.session.link)
     assert trial.commands == ["Pause"]
 
 
@@ -109,6 +109,7 @@ def test_a_trial_that_begins_while_the_question_is_open_is_not_aborted(trial, mo
     trial.host.unfold("abortButton")
     trial.host.press("abortButton")
     assert "was not aborted" in trial.host.messages[-1].text
+    run_until_received(trial.host.widget.logic.session.link)
     assert trial.commands == []
 
 

@@ -73,7 +73,7 @@ def test_the_touches_are_registered_as_soon_as_the_procedure_waits_for_that(thea
     assert used["freMm"] == pytest.approx(0.0, abs=1e-9)
     theater.say("verifying", registrationInUse=True)
     theater.run_until(lambda: theater.procedure.status.isRegistered)
-    assert len(theater.sent("UseRegistration")) == 1
+    assert len(theater.all_sent("UseRegistration")) == 1
 
 
 def test_after_touching_again_the_touches_are_registered_again(theater):

@@ -6,10 +6,11 @@ from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.slicer.link.heartbeat import RECONNECT_AFTER_S, LinkState
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.peer_sockets import RETRY_PERIOD_S, takeCrashes
-from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until
 from Testing.slicer.strangers import is_silent, says, stranger, web_server
 
 HTTP = b"HTTP/1.1 408 Request Time-out\r\n"
+SILENT = "accepts the connection and sends nothing"
 WEB_PAGE = "is a web page (HTTP), not the OpenIGTLink port of a simulator"
 
 
@@ -42,9 +43,9 @@ def test_the_stand_in_of_the_connector_notices_commands_that_died_too_early(scen
     with stranger(says(HTTP)) as port:
         connector.SetTypeClient("127.0.0.1", port)
         connector.Start()
-        while not takeCrashes():
-            time.sleep(0.01)
+        wait_until(takeCrashes, lambda: None)
         connector.Stop()
+    takeCrashes()  # It may have connected again before it was stopped.
 
 
 def test_a_simulator_that_comes_to_the_port_of_a_web_page_is_found(link, clock):
@@ -87,9 +88,8 @@ def test_after_a_half_open_connection_the_peer_is_recognized_again(link, clock):
     with stranger(is_silent, simulator.port):
         clock.ahead += RECONNECT_AFTER_S + 1.0
         link.process()
-        clock.ahead += 4.0
-        run_until_state(link, LinkState.OTHER_PROGRAM)
-        assert "sends nothing" in link.status.sentence
+        run_link_until(link, lambda: clock.goes_on() and SILENT in link.status.sentence)
+        assert link.status.state is LinkState.OTHER_PROGRAM
     simulator.close()
 
 

@@ -7,6 +7,8 @@ from collections import Counter
 import pytest
 from PySide6 import QtWidgets
 
+from Testing.slicer.test_images_in_module import wait_for_images
+
 KEPT = (
     "RASTrainer.RASTrainerWidget",
     "rastrainer.panels.panel_stack.PanelStack",
@@ -28,21 +30,21 @@ def objects(host):
 
 
 def living(host):
-    """Count what must not become more: our objects, observers of the scene, widgets, threads."""
+    """Count what must not become more: our objects, observers of the scene, nodes, widgets."""
     for _round in range(3):
         counts = objects(host)
     nodes = [host.scene.GetNthNode(index) for index in range(host.scene.GetNumberOfNodes())]
     counts["observers"] = sum(str(one).count("vtkObserver (") for one in (host.scene, *nodes))
     counts["nodes"] = len(nodes)
     counts["widgets"] = len(QtWidgets.QApplication.allWidgets())
-    counts["threads"] = threading.active_count()
     return counts
 
 
-def settled(host, before):
-    """Return what lives once what was under way in the background has ended.
+def settled(host, before, threads):
+    """Return what lives once what was under way in the background has ended, with its threads.
 
-    `before` is what lived before the module was opened: tests of before may have left theirs.
+    `before` is what lived before the module was opened, and `threads` how many: tests of before may
+    have left theirs.
     """
 
     def is_one():
@@ -50,6 +52,7 @@ def settled(host, before):
         return all(now[name] - before[name] == 1 for name in KEPT)
 
     host.wait_until(is_one, "only one module lives")
+    host.wait_until(lambda: threading.active_count() <= threads, "its threads have ended")
     return living(host)
 
 
@@ -60,6 +63,7 @@ def used(host):
     def use():
         host.open()
         host.press("showScenarioButton")
+        wait_for_images(host)
         host.press("createTraineeButton")
         host.press("placeTargetButton")
         host.place(10.0, 20.0, 30.0)
@@ -72,16 +76,14 @@ def used(host):
 
 
 def test_a_module_that_is_reloaded_many_times_leaves_no_more_behind_than_once(host, used):
-    before = living(host)
+    before, threads = living(host), threading.active_count()
     used()
     host.reload()
-    once = settled(host, before)
+    once = settled(host, before, threads)
     for _time in range(2):
         used()
         host.reload()
-    many = settled(host, before)
-    # A thread of the module before may still be ending.
-    assert many.pop("threads") <= once.pop("threads")
+    many = settled(host, before, threads)
     assert many == once
     assert {name: many[name] - before[name] for name in KEPT} == dict.fromkeys(KEPT, 1)
 

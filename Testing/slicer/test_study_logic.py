@@ -109,9 +109,11 @@ def test_the_study_starts_only_what_comes_next(enrolled):
     room.needsTutorial = True
     logic.startStep()
     logic.startTrial("trial-run", "hmd", isTutorialFirst=False)
-    room.run_until(lambda: len(room.sent("StartTutorial")) == 2)
-    room.run_until(lambda: room.logic.learner == "T001")
-    assert room.sent("StartTask") == [], "within a study, its protocol decides"
+    # What is received has not been answered yet: how, is changed below.
+    room.run_until(lambda: len(room.answers) == 2)
+    assert room.logic.learner == "T001"
+    assert len(room.sent("StartTutorial")) == 2
+    assert room.all_sent("StartTask") == [], "within a study, its protocol decides"
     room.needsTutorial = False
     logic.startStep()
     room.run_until(lambda: room.sent("StartTask"))
@@ -401,8 +403,8 @@ def test_answers_at_the_simulator_are_stored_once_for_any_chosen_trainee(enrolle
     answered(enrolled, answers=[3] * 16)
     enrolled.room.run_until(lambda: told(enrolled).get("kind") == "trial-run")
     answered(enrolled, answers=[3] * 16)
-    sent = len(enrolled.room.sent("StudyStep"))
-    enrolled.room.run_until(lambda: len(enrolled.room.sent("StudyStep")) > sent)
+    # The first step, and what comes next after each answer.
+    enrolled.room.run_until(lambda: len(enrolled.room.sent("StudyStep")) == 4)
     (kept,) = StudyProgress(enrolled.trainees.study).answers()
     assert (kept.trainee, kept.step.name, kept.answers) == ("T001", "hmd/before/ssq", (1,) * 16)
     assert told(enrolled)["kind"] == "trial-run"
@@ -452,8 +454,8 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     AbortedTrials(enrolled.trainees.study).add(aborted)
     enrolled.logic.countAborted(AbortedTrial.from_json(aborted))
     room = enrolled.room
-    room.run_until(lambda: room.sent("StudyStep")[-1]["kind"] == "repeat")
-    assert room.sent("StudyStep")[-1]["task"] == step.task
+    room.run_until(lambda: told(enrolled).get("kind") == "repeat")
+    assert told(enrolled)["task"] == step.task
     for start in (
         enrolled.logic.startStep,
         lambda: enrolled.logic.startTrial(step.task, step.mode),
@@ -465,7 +467,7 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     with pytest.raises(InputError, match="10 to 500"):
         enrolled.logic.explainRepeat("because")
     enrolled.logic.explainRepeat("the fire alarm went off")
-    room.run_until(lambda: room.sent("StudyStep")[-1]["kind"] == "trial")
+    room.run_until(lambda: told(enrolled)["kind"] == "trial")
     assert enrolled.logic.offProtocolSentence() == ""
 
 

@@ -15,7 +15,7 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.trace_logic import TraceLogic
 from rastrainer.slicer.scene.scene import Role
 from rastrainer.slicer.scene.trace_nodes import DISTANCE_SCALARS, MODEL
-from Testing.slicer.simulator_double import run_logic_until
+from Testing.slicer.simulator_double import run_logic_until, run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
 LANDMARKS = {"Nose": (0.0, 90.0, 0.0), "Right": (90.0, 0.0, 0.0), "Top": (0.0, 0.0, 90.0)}
@@ -170,7 +170,10 @@ def test_all_of_it_goes_when_the_trial_ends(tracing):
 def test_what_the_simulator_says_wrongly_shows_nothing_and_breaks_nothing(tracing):
     tracing.draw(40, trace={"kept": "many", "strokes": None, "on": 3})
     tracing.places = np.full((600, 3), np.nan)
-    tracing.run_until(lambda: tracing.sent("GetTrial") and not tracing.work.isBusy)
+    tracing.run_until(lambda: tracing.sent("GetTrial"))
+    run_until_received(tracing.link)
+    # What came before its answer has come, too.
+    tracing.run_until(lambda: not tracing.work.isBusy)
     assert tracing.shown is None
     tracing.draw(12)
     tracing.run_until(has_points(tracing, 12))

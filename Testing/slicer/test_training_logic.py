@@ -36,7 +36,7 @@ def test_the_trial_run_waits_for_the_tutorial_where_the_simulator_says_so(room):
     room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)
     room.run_until(lambda: room.answers)
     assert room.sent("StartTutorial") == [{"trainee": "T001", "mode": "desktop"}]
-    assert room.sent("StartTask") == []
+    assert room.all_sent("StartTask") == []
     assert room.answers[-1].startswith("T001 does the tutorial first")
     assert room.logic.learner == "T001"
     room.needsTutorial = False
@@ -52,14 +52,14 @@ def test_only_the_trial_run_waits_and_only_where_that_is_wanted(room):
     room.logic.start("T001", "task-1", "desktop", isTutorialFirst=True)
     room.logic.start("T001", "trial-run", "desktop")
     room.run_until(lambda: len(room.sent("StartTask")) == 2)
-    assert room.sent("StartTutorial") == []
+    assert room.all_sent("StartTutorial") == []
 
 
 def test_a_tutorial_that_is_refused_says_why(room):
     room.refusal = "P07 is doing the tutorial."
     room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)
     room.run_until(lambda: room.answers)
-    assert (room.answers, room.sent("StartTask")) == (["P07 is doing the tutorial."], [])
+    assert (room.answers, room.all_sent("StartTask")) == (["P07 is doing the tutorial."], [])
 
 
 def test_the_fiducials_of_a_running_task_are_shown_before_the_first_touch(room, scenario):
@@ -133,7 +133,7 @@ def test_a_trial_that_started_during_the_question_about_another_is_not_aborted(r
     room.run_until(lambda: room.logic.progress.trialId == "another")
     with pytest.raises(InputError, match="was not aborted"):
         room.logic.abort(TRIAL)
-    assert room.sent("Abort") == []
+    assert room.all_sent("Abort") == []
 
 
 def test_a_refusal_is_reported_in_the_simulators_words(room):

@@ -23,7 +23,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import review
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer_headless.connector import headlessKit
-from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until
+from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until, run_until_received
 
 TRIAL = str(uuid.UUID(int=1))
 OTHER = str(uuid.UUID(int=2))
@@ -90,6 +90,11 @@ class Lab:
     def sent(self, name):
         return [arguments for sent, arguments in self.simulator.commands if sent == name]
 
+    def all_sent(self, name):
+        """Return the arguments of all commands of a name, none of which is still on its way."""
+        run_until_received(self.link)
+        return self.sent(name)
+
     def run_until(self, condition):
         run_logic_until(self.link, self.work, condition)
 
@@ -144,11 +149,11 @@ def test_twice_is_once(lab, make_record):
     for _ in range(3):
         lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
-    acknowledged = len(lab.sent("AcknowledgeTrial"))
+    acknowledged = len(lab.all_sent("AcknowledgeTrial"))
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: len(lab.sent("AcknowledgeTrial")) > acknowledged)
     assert len(lab.scored) == 1
-    assert len(lab.sent("TrialScored")) == 1
+    assert len(lab.all_sent("TrialScored")) == 1
     with Study.open(lab.path) as study:
         assert len(study.history("T-001")) == 1
 
@@ -159,10 +164,10 @@ def test_a_trial_is_not_acknowledged_before_it_is_kept(lab, make_record):
     lab.logic = lab.new_logic()
     lab.logic.problemFound.connect(lab.problems.append)
     for _ in range(3):
-        lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
-    lab.run_until(lambda: lab.problems)
+        lab.link.trialCompleted.emit(make_record(TRIAL))
+        lab.run_until(lambda: not lab.work.isBusy)
     assert lab.problems == ["A trial could not be stored: The disk is full."]
-    assert not lab.sent("AcknowledgeTrial")
+    assert not lab.all_sent("AcknowledgeTrial")
     lab.is_study_broken = False
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.sent("AcknowledgeTrial"))
@@ -173,7 +178,7 @@ def test_an_invalid_record_is_reported_and_not_acknowledged(lab, make_record):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL, mode="cinema"))
     lab.run_until(lambda: lab.problems)
     assert "mode must be one of desktop, hmd" in lab.problems[0]
-    assert not lab.sent("AcknowledgeTrial")
+    assert not lab.all_sent("AcknowledgeTrial")
 
 
 def test_a_trial_that_cannot_be_scored_is_kept_all_the_same(lab, make_record):
@@ -184,7 +189,7 @@ def test_a_trial_that_cannot_be_scored_is_kept_all_the_same(lab, make_record):
         "A trial is stored but cannot be scored: The scenario elsewhere is not here."
     ]
     assert lab.stored().score is None
-    assert not lab.sent("TrialScored")
+    assert not lab.all_sent("TrialScored")
 
 
 def test_a_refused_score_is_reported_and_the_trial_kept(lab, make_record):
@@ -204,7 +209,7 @@ def test_a_trial_whose_contacts_were_not_measured_is_kept_with_its_truth_and_not
     assert "contacts were not measured" in lab.problems[0]
     assert lab.stored().true_tre_mm is not None
     assert lab.stored().score is None
-    assert not lab.sent("TrialScored")
+    assert not lab.all_sent("TrialScored")
 
 
 def test_an_unacknowledged_score_is_sent_over_the_next_connection(lab, make_record):
@@ -373,7 +378,7 @@ def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, revie
     ):
         lab.simulator.send_command("TrialCompleted", make_record(**changes))
         lab.run_until(lambda told=told: lab.problems and told in lab.problems[-1])
-    assert len(lab.sent("AcknowledgeTrial")) == 1
+    assert len(lab.all_sent("AcknowledgeTrial")) == 1
     # Once to register it, once with its truth.
     assert len(reviews) == 2
     with Study.open(lab.path) as study:
@@ -411,7 +416,7 @@ def test_a_trial_waits_while_another_program_has_the_study_locked(lab, make_reco
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.problems)
     assert "Another program has the study" in lab.problems[0]
-    assert {"trialId": TRIAL} not in lab.sent("AcknowledgeTrial")
+    assert {"trialId": TRIAL} not in lab.all_sent("AcknowledgeTrial")
     other.execute("ROLLBACK")
     other.close()
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))

@@ -9,7 +9,7 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.scene.scene import findNode
 from rastrainer_headless.connector import headlessKit
-from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
+from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, run_until_received
 
 TRIAL = str(uuid.UUID(int=5))
 
@@ -44,6 +44,11 @@ class Room:
 
     def sent(self, name):
         return [arguments for sent, arguments in self.simulator.commands if sent == name]
+
+    def all_sent(self, name):
+        """Return the arguments of all commands of a name, none of which is still on its way."""
+        run_until_received(self.link)
+        return self.sent(name)
 
     def node(self, role, class_name="vtkMRMLMarkupsFiducialNode"):
         return findNode(self.scene, class_name, role)
