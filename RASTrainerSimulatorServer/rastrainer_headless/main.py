@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError, RASTrainerError
-from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, Phase
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.heartbeat import LinkStatus
@@ -85,12 +85,16 @@ class HeadlessHost:
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
         self._procedure = ProcedureLogic(self.application.scene, self.link, cache.find, self._work)
-        self._procedure.answered.connect(self._tellUnregistered)
         self.link.statusChanged.connect(self._tellStatus)
         self.link.pointsChanged.connect(self._tellPoints)
         self._presenter.trialScored.connect(self._tellTrial)
-        for source in (self._presenter, self._aborted, self._images):
-            source.problemFound.connect(lambda sentence: printEvent("problem", sentence=sentence))
+        for problems in (
+            self._presenter.problemFound,
+            self._aborted.problemFound,
+            self._images.problemFound,
+            self._procedure.answered,
+        ):
+            problems.connect(lambda sentence: printEvent("problem", sentence=sentence))
 
     def run(self, count: int, timeoutS: float) -> TrialAnalysis:
         """Wait until a number of trials are scored, and return the last one.
@@ -136,12 +140,6 @@ class HeadlessHost:
         if len(labels) < self._touches:
             printEvent("removed", count=len(labels))
         self._touches = len(labels)
-
-    def _tellUnregistered(self, sentence: str) -> None:
-        """Say why the touches of a procedure wait, unless somebody else has registered them."""
-        waits = self._procedure.status.phase == Phase.VERIFYING.value
-        if waits and not self._procedure.status.isRegistered:
-            printEvent("problem", sentence=sentence)
 
     def _tellTrial(self, analysis: TrialAnalysis) -> None:
         results = results_json(analysis)

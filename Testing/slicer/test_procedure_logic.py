@@ -1,6 +1,7 @@
 """A trial's procedure from Slicer: touches registered unasked, steps commanded, hostile state."""
 
 import json
+import threading
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from rastrainer.protocol import DeviceName
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
-from Testing.slicer.simulator_double import run_logic_until
+from Testing.slicer.simulator_double import run_logic_until, run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 
 VERIFYING = {"name": "dbs", "trajectory": 0, "trajectories": 2, "registrationInUse": False}
@@ -96,6 +97,22 @@ def test_why_the_touches_were_not_registered_is_said_once(theater):
     theater.say("verifying")
     theater.run_until(lambda: len(theater.said) == 2)
     assert "must hold touches, a list of 15" in theater.said[1]
+
+
+def test_what_fails_once_the_procedure_has_gone_on_is_not_said(theater):
+    may_answer = threading.Event()
+
+    def refuse_late(_name, _arguments):
+        assert may_answer.wait(60)
+        return "This is refused."
+
+    theater.simulator.responder = refuse_late
+    theater.say("verifying")
+    theater.say("aligning", registrationInUse=True)
+    may_answer.set()
+    run_until_received(theater.link)
+    assert theater.said == []
+    assert not theater.procedure.isRegistrationFailed
 
 
 def test_each_step_sends_its_command(theater):

@@ -209,37 +209,35 @@ class ProcedureLogic:
     def _register(self, trialId: str) -> None:
         """Have the touches of the open trial registered, and the procedure continue with that."""
 
+        def ask(name: str, arguments: Mapping[str, Any], take: Callable[[Reply], None]) -> None:
+            self._link.send(
+                name, arguments, lambda reply: take(reply) if reply.ok else fail(reply.error)
+            )
+
         def askForTouches(reply: Reply) -> None:
             scenario = str(reply.data.get("scenario", ""))
-            self._ask(
+            ask(
                 CommandName.GET_TRIAL,
                 {"trialId": trialId},
                 lambda reply: self._work.do(
-                    lambda: self._registered(reply.data, scenario), use, self._fail
+                    lambda: self._registered(reply.data, scenario), use, fail
                 ),
             )
 
         def use(registered: TouchRegistration) -> None:
-            self._ask(CommandName.USE_REGISTRATION, registered.arguments(trialId), lambda _r: None)
+            ask(CommandName.USE_REGISTRATION, registered.arguments(trialId), lambda _reply: None)
 
-        self._ask(CommandName.LIST_TASKS, {}, askForTouches)
+        def fail(reason: Exception | str) -> None:
+            # The procedure may have gone on meanwhile, by a registration of somebody else.
+            if self._registering == trialId:
+                self.isRegistrationFailed = True
+                text = _("The touches were not registered: {reason}")
+                self.answered.emit(text.format(reason=reason))
+                self.changed.emit()
+
+        ask(CommandName.LIST_TASKS, {}, askForTouches)
 
     def _registered(self, answer: Mapping[str, Any], scenarioName: str) -> TouchRegistration:
         scenario = self._findScenario(scenarioName)
         progress = self._work.checkWanted
         return self._run(REGISTER_OPEN, progress, GivenPoints.of_answer(answer), scenario)
-
-    def _ask(self, name: str, arguments: Mapping[str, Any], take: Callable[[Reply], None]) -> None:
-        def takeAnswer(reply: Reply) -> None:
-            if reply.ok:
-                take(reply)
-            else:
-                self._fail(reply.error)
-
-        self._link.send(name, arguments, takeAnswer)
-
-    def _fail(self, reason: Exception | str) -> None:
-        text = _("The touches were not registered: {reason}").format(reason=reason)
-        self.isRegistrationFailed = True
-        self.answered.emit(text)
-        self.changed.emit()
