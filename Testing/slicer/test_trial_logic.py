@@ -298,6 +298,14 @@ def test_each_score_is_sent_once_even_if_the_link_opens_again_meanwhile(lab, mak
     assert sorted(trial.record.trial_id for trial in lab.scored) == trials
 
 
+def test_a_trial_is_being_scored_from_when_it_is_stored(lab, make_record):
+    """So that feedback on it, which is in the study by then, waits for the score."""
+    lab.link.trialCompleted.emit(make_record(TRIAL))
+    assert lab.logic.isBeingScored(TRIAL)
+    lab.run_until(lambda: not lab.logic.isBeingScored(TRIAL))
+    assert lab.scored
+
+
 def test_an_old_trial_does_not_disturb_the_one_being_played(lab, make_record):
     state = f'{{"trialId": "{OTHER}", "phase": "running"}}'
     lab.simulator.send(DeviceName.SIM_STATE, String(state))
@@ -373,6 +381,7 @@ def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, revie
     lab.run_until(lambda: lab.scored)
     for changes, told in (
         ({"trial_id": OTHER, "points": []}, "points must be"),
+        ({"trial_id": []}, "trialId must be"),
         ({"trial_id": OTHER, "trainee": "T-001 "}, "A pseudonym must be printable text"),
         ({"trial_id": TRIAL, "task": "task-2"}, "Another trial is stored under the UUID"),
     ):

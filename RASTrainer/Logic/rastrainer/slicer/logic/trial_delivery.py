@@ -83,6 +83,10 @@ class DeliveryQueue(Generic[T]):
         self._waiting.clear()
         self._lastProblem = ""
 
+    def isStoring(self, trialId: str) -> bool:
+        """Whether a trial is being stored."""
+        return any(each.get("trialId") == trialId for each in self._underWay)
+
     def report(self, sentence: str) -> None:
         """Report a problem once, though the trial is offered every two seconds."""
         if sentence and sentence != self._lastProblem:

@@ -133,7 +133,10 @@ class TrialLogic:
         return _Scoring.UNDER_WAY in self._scored.values()
 
     def isBeingScored(self, trialId: str) -> bool:
-        """Whether a trial is being scored."""
+        """Whether a trial is being scored, or being stored to be scored then."""
+        return self._queue.isStoring(trialId) or self._isScoringUnderWay(trialId)
+
+    def _isScoringUnderWay(self, trialId: str) -> bool:
         return self._scored.get(trialId) is _Scoring.UNDER_WAY
 
     def _followTraining(self, state: Mapping[str, Any]) -> None:
@@ -153,7 +156,7 @@ class TrialLogic:
 
     def _storing(self, delivery: Delivery) -> Callable[[], DeliveredTrial]:
         """Return what checks, registers and stores a trial, in the background."""
-        isUnderWay = self.isBeingScored(delivery.get("trialId", ""))
+        isUnderWay = self._isScoringUnderWay(str(delivery.get("trialId", "")))
 
         def store() -> DeliveredTrial:
             with self._openStudy() as study:
@@ -169,7 +172,7 @@ class TrialLogic:
         if record.trial_id not in self.received:
             self.received.append(record.trial_id)
             self.trialKept.emit(record)
-        if analysis is not None and not self.isBeingScored(record.trial_id):
+        if analysis is not None and not self._isScoringUnderWay(record.trial_id):
             self._score(analysis, self._queue.report)
             self._work.later(lambda: self._show(analysis))
 
