@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import shutil
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -26,8 +28,8 @@ PATIENCE_MS = 120_000
 POLL_MS = 50
 SMALL = {"width": 400, "height": 220}
 EYES_M = (0.1, 1.62, 0.2)
-JOINED = "page.connection.isConnected"
-"""What is pressed before goes nowhere."""
+_HAS_REJOINED = "page.poses !== window.posesBefore && page.poses.count > 0"
+"""Whether all is told again that the simulator tells who joins: the state comes last of it."""
 
 _EMULATE = """
 ;(() => {
@@ -85,7 +87,9 @@ navigator.getGamepads = () => [window.pad];
 def launch(playwright: Playwright, *arguments: str) -> Browser:
     """Start the Chromium of this machine, or Playwright's own where there is none."""
     path = shutil.which("chromium") or shutil.which("chromium-browser")
-    return playwright.chromium.launch(executable_path=path, args=[*ARGUMENTS, *arguments])
+    return playwright.chromium.launch(
+        executable_path=path, args=[*ARGUMENTS, *arguments], timeout=PATIENCE_MS
+    )
 
 
 def emulator() -> str:
@@ -129,8 +133,8 @@ def open_page(
     Its `problems` are what went wrong in it, and `loaded` has the bytes of each address.
     """
     context = browser.new_context(viewport=size, ignore_https_errors=True, has_touch=has_touch)
+    context.set_default_timeout(PATIENCE_MS)
     page = context.new_page()
-    page.set_default_timeout(PATIENCE_MS)
     page.add_init_script(_FRAMES)
     if headset:
         page.add_init_script(emulator() + _EMULATE % (headset, *EYES_M))
@@ -144,6 +148,7 @@ def open_page(
     page.on("response", lambda answer: page.loaded.update({answer.url: _size(answer)}))
     page.goto(f"{url}/#code={code}")
     page.wait_for_selector("body[data-scene][data-menu]")
+    wait_for(page, "page.state !== null")
     if not draws:
         page.evaluate(_SHOW_NOTHING)
     return page
@@ -156,7 +161,7 @@ def draw_nothing(page: Page) -> None:
 
 def draw_a_while(page: Page) -> np.ndarray:
     """Let a page that draws nothing draw some pictures; return the last as `pixels` does."""
-    page.evaluate("drawsNothing = false; frames_(3)")
+    page.evaluate("drawsNothing = false; page.isDue = true; frames_(3)")
     picture = pixels(page)
     page.evaluate("drawsNothing = true")
     return picture
@@ -168,17 +173,31 @@ def _size(answer: Response) -> int:
 
 def enter_headset(page: Page) -> None:
     """Press the button that leads into immersive VR, and wait until it has joined and draws."""
-    page.click("#headset:enabled")
-    page.wait_for_selector("body[data-headset]")
-    wait_for(page, JOINED)
+    with _rejoining(page):
+        page.click("#headset:enabled")
+        page.wait_for_selector("body[data-headset]")
     page.evaluate("frames_(3)")
 
 
 def leave_headset(page: Page) -> None:
     """Leave immersive VR, as the headset's own button does."""
-    page.evaluate("page.headset.leave()")
-    page.wait_for_selector("body:not([data-headset])")
-    wait_for(page, JOINED)
+    with _rejoining(page):
+        page.evaluate("page.headset.leave()")
+        page.wait_for_selector("body:not([data-headset])")
+
+
+@contextmanager
+def _rejoining(page: Page) -> Iterator[None]:
+    """Wait until a page has joined again: what is pressed or told before goes nowhere."""
+    page.evaluate("void (window.posesBefore = page.poses)")
+    yield
+    wait_for(page, _HAS_REJOINED)
+
+
+def resize(page: Page, width: int, height: int) -> None:
+    """Give the window another size, and wait until the page has it."""
+    page.set_viewport_size({"width": width, "height": height})
+    wait_for(page, f"innerWidth === {width} && innerHeight === {height}")
 
 
 def wait_for(page: Page, expression: str) -> None:

@@ -8,6 +8,7 @@ from Testing.simulator.conftest import setup  # noqa: F401
 from Testing.simulator.flow.conftest import outside, presenter, put_back, shared  # noqa: F401
 from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import launch
+from Testing.web.place import PATIENT
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +36,6 @@ def loop(shared, tmp_path):  # noqa: F811
 @pytest.fixture
 def served(loop, loop_thread):
     """Views of that loop, served to pages that are shown what a test tells them."""
-    served = ServedViews(loop_thread, loop)
+    served = ServedViews(loop_thread, loop, **PATIENT)
     yield served
     served.close()

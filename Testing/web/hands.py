@@ -28,9 +28,10 @@ _POINT = """async (name) => {
   const has = (board) => board.regions.some((region) => region.name === name);
   const find = () => [boards.menu, boards.actions, boards.work].find(has);
   // The simulator's menu may not have been drawn yet.
-  for (let frame = 0; frame < 300 && !find(); frame++) await frames_(1);
+  const giveUp = performance.now() + 120_000;
+  while (!find() && performance.now() < giveUp) await frames_(1);
   const board = find();
-  if (!board) return;
+  if (!board) throw new Error(`No board has ${name}.`);
   const { x, y, width, height } = board.regions.find((region) => region.name === name);
   const size = board.mesh.geometry.parameters;
   const target = board.mesh.position.clone().set(
@@ -174,12 +175,10 @@ class PageMouse:
         """Click on an item of the menu or on a hint, once it is there."""
         target = f"#menu li[data-name='{item}'] button, #hints [data-item='{item}']"
         place = self._page.locator(target)
-        # The page may set the hints anew at any moment.
         self._page.wait_for_function(_IS_TARGET, arg=target)
-        while (box := place.bounding_box()) is None:
-            self._page.wait_for_selector(target)
         assert place.evaluate("e => getComputedStyle(e).cursor") == "pointer"
-        self._page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        # The page may set the hints anew at any moment: a click that would miss is made again.
+        place.click()
 
     def tap(self, control: str) -> None:
         self.push(0.0, 0.0, 0.0)

@@ -118,16 +118,23 @@ class Place:
 
     def entries(self, kind: str) -> list[dict]:
         """Return the entries of a kind in the latest trial's journal, as far as it is written."""
-        journal = max(self.records.glob("*.journal"), key=lambda path: path.stat().st_mtime)
+        journal = max(self.records.glob("*.journal"), key=_begun)
         lines = journal.read_text(encoding="utf-8").rpartition("\n")[0].splitlines()
         return [entry for entry in map(json.loads, lines) if entry["kind"] == kind]
+
+
+def _begun(journal: Path) -> str:
+    """Return when a trial has begun, UTC; "" before its first line is written."""
+    with journal.open(encoding="utf-8") as lines:
+        header = lines.readline()
+    return json.loads(header)["utc"] if header.endswith("\n") else ""
 
 
 class Trainee(StreamTrainee):
     """Goes through the menus, and touches the points in their order."""
 
-    # A headset's buttons are looked at once a picture, and one that is drawn here may take seconds.
-    again_s = 6.0
+    # A press is seen in the next picture, however late that is: none is missed.
+    again_s = 60.0
 
     def focus(self, item: str) -> None:
         """Move the focus to an item, and see that it stays there.

@@ -12,7 +12,7 @@ from rastrainer.study.database.study import Study
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.free_port import free_port
 from Testing.simulator.lti.conftest import Lab, key_and_study  # noqa: F401
-from Testing.web.chromium import PATIENCE_MS, accessibility_checker
+from Testing.web.chromium import PATIENCE_MS, accessibility_checker, resize
 from Testing.web.test_board import CUT_OFF
 from Testing.web.test_page_access import SIZES, VIOLATIONS
 
@@ -35,6 +35,7 @@ def open_link(browser, lab, locale: str):
     }
     page.goto(f"{lab.address}/login?{urlencode(begun)}")
     page.wait_for_selector("h1")
+    page.wait_for_load_state()
     return page
 
 
@@ -70,8 +71,8 @@ def test_the_page_of_a_launch_breaks_no_rule_of_accessibility_and_fits_every_siz
     assert page.locator(".trial").count() == 12
     page.evaluate(accessibility_checker())
     found = []
-    for size, (width, height) in SIZES.items():
-        page.set_viewport_size({"width": width, "height": height})
+    for size, pixels in SIZES.items():
+        resize(page, *pixels)
         wrong = page.evaluate(CUT_OFF)
         wrong += page.evaluate(VIOLATIONS) if size in ("narrowest", "laptop") else []
         found += [f"{size}: {each}" for each in wrong]

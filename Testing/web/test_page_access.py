@@ -13,9 +13,9 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
-from Testing.web.chromium import accessibility_checker, open_page
+from Testing.web.chromium import accessibility_checker, open_page, resize
 from Testing.web.hands import PageKeys
-from Testing.web.place import WITHOUT_GRAPHICS, Place
+from Testing.web.place import PATIENT, Place
 
 WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
 SIZES = {
@@ -82,7 +82,7 @@ def place(request, tmp_path_factory):
     """A place in German, whose words are long; in every other language in the soak tests."""
     folder = tmp_path_factory.mktemp(request.param)
     language = request.param
-    with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS, language=language) as place:
+    with Place(folder, "--speed", "4", limits=PATIENT, language=language) as place:
         yield place
 
 
@@ -105,8 +105,7 @@ def complaints(page, screen: str, sizes: tuple[str, ...]) -> list[str]:
     """Return what is wrong with what is shown, at these sizes of the window."""
     found = []
     for name in sizes:
-        width, height = SIZES[name]
-        page.set_viewport_size({"width": width, "height": height})
+        resize(page, *SIZES[name])
         page.evaluate("frames_(1)")
         wrong = page.evaluate(OVERLAPS)
         if name == AXE_SIZE or len(sizes) == len(SIZES):
@@ -254,8 +253,7 @@ def test_the_menu_of_the_tasks_is_whole_on_a_laptop(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_to_experiment()
     assert shown(page, trainee) == "experiment"
-    width, height = SIZES["laptop"]
-    page.set_viewport_size({"width": width, "height": height})
+    resize(page, *SIZES["laptop"])
     menu = "document.getElementById('menu')"
     assert page.evaluate(f"{menu}.scrollHeight - {menu}.clientHeight") <= 0
 
@@ -308,8 +306,8 @@ def test_a_selection_is_seen_where_the_system_chooses_the_colors(place, page):
 def test_zoom_makes_text_larger(page):
     """At 200 % a window has half as many pixels each way, and each is twice as large."""
     sizes = []
-    for width, height in ((1280, 720), (640, 360)):
-        page.set_viewport_size({"width": width, "height": height})
+    for size in ((1280, 720), (640, 360)):
+        resize(page, *size)
         sizes.append(
             page.evaluate("parseFloat(getComputedStyle(document.documentElement).fontSize)")
         )

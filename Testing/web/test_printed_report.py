@@ -13,6 +13,7 @@ from Testing.domain.report.test_report import cohort
 from Testing.domain.report.test_tables_have_n import in_two_groups, with_intervals
 from Testing.domain.statistics.test_variation import drawn
 from Testing.domain.study.played_study import STUDIES
+from Testing.web.chromium import PATIENCE_MS
 
 WIDTH, HEIGHT = 180, 263
 """Of what may be printed on a page, mm; see `@page` in the report's style."""
@@ -36,6 +37,7 @@ def printed(browser):
 
     def print_it(data):
         page = browser.new_page(viewport={"width": round(WIDTH * PX_PER_MM), "height": 800})
+        page.set_default_timeout(PATIENCE_MS)
         page.set_content(report_html(data, "today"))
         page.emulate_media(media="print")
         filled = page.evaluate("document.body.offsetHeight") / PX_PER_MM / HEIGHT
@@ -84,6 +86,7 @@ def filled_share(page):
 @pytest.mark.soak
 def test_a_half_empty_page_would_be_noticed(browser):
     page = browser.new_page()
+    page.set_default_timeout(PATIENCE_MS)
     page.set_content("<style>@page { size: A4; margin: 16mm 15mm 18mm }</style><p>one line</p>")
     pdf = page.pdf(prefer_css_page_size=True)
     page.close()

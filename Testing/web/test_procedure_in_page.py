@@ -96,9 +96,8 @@ def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(serv
     written = page.evaluate(PAINTED, at("electrode", 99.96))
     assert written[0] == "100.0 mm"
     assert written[-4:] == ["30", "37", "45", "126"]
+    served.presenter.screen = Screen(is_head_clear=True, ruler=RULER)
     enter_headset(page)
-    served.tell(Screen(is_head_clear=True, ruler=RULER))
-    wait_for(page, "page.screen.ruler !== null")
     worn = page.evaluate(SEEN, at("drill", 41.5))
     assert worn["board"]
     check_steering(page.evaluate(STEERED, at("guide", aim=AIM)))

@@ -10,6 +10,7 @@ from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.simulator.flow.conftest import put_back
 from Testing.simulator.net.views.served import ServedViews
 from Testing.web.chromium import open_page
+from Testing.web.place import PATIENT
 
 RED = 0xC7001A
 DRAW = """
@@ -34,7 +35,7 @@ def draw(browser, shared, loop_thread, tmp_path_factory):
     """Return a function that draws a state with some changes and returns what is seen of it."""
     put_back(shared)
     with ControlLoop(shared, tmp_path_factory.mktemp("records")) as loop:
-        served = ServedViews(loop_thread, loop)
+        served = ServedViews(loop_thread, loop, **PATIENT)
         page = open_page(browser, served.url, served.code, draws=False)
         served.tell(Screen(status=("Task 1",)))
         page.wait_for_selector("#status:has-text('Task 1')")
