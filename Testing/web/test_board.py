@@ -142,6 +142,28 @@ def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_remov
     page.context.close()
 
 
+CANCEL_AND_OPEN_AGAIN = """async () => {
+  const dialog = document.getElementById("dialog");
+  const closed = new Promise((done) => dialog.addEventListener("close", done));
+  dialog.querySelector("button[type=button]").click();
+  while (dialog.open) await null;
+  document.getElementById("add").click();
+  await closed;
+  await new Promise(requestAnimationFrame);
+  return dialog.open;
+}"""
+
+
+def test_a_form_stays_that_is_opened_while_the_one_before_closes(browser, board):
+    page = open_board(browser, board)
+    page.click("#add")
+    assert page.evaluate(CANCEL_AND_OPEN_AGAIN)
+    page.keyboard.press("Escape")
+    page.wait_for_selector("dialog", state="hidden")
+    assert page.problems == []
+    page.context.close()
+
+
 def test_a_seat_is_watched_live_from_the_board(browser, board, simulator):
     board.add(simulator)
     page = open_board(browser, board)

@@ -49,8 +49,11 @@ export async function ask(
   dialog.showModal();
   shown.querySelector("input")?.focus();
   const entered = await new Promise<Record<string, string> | null>((done) => {
-    cancel.onclick = () => dialog.close();
-    dialog.onclose = () => done(null);
+    cancel.onclick = () => done(null);
+    // The event comes later: a form that was opened meanwhile must not take it for its own.
+    dialog.onclose = () => {
+      if (!dialog.open) done(null);
+    };
     shown.onsubmit = async (event) => {
       event.preventDefault();
       const values = Object.fromEntries([...new FormData(shown)].map(([name, value]) => [name, String(value).trim()]));
@@ -61,13 +64,7 @@ export async function ask(
       else shown.querySelector("input")?.select();
     };
   });
-  // The event comes later: the next form must not take it for its own.
-  const closed = new Promise<void>((done) => {
-    if (dialog.open) dialog.onclose = () => done();
-    else done();
-  });
   dialog.close();
-  await closed;
   return entered;
 }
 
