@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+import threading
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from vtk.util.numpy_support import numpy_to_vtk
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.tasks import LABELS
+from rastrainer.slicer.head import scenario_build
 from rastrainer.slicer.head.segment import SEGMENT_NAME
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.scene import Role, findNode
@@ -79,9 +81,15 @@ def test_the_scenario_has_the_edited_head_on_the_base_that_was_shown(host):
     assert made[:, 1].min() == pytest.approx(WEN[1] - WEN_RADIUS, abs=1.5)
 
 
-def test_a_scenario_that_is_canceled_while_its_head_is_found_leaves_nothing_behind(host, tmp_path):
+def test_a_scenario_that_is_canceled_while_its_head_is_found_leaves_nothing_behind(
+    host, tmp_path, monkeypatch
+):
+    is_canceled = threading.Event()
+    # The head is not finished before, however late it is canceled.
+    monkeypatch.setattr(scenario_build, "write_draft", lambda *_draft: is_canceled.wait(120))
     with cancels(host, "makeScenarioButton"):
         host.press("makeScenarioButton")
+    is_canceled.set()
     assert not (tmp_path / "simulator.pid").exists()
     assert_nothing_is_left(host)
 

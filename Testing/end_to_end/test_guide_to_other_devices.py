@@ -22,9 +22,14 @@ def tip(message):
     return np.array([row[3] for row in message.content.matrix[:3]])
 
 
-def wait_for_tip(client, condition):
-    """Return the first position of the tip (3,) float, World mm, that meets a condition."""
-    return tip(client.wait_for("ToolTipToWorld", lambda news: condition(tip(news)), timeout=60))
+def next_tip(client, condition=lambda _tip: True):
+    """Return the next position of the tip (3,) float, World mm, that meets a condition."""
+    last = client.latest.get("ToolTipToWorld")
+    return tip(
+        client.wait_for(
+            "ToolTipToWorld", lambda news: news is not last and condition(tip(news)), timeout=60
+        )
+    )
 
 
 def test_the_adapter_moves_the_arm_as_the_picture_shows_and_lets_it_stop(tmp_path):
@@ -39,14 +44,14 @@ def test_the_adapter_moves_the_arm_as_the_picture_shows_and_lets_it_stop(tmp_pat
         start = {"task": task, "trainee": "T001", "seed": 1}
         assert client.send_command("StartTask", start, timeout=60).ok
         here = [sys.executable, "-c", program.replace("18944", str(simulator.port))]
-        first = wait_for_tip(client, lambda _tip: True)
+        first = next_tip(client)
         lines = "0 0 0.5\n" * LINES + "touch\nfaster\n"
         done = subprocess.run(here, input=lines, capture_output=True, text=True)
         assert done.returncode == 0
-        up = wait_for_tip(client, lambda tip: tip[2] > first[2])
+        up = next_tip(client, lambda tip: tip[2] > first[2])
         steps = [first, up]
         while np.any(steps[-1] != steps[-2]):
-            steps.append(wait_for_tip(client, lambda _tip: True))
+            steps.append(next_tip(client))
         np.testing.assert_allclose(steps[-1][:2], first[:2], atol=0.5)
         assert steps[-1][2] <= first[2] + LINES * 0.1 * 0.5 * 150.0
     refused, unknown = done.stderr.splitlines()

@@ -19,6 +19,7 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import DeviceName
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess, ViewedSimulator
+from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
 
@@ -68,7 +69,7 @@ def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_resumes_when_there_
         client.wait_for(
             DeviceName.SIM_STATE,
             lambda message: "make room or choose another folder" in message.content.text,
-            timeout=20,
+            timeout=60,
         )
         resource.prlimit(simulator.pid, resource.RLIMIT_FSIZE, UNLIMITED)
         assert do(client, "Resume").ok
@@ -92,8 +93,13 @@ def ended(tmp_path_factory):
         with contextlib.suppress(urllib.error.HTTPError):
             urllib.request.urlopen(pairing, timeout=60)
         with socket.create_connection(("127.0.0.1", simulator.port)) as stranger:
-            stranger.sendall(b"no message at all" * 10_000)
+            # It may be sent away before it has said all.
+            with contextlib.suppress(OSError):
+                stranger.sendall(b"no message at all" * 10_000)
             assert do(client, "StartTask", task="task-1", trainee=TRAINEE).ok
+            log = folder / "records-config" / "logs" / "simulator-0.log"
+            # That the trial runs is answered a moment before it is logged.
+            wait_until(lambda: "The trial is running." in log.read_text(), "the line in the log")
             result = simulator.stop(signal.SIGTERM)
     return folder, result, simulator.code
 

@@ -6,7 +6,7 @@ import pytest
 import slicer
 
 from rastrainer.igtl.client import Client
-from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.protocol import PROTOCOL_VERSION, CommandName
 from rastrainer.slicer.link.heartbeat import LinkState
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
@@ -76,7 +76,18 @@ def renders_in_a_while(host):  # noqa: F811
 
 def come_to_rest(host):  # noqa: F811
     """Wait until what has been asked for before is drawn, however slow the machine is."""
-    host.wait_until(lambda: renders_in_a_while(host) == 0, "nothing is drawn any more")
+    session = host.widget.logic.session
+    # When the first is answered, the module has asked for the poses that it wants now; those that
+    # the simulator sends at once, at its next tick, come before its answer to the third.
+    for _question in range(3):
+        answers = []
+        session.link.send(CommandName.LIST_TASKS, {}, answers.append, timeoutS=60.0)
+        host.wait_until(lambda told=answers: told, "the simulator answers")
+        assert answers[0].ok
+    host.wait_until(
+        lambda: renders_in_a_while(host) == 0 and not session.work.isBusy,
+        "nothing is drawn any more",
+    )
 
 
 def show_robot(host):  # noqa: F811

@@ -89,7 +89,10 @@ def test_all_views_see_the_trial_again_then_the_arm_and_then_its_ghost(tmp_path,
     client.send({"type": "item", "name": "worst"})
     for view in (first, second):
         wait_until(lambda view=view: shown(view) is None, "the replay")
-        assert "the worst touch, at half speed" in view.screen.instruction.text
+        wait_until(
+            lambda view=view: "the worst touch, at half speed" in view.screen.instruction.text,
+            "the worst touch",
+        )
         wait_until(lambda view=view: view.state["phase"] in ("running", "complete"), "the trial")
     client.send({"type": "key", "code": "Escape", "isDown": True, "text": ""})
     for view in (first, second):

@@ -33,7 +33,7 @@ def trains_on(port, name, title):
     """Load a scenario by its name into a running simulator, and begin a trial on it."""
     with Client(port=port) as client:
         assert client.send_command(
-            "Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "test"}, timeout=20
+            "Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "test"}, timeout=60
         ).ok
         loaded = client.send_command("LoadScenario", {"folder": name}, timeout=60)
         assert (loaded.ok, loaded.error) == (True, "")
@@ -44,7 +44,7 @@ def trains_on(port, name, title):
         started = client.send_command("StartTask", {"task": task, "trainee": "anna"}, timeout=60)
         assert (started.ok, started.error) == (True, "")
         state = client.wait_for(
-            "SimState", lambda told: json.loads(told.content.text)["phase"] == "running", 20
+            "SimState", lambda told: json.loads(told.content.text)["phase"] == "running", 60
         )
         assert json.loads(state.content.text)["task"] == task
 

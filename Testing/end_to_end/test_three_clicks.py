@@ -67,12 +67,9 @@ def test_three_clicks_lead_from_an_empty_slicer_to_a_running_trial(set_up_slicer
     assert open_sections(host) == ["training"]
     press_next(host, "Start the trial run", until="Pause")
     assert host.clicks == 3 * ["nextStepButton"]
-    assert "running" in host.text("phaseText")
-    assert [host.text(name) for name in ("linkText", "nowTraineeText", "nowTaskText")] == [
-        "Connected",
-        "T001",
-        "Trial run",
-    ]
+    host.wait_until(lambda: "running" in host.text("phaseText"), "it runs")
+    names, now = ("linkText", "nowTraineeText", "nowTaskText"), ["Connected", "T001", "Trial run"]
+    host.wait_until(lambda: [host.text(name) for name in names] == now, "it is told")
 
 
 @pytest.mark.soak

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 
 import numpy as np
 import pytest
@@ -50,12 +51,11 @@ class Player(Client):
         self.wait_for("ToolTipToWorld", lambda tip: distance(tip, position) < NEAR_MM, 60)
 
     def next_offer(self) -> dict:
-        count = len(self.offers)
-        for _ in range(10):
+        count, give_up = len(self.offers), time.monotonic() + 60.0
+        while len(self.offers) == count:
+            assert time.monotonic() < give_up, "no trial was offered"
             self.wait_for_heartbeats(1)
-            if len(self.offers) > count:
-                return self.offers[-1]
-        raise AssertionError("no trial was offered")
+        return self.offers[-1]
 
     def wait_for_heartbeats(self, count: int) -> None:
         """Wait for a number of them, one a second."""
@@ -139,7 +139,7 @@ def registration(trial_id: str, points: tuple[Point, ...], scenario: Scenario) -
 
 def phase_of(player: Player, phase: str) -> str:
     state = player.wait_for(
-        "SimState", lambda message: json.loads(message.content.text)["phase"] == phase
+        "SimState", lambda message: json.loads(message.content.text)["phase"] == phase, 60
     )
     return json.loads(state.content.text)["phase"]
 

@@ -23,7 +23,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.touch_registration import register_trial
 from rastrainer_simulator.virtual.scripted_trainee import Observation, ScriptedTrainee, Skill
 
-ANSWER_TIMEOUT_S = 10.0
+ANSWER_TIMEOUT_S = 60.0
 LONGEST_TRIAL_S = 1800.0
 
 

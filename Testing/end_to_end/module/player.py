@@ -62,14 +62,15 @@ class Player:
         self._thread.start()
 
     def _touch(self, client: Client, first: int, last: int) -> None:
-        for above, fiducial, center in list(self._places())[first - 1 : last]:
+        state = json.loads(client.wait_for("SimState", timeout=60).content.text)
+        for above, fiducial, center in list(self._places(state["trialId"]))[first - 1 : last]:
             _move_to(client, above)
             lower_onto_skin(client, fiducial, center)
             _do(client, "Capture")
             _move_to(client, above)
 
-    def _places(self) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        journal = max(self._records.glob("*.journal"), key=lambda path: path.stat().st_mtime)
+    def _places(self, trial_id: str) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        (journal,) = self._records.glob(f"*_{trial_id}.journal")
         with journal.open(encoding="utf-8") as lines:
             header = json.loads(lines.readline())
         scenario = load_scenario(asset_path("scenarios", "colin27"))

@@ -203,7 +203,8 @@ class Story:
         )
         assert host.text("stateText") == "Not connected."
         host.wait_until(lambda: "was stopped" in host.text("programText"), "it has ended")
-        assert not runs(int(self._pid_file.read_text()))
+        pid = int(self._pid_file.read_text())
+        host.wait_until(lambda: not runs(pid), "its process is gone")
 
     STEPS = (
         set_up,
