@@ -9,6 +9,7 @@ from rastrainer.study.database.study import Study
 from rastrainer_simulator.board.class_reader import ClassReader
 from rastrainer_simulator.board.class_table import class_table
 from Testing.domain.trial.trial_records import gentle_score, make_record
+from Testing.simulator.board.class_study import as_in_narrow_columns
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "example-curriculum.json"
 
@@ -71,7 +72,8 @@ def test_a_curriculum_for_everybody_shows_the_class_as_a_board_does_and_follows_
             study.add_trial(record, score=gentle_score(60.0, 0.2))
     panel.widget.logic.session.trainees.changed.emit()
     panel.process_events()
-    assert cells(panel, "assignmentsTable")[0][:2] == ["Task 1", "reached"]
+    day = make_record()["startedUtc"][:10]
+    assert cells(panel, "assignmentsTable")[0][:2] == ["Task 1", f"reached {day}"]
     shown = cells(panel, "classTable")
     assert shown[0][1] == "1 / 6"
     reader = ClassReader(Path(panel.find("studyPathLineEdit").currentPath))
@@ -81,5 +83,5 @@ def test_a_curriculum_for_everybody_shows_the_class_as_a_board_does_and_follows_
         [row["trainee"], f"{row['reached']} / {len(row['cells'])}", row["next"]]
         for row in table["trainees"]
     ]
-    chosen = [cell["progress"].replace(" / ", " of ") for cell in table["trainees"][0]["cells"]]
+    chosen = list(map(as_in_narrow_columns, table["trainees"][0]["cells"]))
     assert chosen == [row[1] for row in cells(panel, "assignmentsTable")]

@@ -6,7 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from rastrainer.study.curriculum.curriculum import Curriculum
-from rastrainer.study.curriculum.standing import AssignmentStanding, CurriculumStanding
+from rastrainer.study.curriculum.standing import (
+    AssignmentStanding,
+    CurriculumStanding,
+    by_curriculum,
+)
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment
 from rastrainer_simulator.board.class_reader import ClassStanding
 from rastrainer_simulator.flow.session.curricula import AssignmentWords
@@ -27,9 +31,7 @@ def class_table(found: ClassStanding, language: str) -> list[dict[str, Any]]:
         return texts.say(key) if key in texts else _spoken(name)
 
     words = AssignmentWords(texts, task_title, _spoken)
-    groups: dict[Curriculum, dict[str, CurriculumStanding]] = {}
-    for name, standing in found.standings.items():
-        groups.setdefault(standing.curriculum, {})[name] = standing
+    groups = by_curriculum(found.standings)
     return [_table(curriculum, group, words) for curriculum, group in groups.items()]
 
 

@@ -7,6 +7,7 @@ import uuid
 from dataclasses import replace
 from datetime import datetime, timedelta, timezone
 from pathlib import Path
+from typing import Any
 
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.curriculum.counted_trials import counted_trials
@@ -74,3 +75,8 @@ def _play(
     record = TrialRecord.from_json(told)
     study_trials.add(connection, record, told)
     study_trials.add_results(connection, record.trial_id, (), {}, score)
+
+
+def as_in_narrow_columns(cell: dict[str, Any]) -> str:
+    """Return what report, module and command show where the board's table has this cell."""
+    return f"{cell['progress'].replace(' / ', ' of ')} {cell['reachedUtc'][:10]}".rstrip()

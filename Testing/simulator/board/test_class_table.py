@@ -23,7 +23,7 @@ from rastrainer_simulator.board.class_table import class_table
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from Testing.domain.study.old_study import write_old_study
-from Testing.simulator.board.class_study import SHIPPED, play_class
+from Testing.simulator.board.class_study import SHIPPED, as_in_narrow_columns, play_class
 from Testing.simulator.net.igtl.servers import PATIENCE_S
 from Testing.simulator.net.views.served import request
 
@@ -64,7 +64,7 @@ def test_the_table_is_that_of_the_report(study):
         [
             row["trainee"],
             f"{row['reached']} of {len(row['cells'])}",
-            *(cell["progress"].replace(" / ", " of ") for cell in row["cells"]),
+            *map(as_in_narrow_columns, row["cells"]),
         ]
         for row in table["trainees"]
     ]

@@ -23,7 +23,11 @@ from rastrainer.statistics.trainee_clusters import (
     cluster_trainees,
 )
 from rastrainer.study.curriculum.curriculum import Curriculum
-from rastrainer.study.curriculum.standing import AssignmentStanding, CurriculumStanding
+from rastrainer.study.curriculum.standing import (
+    AssignmentStanding,
+    CurriculumStanding,
+    by_curriculum,
+)
 from rastrainer.study.curriculum.wording import goal_of, short_progress_of, title_of
 from rastrainer.study.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES, Scale
@@ -34,7 +38,8 @@ MAX_NAMED = 12
 _CURRICULA_NOTE = (
     "Trials in a row that pass are a goal for practice, not a proof of competence: a trainee who "
     "plays long enough reaches them by chance. Aborted trials with a touch count as not passed, "
-    "and n counts them."
+    "and n counts them. The day (UTC) is that of the trial by which an assignment was reached, or "
+    "that opened it."
 )
 
 
@@ -130,11 +135,9 @@ def _words(found: TraineeClusters) -> str:
 
 def curricula(data: StudyData) -> str:
     """Return the section; "" if nobody follows a curriculum."""
-    groups: dict[Curriculum, dict[str, CurriculumStanding]] = {}
-    for name, standing in data.standings.items():
-        groups.setdefault(standing.curriculum, {})[name] = standing
-    if not groups:
+    if not data.standings:
         return ""
+    groups = by_curriculum(data.standings)
     parts = [_of_curriculum(each, found) for each, found in groups.items()]
     return section("Curriculum", *parts, paragraph(_CURRICULA_NOTE, "small"))
 

@@ -100,6 +100,16 @@ class CurriculumStanding:
         return max(is_open, key=lambda each: each.shortfall, default=None)
 
 
+def by_curriculum(
+    standings: Mapping[str, CurriculumStanding],
+) -> dict[Curriculum, dict[str, CurriculumStanding]]:
+    """Return the standings of trainees, by name, for each curriculum that somebody follows."""
+    groups: dict[Curriculum, dict[str, CurriculumStanding]] = {}
+    for name, standing in standings.items():
+        groups.setdefault(standing.curriculum, {})[name] = standing
+    return groups
+
+
 def standing_in(
     curriculum: Curriculum, trials: Sequence[CountedTrial], pass_mark_of: PassMarkOf
 ) -> CurriculumStanding:

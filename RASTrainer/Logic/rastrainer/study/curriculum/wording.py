@@ -21,6 +21,9 @@ PARTS = {
 }
 """Of the scores of touches and of procedures."""
 
+DAY = len("2026-01-31")
+"""Of a time as ISO 8601, what its day takes."""
+
 
 def title_of(assignment: Assignment) -> str:
     """Return what people call an assignment, such as "Task 3 by a trace over the skin"."""
@@ -49,9 +52,9 @@ def goal_of(standing: AssignmentStanding) -> str:
 
 
 def short_progress_of(standing: AssignmentStanding) -> str:
-    """Return the state for a narrow column, of an open assignment how far a trainee is."""
+    """Return the state for a narrow column: of a reached one the day (UTC), of an open how far."""
     if standing.state is not AssignmentState.OPEN:
-        return standing.state.value
+        return f"{standing.state.value} {standing.reached_utc[:DAY]}".rstrip()
     if standing.assignment.goal is GoalKind.COMPETENT:
         return f"{standing.done} %"
     return f"{standing.done} of {standing.needed}"
