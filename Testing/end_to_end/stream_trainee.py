@@ -35,7 +35,8 @@ OFF_FIDUCIALS_M = 0.018
 """A place that far from every fiducial is clearly none, whatever the skin's slope there."""
 ASIDE_M = (0.03, 0.04, 0.05)
 """How far from the tip such a place is looked for."""
-MAX_ATTEMPTS = 15
+LONGEST_TOUCH_S = 600.0
+"""A try that fails is made again, as often as that allows: a busy machine's are clumsy."""
 STILL_STATES = 10
 """The arm is at rest after this number of equal states in a row."""
 
@@ -248,7 +249,8 @@ class StreamTrainee:
         """Hold the tip still above a fiducial, far enough to be free of the head."""
         point, center = self.place_of(label), self.head_center
         above = point + HOVER_M * (point - center) / np.linalg.norm(point - center)
-        for _attempt in range(MAX_ATTEMPTS):
+        give_up = time.monotonic() + LONGEST_TOUCH_S
+        while time.monotonic() < give_up:
             self.steer_to(above, 0.004, fine=True)
             self.hands.push(0.0, 0.0, 0.0, False)
             self.until_still()
@@ -294,8 +296,8 @@ class StreamTrainee:
 
     def press_on(self, label: str) -> None:
         """Record the fiducial under the tip; after a miss, approach from above once more."""
-        kept = self.touched
-        for _attempt in range(MAX_ATTEMPTS):
+        kept, give_up = self.touched, time.monotonic() + LONGEST_TOUCH_S
+        while time.monotonic() < give_up:
             if self.lower_onto(label):
                 self._tap_touch(label)
             if self.touched > kept:

@@ -34,7 +34,7 @@ from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_tr
 from Testing.simulator.net.igtl.servers import HOST
 from Testing.slicer.simulator_double import run_logic_until
 
-TIMEOUT_S = 60.0
+TIMEOUT_S = 180.0
 
 
 class Server:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -16,9 +17,9 @@ from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.desktop.picture import own_facts
 from rastrainer_simulator.net.views.screen import PRESS
 from Testing.end_to_end.lab import Lab
-from Testing.end_to_end.stream_trainee import MAX_ATTEMPTS, StreamTrainee
+from Testing.end_to_end.stream_trainee import StreamTrainee
 from Testing.end_to_end.virtual_display import VirtualMouse
-from Testing.end_to_end.window_process import wait_until
+from Testing.end_to_end.window_process import TIMEOUT_S, wait_until
 
 # A window that the processor draws wants the machine for itself.
 pytestmark = pytest.mark.soak
@@ -118,7 +119,8 @@ class ClickingInWindow(StreamTrainee):
             self._until_clicked("press sticks", lambda: self.view.screen.has_sticks)
 
     def _until_clicked(self, item: str, is_done: Callable[[], bool]) -> None:
-        for _attempt in range(MAX_ATTEMPTS):
+        give_up = time.monotonic() + TIMEOUT_S
+        while time.monotonic() < give_up:
             self.hands.click(item)
             with suppress(AssertionError):
                 wait_until(is_done, f"after {item}", self.again_s)

@@ -60,6 +60,24 @@ def slicer(simulator):
         yield slicer
 
 
+class GhostWatch(WatchingView):
+    """Keeps every ghost that it is shown: one has ended where a busy machine looks late."""
+
+    def __init__(self, client):
+        self.ghosts = []
+        super().__init__(client)
+
+    @property
+    def state(self):
+        return self._state
+
+    @state.setter
+    def state(self, state):
+        self._state = state
+        if state is not None and state["ghost"] is not None:
+            self.ghosts.append(state["ghost"])
+
+
 @pytest.fixture
 def views(loop_thread, simulator, key):
     """Two pages that have joined: what each sends, and what each receives."""
@@ -67,7 +85,7 @@ def views(loop_thread, simulator, key):
         ViewClient(loop_thread, simulator.url, key) as one,
         ViewClient(loop_thread, simulator.url, key) as other,
     ):
-        yield (one, WatchingView(one)), (other, WatchingView(other))
+        yield (one, GhostWatch(one)), (other, GhostWatch(other))
 
 
 def shown(view):
@@ -76,9 +94,10 @@ def shown(view):
     return menu and menu.name
 
 
-def ghost_tip(view):
-    """Return where the tip of the ghost is, World, m."""
-    return view.state["ghost"]["tool"][:3]
+def has_moved(ghosts):
+    """Return whether the tip of a ghost was elsewhere than at first."""
+    tips = [ghost["tool"][:3] for ghost in ghosts]
+    return any(math.dist(tip, tips[0]) > 0.02 for tip in tips)
 
 
 def test_all_views_see_the_trial_again_then_the_arm_and_then_its_ghost(tmp_path, views, slicer):
@@ -101,12 +120,8 @@ def test_all_views_see_the_trial_again_then_the_arm_and_then_its_ghost(tmp_path,
     task = {"task": "task-1", "trainee": "P07", "mode": "desktop"}
     assert slicer.send_command("StartTask", task, timeout=60).ok
     for view in (first, second):
-        wait_until(lambda view=view: view.state["ghost"] is not None, "the ghost")
-        assert view.state["ghost"].keys() == {"link_7", "tool"}
-        begin = ghost_tip(view)
-        wait_until(
-            lambda view=view, begin=begin: math.dist(ghost_tip(view), begin) > 0.02, "its way"
-        )
+        wait_until(lambda view=view: has_moved(view.ghosts), "the ghost on its way")
+        assert view.ghosts[0].keys() == {"link_7", "tool"}
     assert slicer.send_command("Abort", timeout=60).ok
     wait_until(lambda: first.state["ghost"] is None, "its end")
     assert journal.read_bytes() == before

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Mapping
 from contextlib import ExitStack
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ from Testing.end_to_end.stream_trainee import StreamTrainee, WatchingView
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
+from Testing.web.chromium import wait_for
 
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 SERVES = re.compile(r"serves views on (http://\S+), pairing code (\d{6})$")
@@ -181,8 +183,11 @@ class Trainee(StreamTrainee):
         if page is not None:
             self.focus("trainee")
             page.wait_for_selector("#menu input:focus")
-            page.keyboard.type(TRAINEE)
-            self.until(lambda: self.value("trainee") == TRAINEE, "the ID")
+            for typed in accumulate(TRAINEE):
+                page.keyboard.press(typed[-1])
+                self.until(lambda told=typed: self.value("trainee") == told, "the ID")
+                # A field forgets what the simulator was long to answer.
+                wait_for(page, f"document.querySelector('#menu input:focus')?.value === '{typed}'")
             return
         self.choose("trainee")
         self.press("accept", lambda: self.menu.facts[0].value.startswith("A"), "the letter A")
