@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import time
@@ -15,7 +16,7 @@ from cryptography.hazmat.primitives.asymmetric import rsa
 from jwt.algorithms import RSAAlgorithm
 
 from rastrainer.errors import InputError
-from rastrainer.files.reading import printable_name, read_json
+from rastrainer.files.reading import failure_reason, printable_name, read_json
 from rastrainer.files.writing import write_private_json
 
 KEY_FILE = "lti-key.json"
@@ -69,13 +70,25 @@ class ToolKey:
 
 
 def _make(path: Path) -> None:
+    """Make the key, unless another process that has just started is first: then its key stays."""
     key = rsa.generate_private_key(public_exponent=65_537, key_size=BITS)
     pem = key.private_bytes(
         serialization.Encoding.PEM,
         serialization.PrivateFormat.PKCS8,
         serialization.NoEncryption(),
     )
-    write_private_json(path, {"privateKey": pem.decode()})
+    own = path.with_name(f".{uuid.uuid4().hex}.partial")
+    write_private_json(own, {"privateKey": pem.decode()})
+    try:
+        # Never in place of another, and whole from the beginning.
+        with contextlib.suppress(FileExistsError):
+            os.link(own, path)
+    except OSError as error:
+        raise InputError(
+            f"{printable_name(path)} cannot be made: {failure_reason(error)}."
+        ) from None
+    finally:
+        own.unlink()
 
 
 def _read(path: Path) -> rsa.RSAPrivateKey:

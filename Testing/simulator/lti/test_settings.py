@@ -8,6 +8,7 @@ import stat
 import sys
 
 import pytest
+from cryptography.hazmat.primitives.asymmetric import rsa
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.cli.main import main
@@ -99,6 +100,20 @@ def test_the_private_key_is_made_once_and_its_owner_s_alone(tmp_path):
     path.write_text('{"privateKey": "none"}')
     with pytest.raises(InputError, match="holds no private key"):
         ToolKey(tmp_path)
+
+
+def test_of_two_first_starts_at_once_both_use_the_key_that_is_kept(tmp_path, monkeypatch):
+    generate, others = rsa.generate_private_key, []
+
+    def generate_while_another_starts(**terms):
+        monkeypatch.undo()
+        others.append(ToolKey(tmp_path))
+        return generate(**terms)
+
+    monkeypatch.setattr(rsa, "generate_private_key", generate_while_another_starts)
+    key = ToolKey(tmp_path)
+    assert key.key_set() == others[0].key_set() == ToolKey(tmp_path).key_set()
+    assert [path.name for path in tmp_path.iterdir()] == [KEY_FILE]
 
 
 def test_the_command_shows_what_the_administrator_enters(tmp_path, capsys):
