@@ -271,7 +271,7 @@ int main(int argc, char **argv) {
     std::puts("no connection");
     return 1;
   }
-  server->SetReceiveTimeout(10000);
+  server->SetReceiveTimeout(60000);
   if (isHostile)
     SendWhatNobodyWants();
   SendOneOfEach();

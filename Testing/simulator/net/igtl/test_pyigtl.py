@@ -13,6 +13,7 @@ import time
 import numpy as np
 import pyigtl
 import pytest
+from pyigtl.comm import OpenIGTLinkBase
 from pyigtl.messages import MessageBase, message_type_to_class_constructor
 
 from rastrainer.igtl.client import Client
@@ -70,6 +71,21 @@ def more_types(monkeypatch):
         monkeypatch.setitem(message_type_to_class_constructor, name, kind)
 
 
+@pytest.fixture(autouse=True)
+def patient(monkeypatch):
+    """Let pyigtl wait until its peer takes a message: it gives up after 10 ms, in the middle."""
+    send = OpenIGTLinkBase._send_queued_message_from_socket
+
+    def send_patiently(endpoint, peer):
+        impatience = peer.gettimeout()
+        peer.settimeout(60)
+        is_sent = send(endpoint, peer)
+        peer.settimeout(impatience)
+        return is_sent
+
+    monkeypatch.setattr(OpenIGTLinkBase, "_send_queued_message_from_socket", send_patiently)
+
+
 @pytest.fixture
 def connected():
     """Makes pyigtl clients of a port, and ends them."""
@@ -124,9 +140,9 @@ def test_what_pyigtl_sends_is_read(plain_server, connected, header_version):
 
 
 def test_pyigtl_reads_all_that_is_published(link_server, connected):
-    client = connected(link_server.port)
     training = TrainingState(trial_id="id-1", touches=TOUCHES)
     link_server.simulated.latest = at_rest(tool_tip_to_world=TIP, training=training)
+    client = connected(link_server.port)
     while not link_server.server.clients:
         time.sleep(0.01)
     link_server.publish(at_rest(sim_time=1.0, tool_tip_to_world=TIP, training=training))
@@ -167,6 +183,9 @@ def test_our_client_and_a_pyigtl_server_understand_each_other(pyigtl_server):
 
 def test_what_pyigtl_sends_and_we_cannot_use_costs_nobody_the_connection(link_server, connected):
     hostile, good = connected(link_server.port), connected(link_server.port)
+    while len(link_server.server.clients) < 2:
+        time.sleep(0.01)
+    clients = {*link_server.server.clients}
     voxels = np.zeros((20, 64, 64), np.uint8)
     cut = pyigtl.TransformMessage(MATRIX, device_name="Cut")
     cut._pack_content = lambda: b"\0" * 20
@@ -175,7 +194,7 @@ def test_what_pyigtl_sends_and_we_cannot_use_costs_nobody_the_connection(link_se
     for _ in range(20):
         for message in (
             pyigtl.ImageMessage(voxels, device_name="Image"),
-            pyigtl.PositionMessage([1, 2, 3], device_name="Position"),
+            pyigtl.PositionMessage([1, 2, 3], [0, 0, 0, 1], device_name="Position"),
             pyigtl.TransformMessage(np.full((4, 4), np.nan), device_name="Probe"),
             CommandMessage(1, "X" * 128, "{" * 10_000),
             cut,
@@ -186,6 +205,7 @@ def test_what_pyigtl_sends_and_we_cannot_use_costs_nobody_the_connection(link_se
         client.send_message(pyigtl.TransformMessage(MATRIX, device_name="Probe"))
         echo = client.wait_for_message("Probe", 60)
         np.testing.assert_array_equal(echo.matrix, MATRIX)
+    assert {*link_server.server.clients} == clients
 
 
 def test_a_pyigtl_server_that_sends_what_we_cannot_use_is_not_left(pyigtl_server, start):

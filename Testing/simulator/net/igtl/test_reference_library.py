@@ -43,7 +43,8 @@ def exchange(reference_client, loop_thread, request):
     A hostile client sends what cannot be used before all else: that costs it and others nothing.
     """
 
-    server = LinkServer(loop_thread, LinkLimits())
+    # However late its first message is: it would not understand one of version 2.
+    server = LinkServer(loop_thread, LinkLimits(first_message_s=600.0))
     server.simulated.latest = at_rest(
         tool_tip_to_world=TIP, training=TrainingState(trial_id="id-1", touches=(TOUCH,))
     )

@@ -155,7 +155,7 @@ def test_client_that_lets_too_many_answers_wait_is_dropped_at_once(start):
 
 
 def test_state_of_a_client_that_reads_slowly_is_replaced_not_piled_up(start):
-    server = start(PlainServer, slow_client_s=600, waiting_bytes=200_000)
+    server = start(PlainServer, slow_client_s=600, silent_peer_s=600, waiting_bytes=200_000)
     with connect(server.port, receive_buffer=4096) as peer, peer.makefile("rb") as stream:
         server.handler.wait_until(lambda: server.handler.connections)
         (connection,) = server.server.clients

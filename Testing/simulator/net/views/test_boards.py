@@ -91,6 +91,7 @@ def test_without_a_pin_nobody_gives_orders(serve, tmp_path):
 
 
 def test_five_wrong_pins_make_a_pause_in_which_the_right_one_is_refused_too(guarded):
+    guarded.server._instructor._pin._limit._clock = lambda: 100.0
     key = guarded.new_key(ViewRole.BOARD)
     statuses = [order(guarded, key, pin=f"{n:06}")[0] for n in range(5)]
     assert statuses == [403] * 4 + [429]

@@ -6,6 +6,7 @@ import socket
 import aiohttp
 import pytest
 
+from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views import view_server as view_server_module
 from Testing.simulator.net.igtl.servers import HOST
 from Testing.simulator.net.views.served import HELLO
@@ -146,7 +147,10 @@ def test_a_view_that_does_not_begin_with_hello_is_told_nothing(served, connect, 
 
 
 def test_a_view_that_never_says_hello_is_closed(serve, connect):
-    view = connect(serve(first_message_s=0.05))
+    served = serve()
+    # Not so short for the request before it.
+    served.server._limits = ViewLimits(first_message_s=0.05)
+    view = connect(served)
     assert view.closing() == (1008, "The first message of a view must be a hello.")
 
 
@@ -202,9 +206,13 @@ STRANGE_REQUESTS = [
 @pytest.mark.parametrize("request_bytes", STRANGE_REQUESTS)
 def test_what_is_no_request_is_refused_and_not_logged(served, caplog, request_bytes):
     with socket.create_connection((HOST, served.port), 60) as stranger:
-        stranger.sendall(request_bytes)
-        stranger.shutdown(socket.SHUT_WR)
-        answer = stranger.recv(100)
+        # It may be refused and cut off before it has sent everything.
+        with contextlib.suppress(OSError):
+            stranger.sendall(request_bytes)
+            stranger.shutdown(socket.SHUT_WR)
+        answer = b""
+        with contextlib.suppress(ConnectionError):
+            answer = stranger.recv(100)
     assert answer == b"" or answer.split(b" ")[1] in (b"400", b"413")
     assert caplog.text == ""
 
@@ -213,4 +221,5 @@ def test_a_connection_that_asks_for_nothing_is_closed(serve):
     served = serve(first_message_s=0.05)
     with socket.create_connection((HOST, served.port), 60) as stranger:
         stranger.sendall(b"GET / HTTP/1.1\r\nHost:")
-        assert stranger.recv(100) == b""
+        with contextlib.suppress(ConnectionError):
+            assert stranger.recv(100) == b""

@@ -58,6 +58,7 @@ def test_sounds_are_wav_files(served):
 
 
 def test_five_wrong_codes_make_a_new_one_and_a_pause(served):
+    served.server.code._limit._clock = lambda: 100.0
     first = served.code
     for _ in range(4):
         assert pair(served, wrong(first))[0] == 403

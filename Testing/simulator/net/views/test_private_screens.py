@@ -24,13 +24,17 @@ def joined(served, connect, kind, role=ViewRole.VIEW):
 
 
 def screens_and_events(view):
-    """Return the screens and events up to the plain screen that ends a test."""
+    """Return the menus and the events before the one that ends a test.
+
+    Events come in their order, and screens before them; where a view reads slowly, the plain
+    screen before an older event.
+    """
     messages = view.all_until(
-        lambda message: message["type"] == "screen" and message["screen"]["status"] == ["plain"]
+        lambda message: message["type"] == "event" and message["kind"] == "accept"
     )
     screens = [each["screen"] for each in messages if each["type"] == "screen"]
     menus = [screen["menu"] for screen in screens if screen["menu"] is not None]
-    return menus, [each["kind"] for each in messages if each["type"] == "event"]
+    return menus, [each["kind"] for each in messages[:-1] if each["type"] == "event"]
 
 
 def tell(served, control):
@@ -46,7 +50,7 @@ def tell(served, control):
 def finish(served):
     def act(presenter):
         presenter.screen = PLAIN
-        presenter.tell(PLAIN)
+        presenter.tell(PLAIN, Feedback(2, "accept"))
 
     served.thread.call(act, served.presenter)
 

@@ -3,6 +3,7 @@
 import secrets
 import socket
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -39,11 +40,14 @@ def test_a_joined_view_does_not_keep_the_simulator_from_ending(tmp_path, loop_th
     with (
         ViewedSimulator(tmp_path / "records", "--view-port", "0", key=key) as simulator,
         ViewClient(loop_thread, simulator.url, key) as view,
+        ThreadPoolExecutor() as reading,
     ):
         view.join()
         view.next("state")
+        # It reads all the time: the simulator waits only shortly for who does not.
+        closing = reading.submit(view.closing)
         assert simulator.stop()[0] == 0
-        assert view.closing() == (1001, "The simulator has been stopped.")
+        assert closing.result() == (1001, "The simulator has been stopped.")
 
 
 def test_a_port_that_is_taken_is_told_or_replaced(tmp_path):

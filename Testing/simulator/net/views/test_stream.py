@@ -140,7 +140,8 @@ def test_a_view_that_joins_later_does_not_hear_what_has_been(served, connect):
     assert late.next("event")["number"] == 2
 
 
-def test_a_view_that_has_not_read_gets_the_latest_screen_and_not_all_before(served, connect):
+def test_a_view_that_has_not_read_gets_the_latest_screen_and_not_all_before(serve, connect):
+    served = serve(gone_s=1000.0)
     view = connect(served)
     view.join()
     view.next("state")
@@ -154,7 +155,8 @@ def test_a_view_that_has_not_read_gets_the_latest_screen_and_not_all_before(serv
     assert len(screens) < count / 2, "what nobody read was replaced, not kept"
 
 
-def test_a_view_that_reads_no_more_does_not_hold_up_the_end(served, connect):
+def test_a_view_that_reads_no_more_does_not_hold_up_the_end(serve, connect):
+    served = serve(gone_s=1000.0)
     view = connect(served)
     view.join()
     view.next("state")
