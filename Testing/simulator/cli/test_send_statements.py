@@ -15,6 +15,7 @@ from rastrainer_simulator.cli.send_statements import Sender, SentStatements
 from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.net.record_store import BATCH, RecordStore
 from Testing.domain.study.played_study import study_with_trials
+from Testing.free_port import free_port
 from Testing.simulator.cli.record_store_double import CREDENTIALS, RecordStoreDouble
 
 HOME = "https://lab.example.org"
@@ -83,10 +84,10 @@ def test_nothing_is_lost_or_doubled_while_the_store_is_away(store, tmp_path, cap
 
 
 def test_a_store_that_nobody_runs_is_named_and_everything_is_sent_later(tmp_path):
-    with RecordStoreDouble() as gone:
-        port = gone.server_address[1]
-    client = RecordStore(gone.url, CREDENTIALS)
-    sender = Sender(lambda: STATEMENTS, client, SentStatements(tmp_path / "s.db", gone.url, HOME))
+    port = free_port()
+    url = f"http://127.0.0.1:{port}/xAPI"
+    client = RecordStore(url, CREDENTIALS)
+    sender = Sender(lambda: STATEMENTS, client, SentStatements(tmp_path / "s.db", url, HOME))
     with pytest.raises(InputError, match="does not answer: Connection refused"):
         sender.send()
     with RecordStoreDouble(port) as back:

@@ -30,7 +30,7 @@ def records(shared, tmp_path):
     folder = tmp_path / "records"
     with ControlLoop(shared, folder, rate_hz=RATE_HZ, speed=None) as loop:
         arguments = check_arguments("StartTask", {"task": "task-2", "trainee": "P07"})
-        assert loop.submit(CommandName.START_TASK, arguments).result(30.0).ok
+        assert loop.submit(CommandName.START_TASK, arguments).result(120.0).ok
     return folder
 
 

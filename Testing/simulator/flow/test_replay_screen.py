@@ -331,7 +331,7 @@ def test_until_the_trial_is_loaded_the_views_say_so_and_one_can_go_back(place, m
     may_load = threading.Event()
 
     def read(path, rest):
-        may_load.wait(30)
+        may_load.wait(PATIENCE_S)
         return read_track(path, rest)
 
     monkeypatch.setattr(recorded_trial, "read_track", read)

@@ -17,6 +17,12 @@ from Testing.forked_child import in_child
 OURS = logging.getLogger("rastrainer_simulator.some_part")
 
 
+@pytest.fixture(autouse=True)
+def patience(monkeypatch):
+    """Have a log that ends wait for its lines however slow the disk is."""
+    monkeypatch.setattr(log_files, "CLOSE_TIMEOUT_S", 60.0)
+
+
 def lines(path):
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
 

@@ -4,6 +4,7 @@ import errno
 import os
 import random
 import shutil
+import threading
 
 import numpy as np
 import pytest
@@ -62,11 +63,21 @@ class Server:
         return self.do(CommandName.START_TASK, task="task-1", trainee="P01").data["trialId"]
 
     def move(self, translation=(0.4, -0.3, 0.2), ticks=20):
-        self.loop.hold_sticks(OperatorInput(translation, operator="gamepad"))
-        until = self.loop.latest.tick + ticks
-        while self.loop.latest.tick < until:
-            self.do(CommandName.LIST_TASKS)
-        self.loop.hold_sticks(OperatorInput())
+        """Hold the sticks for so many ticks, however late this thread is."""
+        sticks = [OperatorInput(translation, operator="gamepad"), *[None] * (ticks - 1)]
+        sticks.append(OperatorInput())
+        is_over = threading.Event()
+
+        def push(_result):
+            given = sticks.pop(0) if sticks else None
+            if given is not None:
+                self.loop.hold_sticks(given)
+            if not sticks:
+                is_over.set()
+
+        unsubscribe = self.loop.subscribe(push)
+        assert is_over.wait(TIMEOUT_S)
+        unsubscribe()
 
     def finish(self):
         while self.training.phase is not Phase.COMPLETE:

@@ -1,6 +1,7 @@
 """A procedure in its journal: ended in any phase it continues there, and it replays bit by bit."""
 
 import json
+import threading
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +25,7 @@ from rastrainer_simulator.record.aborted_archive import interrupted_attempt
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import EventKind
-from Testing.simulator.record.test_interrupted_trial import Server, cut
+from Testing.simulator.record.test_interrupted_trial import TIMEOUT_S, Server, cut
 
 IN = (0.0, 0.0, -1.0)
 
@@ -57,10 +58,17 @@ class Theatre(Server):
 
     def feed(self, to_mm):
         """Feed by the stick, with other sticks in between, until it is so deep."""
+        is_deep = threading.Event()
+
+        def let_go_in_time(result):
+            if MM_PER_M * result.state.feed >= to_mm:
+                self.loop.hold_sticks(OperatorInput())
+                is_deep.set()
+
         self.loop.hold_sticks(OperatorInput(IN, operator="gamepad"))
-        while MM_PER_M * self.loop.latest.feed < to_mm:
-            self.do(CommandName.LIST_TASKS)
-        self.loop.hold_sticks(OperatorInput())
+        unsubscribe = self.loop.subscribe(let_go_in_time)
+        assert is_deep.wait(TIMEOUT_S)
+        unsubscribe()
         self.move((0.0, 0.0, 0.0), 20)
 
     def align(self):
@@ -305,6 +313,7 @@ def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simul
 def test_a_procedure_that_nobody_continues_counts_as_aborted_in_its_phase(simulation, tmp_path):
     with Theatre(simulation, tmp_path) as server:
         server.to(Phase.DRILLING)
+        server.loop.stop()
         elapsed = server.loop.latest.elapsed
     record = interrupted_attempt(read_journal(server.path))
     assert (record.phase, len(record.points)) == ("drilling", 15)

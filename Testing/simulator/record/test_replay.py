@@ -31,7 +31,7 @@ def recorded(setup, tmp_path_factory) -> Path:
     with ControlLoop(Simulation(setup, 5), folder, speed=None) as loop:
 
         def do(command, **arguments):
-            return loop.submit(command, check_arguments(command, arguments)).result(30.0)
+            return loop.submit(command, check_arguments(command, arguments)).result(120.0)
 
         do(CommandName.SET_CAMERA, camera="far")
         do(CommandName.START_TASK, task="task-2", trainee="P07", mode="hmd")
