@@ -16,6 +16,8 @@ TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
 
 @pytest.fixture
 def guide(outside):
+    """What Slicer tells of the study, while no time of a break passes."""
+    outside.services.study._clock = lambda: 100.0
     return outside.services.study
 
 
