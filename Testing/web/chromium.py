@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import shutil
 import time
 from collections.abc import Iterator
@@ -13,6 +14,10 @@ import numpy as np
 from PIL import Image
 from playwright.sync_api import Browser, Page, Playwright, Response
 
+from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.screen import Screen, without_secrets
+from Testing.end_to_end.window_process import wait_until
+from Testing.simulator.net.views.served import ServedViews
 from tools.build_page import install_packages
 
 WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
@@ -206,6 +211,13 @@ def wait_for(page: Page, expression: str) -> None:
     while not page.evaluate(expression):
         assert time.monotonic() < give_up, f"{expression} never came true"
         page.wait_for_timeout(POLL_MS)
+
+
+def show(page: Page, served: ServedViews, screen: Screen) -> None:
+    """Have a page shown a screen, and wait until that is what it shows."""
+    served.tell(screen)
+    wanted = json.loads(outgoing.screen(without_secrets(screen)))["screen"]
+    wait_until(lambda: page.evaluate("page.screen") == wanted, "the screen", PATIENCE_MS / 1000.0)
 
 
 def pixels(page: Page) -> np.ndarray:

@@ -9,7 +9,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from Testing.simulator.flow.languages import LONGEST, LONGEST_OR_EACH, letters, screens_in
-from Testing.web.chromium import enter_headset, open_page
+from Testing.web.chromium import enter_headset, open_page, show
 from Testing.web.test_page_access import at_work
 
 WITHOUT_ROOM = """() => {
@@ -52,13 +52,7 @@ def test_nothing_on_a_board_is_cut_or_over_something_else(browser, served, loop,
     screens = {**screens_in(presenter, language), "work": max(map(at_work, spoken), key=letters)}
     found = []
     for name, screen in screens.items():
-        served.tell(screen)
-        told = screen.menu.title if screen.menu else ""
-        page.wait_for_function(
-            "([title, status]) => (page.screen?.menu?.title ?? '') === title "
-            "&& page.screen.status.join() === status",
-            arg=[told, ",".join(screen.status)],
-        )
+        show(page, served, screen)
         found += [f"{name}: {each}" for each in page.evaluate(WITHOUT_ROOM)]
     presenter.close()
     assert page.problems == []

@@ -13,7 +13,7 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
-from Testing.web.chromium import accessibility_checker, open_page, resize
+from Testing.web.chromium import accessibility_checker, open_page, resize, show
 from Testing.web.hands import PageKeys
 from Testing.web.place import PATIENT, Place
 
@@ -123,9 +123,7 @@ def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_
     presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
     found = []
     for name, screen in screens_in(presenter, language).items():
-        served.tell(screen)
-        menu = "" if screen.menu is None else screen.menu.name
-        page.wait_for_selector(f"body[data-menu='{menu}']", state="attached")
+        show(page, served, screen)
         found += complaints(page, name, sizes)
     presenter.close()
     page.context.close()
@@ -166,8 +164,7 @@ def test_what_a_thumb_works_with_overlaps_nothing_at_any_size(browser, served):
     found = []
     for language in LANGUAGES:
         screen = at_work(language)
-        served.tell(screen)
-        page.wait_for_selector(f"#instruction:has-text('{screen.instruction.text}')")
+        show(page, served, screen)
         page.wait_for_selector("#touch-controls")
         page.evaluate(AT_A_GUIDE, {"tool": "guide", "aim": {}})
         page.wait_for_selector("#touch-controls [data-toggle=tilt]")

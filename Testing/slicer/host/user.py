@@ -113,7 +113,7 @@ class User:
         """Return the text of a widget."""
         return self.find(name).text
 
-    def wait_until(self, condition: Callable[[], Any], what: str, timeout_s: float = 60.0) -> None:
+    def wait_until(self, condition: Callable[[], Any], what: str, timeout_s: float = 300.0) -> None:
         """Let events pass until something is so.
 
         Raises:
