@@ -12,7 +12,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import DeviceName
 from rastrainer_simulator.loop.precise_clock import LoopStatistics
 
-TIMEOUT_S = 30.0
+TIMEOUT_S = 60.0
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def next_health(client: Client) -> LoopStatistics:
     """Wait for the next heartbeat, which comes once a second.
 
     Raises:
-        LinkError: none came in half a minute, or the connection is lost.
+        LinkError: none came in a minute, or the connection is lost.
     """
     known = client.latest.get(DeviceName.SIM_SERVER)
     beat = client.wait_for(DeviceName.SIM_SERVER, lambda new: new is not known, TIMEOUT_S)

@@ -1,11 +1,9 @@
 """The trainee's view: what moves it, what the sticks mean by it, and what the record says."""
 
-import json
-
 import numpy as np
 import pytest
 
-from rastrainer.journal.journal_file import read_journal
+from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import StepKind
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.session.trial_view import turned
@@ -34,6 +32,13 @@ def wait_for_views(trainee):
     """Let the trial's best views be found."""
     is_found = lambda: trainee.presenter.pictures(trainee.state).inset is not None  # noqa: E731
     trainee.until(is_found, "the best view")
+
+
+def whole_journal(trainee, outside):
+    """Return the reading of the aborted trial's journal, once its last line is on the disk."""
+    (path,) = outside.services.records.glob(f"*{SUFFIX}")
+    trainee.until(lambda: read_journal(path).integrity is Integrity.INTACT, "the journal's end")
+    return read_journal(path)
 
 
 def moved(trainee, steps=40):
@@ -158,10 +163,7 @@ def test_the_journal_says_how_the_view_was_turned_and_whether_it_follows(by_hand
     by_hand.presenter.on_orbit(1, 40.0, -5.0, 0.5)
     by_hand.step(30)
     by_hand.submit("Abort")
-    (journal,) = outside.services.records.glob(f"*{SUFFIX}")
-    by_hand.until(lambda: '"view"' in journal.read_text(encoding="utf-8"), "the entry")
-    entries = map(json.loads, journal.read_text(encoding="utf-8").splitlines())
-    views = [entry for entry in entries if entry["kind"] == "view"]
+    views = whole_journal(by_hand, outside).of_kind("view")
     assert views[-1]["azimuthDeg"] == 40.0
     assert views[-1]["zoom"] == 0.5
     assert not any(entry["follows"] or entry["isAutomatic"] for entry in views)
@@ -177,8 +179,6 @@ def test_a_trial_with_a_view_that_turns_is_simulated_again_bit_by_bit(by_hand, o
         by_hand.presenter.on_key(1, "KeyE", False, "")
     by_hand.hands.push(0.0, 0.0, 0.0, False)
     by_hand.submit("Abort")
-    (journal,) = outside.services.records.glob(f"*{SUFFIX}")
-    by_hand.until(lambda: '"aborted"' in journal.read_text(encoding="utf-8"), "the end")
-    report = replay(read_journal(journal), by_hand.loop.setup)
+    report = replay(whole_journal(by_hand, outside), by_hand.loop.setup)
     assert report.is_identical
     assert report.compared["input"] > 50

@@ -62,8 +62,9 @@ def test_a_broken_file_in_the_cache_is_built_again(built, setup):
 def test_who_does_not_wait_any_more_ends_the_building(setup, tmp_path, monkeypatch):
     start, started = asyncio.create_subprocess_exec, []
 
-    async def note(*arguments, **named):
-        started.append(await start(*arguments, **named))
+    async def start_endless(*_words, **named):
+        endless = "import time; time.sleep(600.0)"
+        started.append(await start(sys.executable, "-c", endless, **named))
         return started[-1]
 
     async def give_up():
@@ -73,7 +74,7 @@ def test_who_does_not_wait_any_more_ends_the_building(setup, tmp_path, monkeypat
         building.cancel()
         await asyncio.gather(building, return_exceptions=True)
 
-    monkeypatch.setattr(scene_files_module.asyncio, "create_subprocess_exec", note)
+    monkeypatch.setattr(scene_files_module.asyncio, "create_subprocess_exec", start_endless)
     asyncio.run(give_up())
     assert [process.returncode is None for process in started] == [False]
     assert list(tmp_path.iterdir()) == []

@@ -20,7 +20,7 @@ from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.stream import MessageReader
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName
 
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
 """How long is waited by default: a machine that is busy may answer only after some seconds."""
 _PIECE_BYTES = 64 * 1024
 
