@@ -200,7 +200,9 @@ def _ram_depths(bench: Bench, collision: Collision) -> Iterator[float]:
         direction /= np.linalg.norm(direction)
         solution = bench.fabrik.solve(place - 0.03 * direction, direction, q_start=bench.robot.home)
         moved = contact.at(solution.q)
-        if not solution.converged or min(moved.clearance.tip_m, moved.clearance.without_tip_m) < 0:
+        found = moved.clearance
+        least = min(found.tool_m, found.links_m, found.self_m, found.table_m)
+        if not solution.converged or least < 0:
             continue
         depth, holds = 0.0, random.random() < 0.5
         for _ in range(RAM_TICKS):

@@ -46,9 +46,22 @@ def next_health(client: Client) -> LoopStatistics:
     return health_of(json.loads(beat.content.message))
 
 
+def on_time(health: LoopStatistics) -> float:
+    """Return the share of all ticks that were on time, 0…1; skipped ticks were not."""
+    due = health.ticks + health.skipped
+    return (health.ticks - health.late) / due if due else 1.0
+
+
+def between(earlier: LoopStatistics, later: LoopStatistics) -> LoopStatistics:
+    """Return the counts of the time between two heartbeats."""
+    return LoopStatistics(
+        later.ticks - earlier.ticks, later.late - earlier.late, later.skipped - earlier.skipped
+    )
+
+
 def punctuality(healths: Sequence[LoopStatistics]) -> Punctuality:
     """Return what several heartbeats in a row tell."""
-    return _of_parts([later.since(earlier) for earlier, later in pairwise(healths)])
+    return _of_parts([between(earlier, later) for earlier, later in pairwise(healths)])
 
 
 def undisturbed(
@@ -64,7 +77,7 @@ def undisturbed(
         was_never_late: whether a bare loop was never late between two such times.
     """
     parts = [
-        later.since(earlier)
+        between(earlier, later)
         for (start, earlier), (end, later) in pairwise(healths)
         if later.ticks > earlier.ticks and was_never_late(start, end)
     ]
@@ -78,5 +91,5 @@ def _of_parts(parts: Sequence[LoopStatistics]) -> Punctuality:
         sum(part.late for part in parts),
         sum(part.skipped for part in parts),
     )
-    shares = np.array([100.0 * part.on_time for part in parts])
-    return Punctuality(shares, whole.on_time, whole.ticks + whole.skipped)
+    shares = np.array([100.0 * on_time(part) for part in parts])
+    return Punctuality(shares, on_time(whole), whole.ticks + whole.skipped)

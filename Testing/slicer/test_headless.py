@@ -14,7 +14,7 @@ from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
-from rastrainer.slicer.scene.registration_nodes import fixedNode, isApplied, matrixOf
+from rastrainer.slicer.scene.registration_nodes import FIXED_REFERENCE, isApplied, matrixOf
 from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import analyze_trial
@@ -116,7 +116,7 @@ def check_saved_scene(path, results):
     np.testing.assert_allclose(matrixOf(transform), results["fits"]["rigid"]["matrix"], atol=1e-9)
     assert isApplied(transform)
     touched = scene.GetFirstNode("CapturedPoints", "vtkMRMLMarkupsFiducialNode")
-    fixed = fixedNode(transform)
+    fixed = transform.GetNodeReference(FIXED_REFERENCE)
     assert labelsOf(touched) == labelsOf(fixed)
     residuals = np.linalg.norm(worldPoints(touched) - worldPoints(fixed), axis=1)
     np.testing.assert_allclose(residuals, results["fits"]["rigid"]["residuals_mm"], atol=2e-3)

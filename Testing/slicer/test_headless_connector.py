@@ -7,12 +7,13 @@ import slicer
 import vtk
 
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Point, Points, Status, String, Transform
+from rastrainer.igtl.content import Point, Points, Status, String
 from rastrainer.igtl.message import Message, pack
 from rastrainer.igtl.wire import crc64
 from rastrainer_headless.command import HeadlessCommand
 from rastrainer_headless.connector import HeadlessConnector
 from rastrainer_headless.peer_sockets import CrashError, takeCrashes
+from Testing.domain.igtl.sent_pose import transform_of
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until
 
 SHIFT = ((1, 0, 0, 10), (0, 1, 0, 20), (0, 0, 1, 30), (0, 0, 0, 1))
@@ -87,7 +88,7 @@ def received_commands(connector):
 
 
 def test_a_transform_becomes_a_linear_transform_to_parent(connector, simulator, scene):
-    simulator.send("ToolTipToWorld", Transform.from_matrix(SHIFT), {"seq": "7"})
+    simulator.send("ToolTipToWorld", transform_of(SHIFT), {"seq": "7"})
     wait_for(connector, lambda: incoming(connector, "ToolTipToWorld"))
     node = scene.GetFirstNode("ToolTipToWorld", "vtkMRMLLinearTransformNode")
     assert slicer.util.arrayFromTransformMatrix(node).tolist() == [list(row) for row in SHIFT]
@@ -95,9 +96,9 @@ def test_a_transform_becomes_a_linear_transform_to_parent(connector, simulator, 
 
 
 def test_metadata_stays_on_the_node_and_status_keys_also_without_prefix(connector, simulator):
-    simulator.send("T", Transform.from_matrix(SHIFT), {"seq": "1", "TransformStatus": "OK"})
+    simulator.send("T", transform_of(SHIFT), {"seq": "1", "TransformStatus": "OK"})
     wait_for(connector, lambda: incoming(connector, "T"))
-    simulator.send("T", Transform.from_matrix(SHIFT), {"other": "2"})
+    simulator.send("T", transform_of(SHIFT), {"other": "2"})
     node = incoming(connector, "T")
     wait_for(connector, lambda: node.GetAttribute("OpenIGTLink.other") == "2")
     assert node.GetAttribute("OpenIGTLink.seq") == "1"

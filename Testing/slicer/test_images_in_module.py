@@ -10,7 +10,7 @@ import slicer
 from PySide6 import QtGui
 
 from rastrainer import transforms
-from rastrainer.igtl.content import Status, String, Transform
+from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
@@ -19,6 +19,7 @@ from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.scene.scenario_volume import VOLUME
 from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer_simulator.assets import asset_path
+from Testing.domain.igtl.sent_pose import transform_of
 from Testing.slicer.host.host import Host
 from Testing.slicer.test_slice_follower import place
 
@@ -210,7 +211,7 @@ def test_the_slices_follow_the_tool_which_makes_the_module_ask_for_poses(host, t
     for place_ras in ((10.0, 70.0, 60.0), (-30.0, 20.0, 80.0)):
         world = transforms.apply(COLIN27.head_to_world, place_ras)
         pose = transforms.rigid(np.eye(3), world)
-        simulator.send(DeviceName.TOOL_TIP_TO_WORLD, Transform.from_matrix(pose))
+        simulator.send(DeviceName.TOOL_TIP_TO_WORLD, transform_of(pose))
         trial.wait_for_slices_at(place_ras)
     host.check("slicesToolCheckBox", False)
     host.wait_until(lambda: not trial.wishes()[-1], "poses are wished no more")

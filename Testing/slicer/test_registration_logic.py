@@ -20,7 +20,7 @@ from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_input import Choices
 from rastrainer.slicer.scene.registration_nodes import (
-    fixedNode,
+    FIXED_REFERENCE,
     isApplied,
     matrixOf,
     movingNode,
@@ -107,7 +107,7 @@ def test_the_transform_shows_the_chosen_fit_and_remembers_its_lists(table):
     transform = table.logic.transform()
     np.testing.assert_allclose(matrixOf(transform), table.logic.comparison.fits[AFFINE].matrix)
     assert movingNode(transform) is capturedPointsNode(table.scene)
-    assert fixedNode(transform) is table.fixed
+    assert transform.GetNodeReference(FIXED_REFERENCE) is table.fixed
     assert isApplied(transform)
     setApplied(transform, False)
     table.touch(table.touched + 0.1)

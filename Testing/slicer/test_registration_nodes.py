@@ -104,7 +104,7 @@ def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
     headless_scene.load(tmp_path / "trial.mrb")
     node = headless_scene.scene.GetFirstNodeByName("WorldToHead")
     assert registration_nodes.movingNode(node).GetName() == "CapturedPoints"
-    assert labelsOf(registration_nodes.fixedNode(node)) == LABELS
+    assert labelsOf(node.GetNodeReference(registration_nodes.FIXED_REFERENCE)) == LABELS
     assert registration_nodes.isApplied(node)
 
 

@@ -286,13 +286,13 @@ def test_each_score_is_sent_once_even_if_the_link_opens_again_meanwhile(lab, mak
     for trial in trials:
         lab.simulator.send_command("TrialCompleted", make_record(trial, seed=SEED))
     lab.run_until(lambda: len(lab.sent("SubmitRegistration")) == 4 and not lab.work.isBusy)
-    lab.run_until(lambda: not lab.logic.isScoring)
+    lab.run_until(lambda: not any(map(lab.logic.isBeingScored, trials)))
     lab.refusal = None
     lab.simulator.commands.clear()
     lab.link.opened.emit()
     lab.link.opened.emit()
     lab.run_until(lambda: len(lab.scored) >= 4 and not lab.work.isBusy)
-    lab.run_until(lambda: not lab.logic.isScoring)
+    lab.run_until(lambda: not any(map(lab.logic.isBeingScored, trials)))
     told = [arguments["trialId"] for arguments in lab.sent("TrialScored")]
     assert sorted(told) == trials
     assert sorted(trial.record.trial_id for trial in lab.scored) == trials

@@ -109,7 +109,7 @@ def test_without_trainees_without_a_curriculum_and_without_a_study_there_is_a_se
         page.wait_for_selector("#class-state:has-text('No trainee of this study follows')")
         play_class(tmp_path / "other.db", ["T1"], 0)
         with Study.open(tmp_path / "other.db") as other, Study.open(path) as opened:
-            own = CurriculumStore(other).curriculum_of("T1")
+            own = CurriculumStore(other).standing("T1").curriculum
             opened.create_trainee("T2")
             CurriculumStore(opened).choose(own, "T2")
         page.wait_for_selector("#class-without:has-text('Without a curriculum: T1')")

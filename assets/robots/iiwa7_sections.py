@@ -8,7 +8,6 @@ width across, place of the widest point, exponents of the inner and outer half.
 from solids import Station
 
 ARM_RADIUS = 68.0
-HAND_RADIUS = 52.0
 
 # From the pan joint's round end up the bend to the tilt joint's face: links 1 and 3; turned over,
 # also links 2 and 4.

@@ -73,11 +73,6 @@ class Clearance(NamedTuple):
         return min(self.tip_m, self.shaft_m)
 
     @property
-    def without_tip_m(self) -> float:
-        """The least clearance of everything but the tip: above 0, a touch is possible."""
-        return min(self.shaft_m, self.links_m, self.self_m, self.table_m)
-
-    @property
     def worst(self) -> str:
         """The nearest part: "tip", "shaft", "links", "self" or "table"."""
         parts = ("tip", "shaft", "links", "self", "table")

@@ -152,21 +152,6 @@ class LoopStatistics:
     skipped: int = 0
     worst_delay_s: float = 0.0
 
-    @property
-    def on_time(self) -> float:
-        """Share of all ticks that were on time, 0…1; skipped ticks were not."""
-        due = self.ticks + self.skipped
-        return (self.ticks - self.late) / due if due else 1.0
-
-    def since(self, earlier: LoopStatistics) -> LoopStatistics:
-        """Return the counts after an earlier moment; the longest delay is that of both together."""
-        return LoopStatistics(
-            self.ticks - earlier.ticks,
-            self.late - earlier.late,
-            self.skipped - earlier.skipped,
-            self.worst_delay_s,
-        )
-
 
 class Punctuality:
     """Counts for `LoopStatistics`, in the control loop's thread."""

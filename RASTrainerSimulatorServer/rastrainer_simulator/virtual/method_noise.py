@@ -179,14 +179,6 @@ class RangeCamera:
             )
         return points
 
-    def scan(self, mesh: HeadMesh, random: Generator) -> np.ndarray:
-        """Return the points that the camera measures, (n, 3) float, RAS mm.
-
-        Raises:
-            InputError: as of `seen`.
-        """
-        return self.noisy(self.seen(mesh), random)
-
     def noisy(self, points: np.ndarray, random: Generator) -> np.ndarray:
         """Return points (n, 3), RAS mm, as the camera measures them."""
         rays = points - self.eye

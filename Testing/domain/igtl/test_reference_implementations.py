@@ -7,16 +7,17 @@ import numpy as np
 import pyigtl
 import pytest
 
-from rastrainer.igtl.content import Point, Points, String, Transform
+from rastrainer.igtl.content import Point, Points, String
 from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
 from rastrainer.igtl.wire import crc64, plain_crc64
+from Testing.domain.igtl.sent_pose import transform_of
 
 MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])
 TIME = 1234.5
 
 
 def transform_pair():
-    return Transform.from_matrix(MATRIX), pyigtl.TransformMessage(MATRIX, TIME, "Device")
+    return transform_of(MATRIX), pyigtl.TransformMessage(MATRIX, TIME, "Device")
 
 
 def string_pair():

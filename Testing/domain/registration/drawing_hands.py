@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.registration.surface_error import DAB, expected_surface_tre, knowledge_so_far
+from rastrainer.registration.surface_error import DAB, PoseKnowledge, knowledge_so_far
 from rastrainer.registration.trace_guidance import TraceGuide, guided_targets
 
 TARGET = np.array([0.7815, -16.9395, 1.432])
@@ -42,13 +42,16 @@ def draw_by_guidance(head: HeadMesh, guide: TraceGuide, seed: int, count: int) -
     return places[:count]
 
 
-def expected_mm(head: HeadMesh, places: np.ndarray) -> float:
+def expected_mm(knowledge: PoseKnowledge, targets: np.ndarray) -> np.ndarray:
+    """Return √E[TRE²] at targets (m, 3), RAS mm, (m,) float, mm, without an offset they share."""
+    return np.sqrt(np.trace(knowledge.at_targets(targets), axis1=1, axis2=2))
+
+
+def expected_after(head: HeadMesh, places: np.ndarray) -> float:
     """Return the expected TRE after points on the skin (n, 3), RMS over the guided targets."""
     rows = np.argmin(np.linalg.norm(head.vertices - places[:, None], axis=2), axis=1)
     knowledge = knowledge_so_far(places, head.vertex_normals[rows], head)
-    return float(
-        np.sqrt(np.mean(expected_surface_tre(knowledge, guided_targets(TARGET), 0.0) ** 2))
-    )
+    return float(np.sqrt(np.mean(expected_mm(knowledge, guided_targets(TARGET)) ** 2)))
 
 
 def _along_skin(head: HeadMesh, at: np.ndarray, heading: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.registration.surface_error import (
-    expected_surface_tre,
+    DAB,
     knowledge_of,
     knowledge_so_far,
     next_best_place,
@@ -14,6 +14,7 @@ from rastrainer.registration.surface_error import (
 )
 from rastrainer.registration.surface_match import match_surface
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
+from Testing.domain.registration.drawing_hands import expected_mm
 from Testing.domain.registration.traces import (
     coarse_start,
     colin27,
@@ -92,19 +93,21 @@ def test_the_bootstrap_of_the_residuals_gives_the_same_error(head):
         again = match_surface(trace, head, match.matrix, starts=1)
         moved.append(transforms.apply(again.matrix @ world, targets) - targets)
     spread = np.sqrt(np.mean(np.sum(np.square(moved), axis=2), axis=0))
-    assert np.allclose(expected_surface_tre(knowledge, targets, 0.0), spread, rtol=0.35)
+    assert np.allclose(expected_mm(knowledge, targets), spread, rtol=0.35)
 
 
 def test_an_offset_that_all_points_share_adds_to_the_error(head):
     match, _ = trial(head, 4)
-    knowledge, target = knowledge_of(match), head.middle[None]
-    alone = expected_surface_tre(knowledge, target, 0.0)
-    assert np.allclose(expected_surface_tre(knowledge, target, 2.0) ** 2, alone**2 + 12.0)
+    alone, shared = (
+        surface_target_error(knowledge_of(match), head.middle, common_bias_sd_mm=bias).expected_mm
+        for bias in (0.0, 2.0)
+    )
+    assert shared**2 == pytest.approx(alone**2 + 12.0)
 
 
 def test_the_expected_error_grows_away_from_the_trace(head):
     match, _ = trial(head, 5)
-    over_head = expected_surface_tre(knowledge_of(match), head.vertices, 0.0)
+    over_head = expected_mm(knowledge_of(match), head.vertices)
     back = head.vertices[:, 1] < head.vertices[:, 1].min() + 20.0
     face = places(head, "face")
     assert over_head.shape == (len(head.vertices),)
@@ -113,24 +116,26 @@ def test_the_expected_error_grows_away_from_the_trace(head):
 
 def expected_at_targets(head, rows):
     knowledge = knowledge_so_far(head.vertices[rows], head.vertex_normals[rows], head, NOISE_MM)
-    tre = expected_surface_tre(knowledge, head.middle + ASIDE, 0.0)
-    return float(np.sqrt(np.mean(tre**2)))
+    return float(np.sqrt(np.mean(expected_mm(knowledge, head.middle + ASIDE) ** 2)))
 
 
-def test_the_next_place_gains_what_it_says(head):
+def test_the_next_centimeter_gains_most_at_the_next_place(head):
     allowed = np.zeros(len(head.vertices), dtype=bool)
     allowed[places(head, "face")] = True
     rows = np.flatnonzero(allowed)[::200]
     knowledge = knowledge_so_far(head.vertices[rows], head.vertex_normals[rows], head, NOISE_MM)
     best = next_best_place(knowledge, head, head.middle + ASIDE, allowed)
     assert allowed[best.vertex]
-    assert best.expected_now_mm == pytest.approx(expected_at_targets(head, rows))
-    assert best.expected_then_mm < best.expected_now_mm
+    after, *elsewhere = (
+        expected_at_targets(head, np.append(rows, [vertex] * DAB))
+        for vertex in (best.vertex, *np.flatnonzero(allowed)[::40])
+    )
+    assert after < min(expected_at_targets(head, rows), *elsewhere) + 1e-9
     with pytest.raises(InputError, match="No place"):
         next_best_place(knowledge, head, head.middle + ASIDE, np.zeros_like(allowed))
 
 
 def test_before_the_first_point_the_pose_is_as_open_as_landmarks_leave_it(head):
     knowledge = knowledge_so_far(np.zeros((0, 3)), np.zeros((0, 3)), head)
-    (tre,) = expected_surface_tre(knowledge, head.middle[None], 0.0)
+    (tre,) = expected_mm(knowledge, head.middle[None])
     assert tre == pytest.approx(10.0 * np.sqrt(3.0))

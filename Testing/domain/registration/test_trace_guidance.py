@@ -15,7 +15,7 @@ from Testing.domain.registration.drawing_hands import (
     EYE,
     TARGET,
     draw_by_guidance,
-    expected_mm,
+    expected_after,
 )
 from Testing.domain.registration.traces import colin27, random_walk
 
@@ -93,9 +93,7 @@ def test_the_distance_to_the_trace_is_the_same_point_by_point(head):
 
 def test_guidance_more_than_halves_the_expected_error_of_drawing_at_random(head, guide):
     front, count = (head.vertices[:, 1] > 0.0) & (head.vertices[:, 2] > -60.0), 100
-    at_random = [
-        expected_mm(head, head.vertices[random_walk(head, front, np.random.default_rng(s), count)])
-        for s in range(4)
-    ]
-    guided = [expected_mm(head, draw_by_guidance(head, guide, seed, count)) for seed in range(2)]
+    walks = [random_walk(head, front, np.random.default_rng(seed), count) for seed in range(4)]
+    at_random = [expected_after(head, head.vertices[walk]) for walk in walks]
+    guided = [expected_after(head, draw_by_guidance(head, guide, seed, count)) for seed in range(2)]
     assert max(guided) < 0.5 * min(at_random)

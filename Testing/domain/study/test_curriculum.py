@@ -268,16 +268,16 @@ def study(study_place):
 def test_what_was_chosen_last_counts_for_one_and_for_everybody(study):
     store = CurriculumStore(study)
     first, second = (Curriculum(name, name, (ONE,)) for name in ("first", "second"))
-    assert store.curriculum_of("A") is None
     assert store.standing("A") is None
     store.choose(first)
     store.choose(second, "A")
-    assert (store.curriculum_of("A"), store.curriculum_of("B")) == (second, first)
-    assert store.curriculum_of("later") == first
+    assert [store.standing(name).curriculum for name in "AB"] == [second, first]
+    study.create_trainee("later")
+    assert store.standing("later").curriculum == first
     store.choose(None, "B")
-    assert list(store.standings()) == ["A"]
+    assert list(store.standings()) == ["A", "later"]
     store.choose(first)
-    assert (store.curriculum_of("A"), store.curriculum_of("B")) == (first, first)
+    assert [store.standing(name).curriculum for name in "AB"] == [first, first]
     chosen = [(each.trainee, each.curriculum) for each in store.choices()]
     assert chosen == [("", first), ("A", second), ("B", None), ("", first)]
     with pytest.raises(InputError, match="no trainee"):
@@ -344,7 +344,7 @@ def test_a_study_of_an_earlier_format_gets_the_table(tmp_path):
     with Study.open(path) as study:
         CurriculumStore(study).choose(read_curriculum(SHIPPED))
     with Study.open_for_reading(path) as study:
-        assert CurriculumStore(study).curriculum_of("A") == read_curriculum(SHIPPED)
+        assert CurriculumStore(study).standing("A").curriculum == read_curriculum(SHIPPED)
 
 
 def told_of(trials, *assignments):

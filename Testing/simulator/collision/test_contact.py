@@ -83,8 +83,8 @@ def approaches(head, vertices, random):
         q = posture(head.vertices[vertex] - 0.02 * direction, direction)
         if q is None:
             continue
-        clearance = head.collision.check(KINEMATICS.links(q))
-        if min(clearance.without_tip_m, clearance.tip_m) > 0.001:
+        found = head.collision.check(KINEMATICS.links(q))
+        if min(found.tool_m, found.links_m, found.self_m, found.table_m) > 0.001:
             yield q, direction
 
 

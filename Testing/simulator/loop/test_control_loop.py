@@ -375,7 +375,7 @@ def test_a_late_tick_is_counted_and_lost_ticks_are_not_hidden(anywhere, tmp_path
         holds_up_s[0] = 0.0
         statistics = loop.statistics
     assert statistics.worst_delay_s > 0.02
-    assert statistics.on_time < 1.0
+    assert min(statistics.late, statistics.skipped) > 0
 
 
 class ClockOfItsOwn:

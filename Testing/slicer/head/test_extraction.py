@@ -5,7 +5,8 @@ import pytest
 from scipy import ndimage
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.extraction import extractHead
+from rastrainer.progress import no_progress
+from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.volume import Volume, onRasGrid
 from Testing.slicer.head.phantoms import DOUBLE_OBLIQUE, SAGITTAL
@@ -70,6 +71,12 @@ def skin_errors(mesh, above=LOWEST + 3.0):
     return np.abs((radius - 1) / gradient)[~(base | airway | ear)]
 
 
+def skin_in(volume):
+    """Return the surface of the head that is found in a volume."""
+    settings = HeadSettings(openingMm=8)
+    return skinOf(findHead(volume, settings, no_progress), settings, no_progress)
+
+
 @pytest.mark.parametrize(
     ("spacing", "turn_deg", "flip"),
     [
@@ -82,7 +89,7 @@ def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_d
         int(np.ceil(extent / s)) for extent, s in zip((96, 100, 70), spacing, strict=True)
     )
     volume = phantom(around_head(axes(spacing, turn_deg, flip), shape), shape)
-    mesh = extractHead(volume, HeadSettings(openingMm=8))
+    mesh = skin_in(volume)
     errors = skin_errors(mesh)
     assert len(errors) > 10_000
     assert errors.mean() < 0.5
@@ -102,7 +109,7 @@ def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_d
     ],
 )
 def test_the_skin_is_found_however_the_scan_lies_and_is_stored(directions, spacing):
-    mesh = extractHead(stored_along(directions, spacing), HeadSettings(openingMm=8))
+    mesh = skin_in(stored_along(directions, spacing))
     # Below, the neck goes straight on where the tilted lowest slice leaves some of it out.
     errors = skin_errors(mesh, above=LOWEST + 14.0)
     assert errors.mean() < 0.5
@@ -116,7 +123,7 @@ def test_a_nose_cut_by_the_image_ends_rounded_a_few_millimeters_beyond_it():
     shape = (80, 60, 60)
     volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
     edge = volume.ijkToRas[1, 3] + shape[1] - 1
-    mesh = extractHead(volume, HeadSettings(openingMm=8))
+    mesh = skin_in(volume)
     assert edge + 2 < mesh.vertices[:, 1].max() < edge + 10
     assert mesh.euler_characteristic == 2
 
@@ -124,7 +131,7 @@ def test_a_nose_cut_by_the_image_ends_rounded_a_few_millimeters_beyond_it():
 def test_the_same_volume_gives_the_same_head():
     shape = (84, 90, 60)
     volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
-    first, second = (extractHead(volume, HeadSettings(openingMm=8)) for _ in range(2))
+    first, second = (skin_in(volume) for _ in range(2))
     assert np.array_equal(first.vertices, second.vertices)
     assert np.array_equal(first.triangles, second.triangles)
 
@@ -142,7 +149,7 @@ def test_progress_is_reported_and_may_cancel():
 
     volume = phantom(around_head(axes((1, 1, 1)), (84, 90, 60)), (84, 90, 60))
     with pytest.raises(CancelledError):
-        extractHead(volume, progress=progress)
+        findHead(volume, HeadSettings(), progress)
     assert told == sorted(told)
     assert told[0] == 0.0
 
@@ -150,7 +157,7 @@ def test_progress_is_reported_and_may_cancel():
 def test_a_volume_without_a_head_is_refused_with_a_sentence():
     empty = Volume(np.zeros((40, 40, 40), np.float32), np.eye(4))
     with pytest.raises(InputError, match="No head was found"):
-        extractHead(empty)
+        skin_in(empty)
 
 
 def test_a_grid_along_ras_is_kept_as_it_is():

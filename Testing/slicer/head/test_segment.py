@@ -6,7 +6,8 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.extraction import extractHead
+from rastrainer.progress import no_progress
+from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
 from rastrainer.slicer.head.segment import (
     forSegment,
@@ -49,6 +50,13 @@ def lay_on_grid(node, segment, to_ras, shape):
     node.GetSegmentation().GetSegment(segment).AddRepresentation(labelmap, laid)
 
 
+def skin_of(node, segment, **settings):
+    """Return the surface of the head that is made of a segment."""
+    wanted = forSegment(HeadSettings(**settings))
+    volume = volumeOfSegment(readSegment(node, segment))
+    return skinOf(findHead(volume, wanted, no_progress), wanted, no_progress)
+
+
 def ball_errors(mesh):
     """Return how far the vertices above the neck are from the ball, mm, (n,)."""
     upper = mesh.vertices[mesh.vertices[:, 2] > 0.0]
@@ -59,7 +67,7 @@ def test_a_head_comes_back_from_its_segment_with_the_base_that_was_shown(node, f
     showSegment(node, found)
     segment = showSegment(node, found)
     assert node.GetSegmentation().GetNumberOfSegments() == 1
-    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
+    mesh = skin_of(node, segment)
     assert mesh.is_closed
     assert mesh.vertices[:, 2].min() == pytest.approx(BASE, abs=0.001)
     assert ball_errors(mesh).mean() < 0.5
@@ -67,8 +75,7 @@ def test_a_head_comes_back_from_its_segment_with_the_base_that_was_shown(node, f
 
 def test_the_cut_that_is_wished_counts_more_than_the_base_that_was_shown(node, found):
     segment = showSegment(node, found)
-    settings = forSegment(HeadSettings(baseMm=-10.0))
-    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), settings)
+    mesh = skin_of(node, segment, baseMm=-10.0)
     assert mesh.vertices[:, 2].min() == pytest.approx(-10.0, abs=0.001)
 
 
@@ -98,7 +105,7 @@ def assert_stands_on_the_whole_neck(mesh):
 def test_the_base_stays_where_an_edit_lays_the_segment_on_an_oblique_grid(node, found, axes):
     segment = showSegment(node, found)
     lay_on_grid(node, segment, oblique(axes, [35.0, 35.0, 35.0]), (70, 70, 70))
-    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
+    mesh = skin_of(node, segment)
     assert mesh.vertices[:, 2].min() == pytest.approx(BASE, abs=0.51)
     assert_stands_on_the_whole_neck(mesh)
     assert ball_errors(mesh).mean() < 0.5
@@ -107,7 +114,7 @@ def test_the_base_stays_where_an_edit_lays_the_segment_on_an_oblique_grid(node, 
 def test_a_neck_cut_by_an_oblique_scan_continues_to_a_flat_base(node, found):
     segment = showSegment(node, found)
     lay_on_grid(node, segment, oblique((0, 1, 2), [35.0, 35.0, 23.0]), (70, 70, 58))
-    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
+    mesh = skin_of(node, segment)
     assert BASE < mesh.vertices[:, 2].min() < BASE + 5.0
     assert_stands_on_the_whole_neck(mesh)
 
@@ -115,14 +122,14 @@ def test_a_neck_cut_by_an_oblique_scan_continues_to_a_flat_base(node, found):
 def test_a_neck_that_is_erased_is_not_in_the_head(node, found):
     found.body[:, :, : round(-33.0 - found.origin[2])] = False
     segment = showSegment(node, found)
-    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
+    mesh = skin_of(node, segment)
     assert mesh.vertices[:, 2].min() == pytest.approx(-32.0, abs=1.0)
 
 
 def test_a_segment_that_is_moved_moves_its_head(scene, node, found):
     segment = showSegment(node, found)
     node.SetAndObserveTransformNodeID(add_transform(scene, [5.0, -7.0, 11.0]).GetID())
-    mesh = extractHead(volumeOfSegment(readSegment(node, segment)), forSegment(HeadSettings()))
+    mesh = skin_of(node, segment)
     assert mesh.vertices[:, 2].min() == pytest.approx(BASE + 11.0, abs=0.001)
     mesh.vertices[:] -= [5.0, -7.0, 11.0]
     assert ball_errors(mesh).mean() < 0.5

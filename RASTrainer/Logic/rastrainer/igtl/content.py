@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, TypeVar
 
@@ -37,11 +36,6 @@ class Transform:
         if len(self.columns) != 12:
             raise InputError("A transform must have 12 numbers: three columns and a translation.")
         check_float32(self.columns, "The numbers of a transform")
-
-    @classmethod
-    def from_matrix(cls, matrix: Sequence[Sequence[float]]) -> Transform:
-        """Return the transform of a `(4, 4) float` matrix in mm, whose last row is not sent."""
-        return cls(tuple(float(matrix[row][column]) for column in range(4) for row in range(3)))
 
     @property
     def matrix(self) -> tuple[tuple[float, ...], ...]:

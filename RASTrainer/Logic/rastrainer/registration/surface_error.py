@@ -96,18 +96,6 @@ def knowledge_so_far(
     return PoseKnowledge(center, rows.T @ rows + known, noise_mm, np.inf)
 
 
-def expected_surface_tre(
-    knowledge: PoseKnowledge, targets: np.ndarray, common_bias_sd_mm: float = COMMON_BIAS_SD_MM
-) -> np.ndarray:
-    """Return √E[TRE²] at targets (m, 3) RAS mm, (m,) float, mm; for a map, the skin's vertices.
-
-    An offset that all points share, such as that of the tip's calibration, moves the whole head and
-    adds 3σ² of its standard deviation on each axis, as with fiducials.
-    """
-    covariances = knowledge.at_targets(np.asarray(targets, dtype=float))
-    return np.sqrt(np.trace(covariances, axis1=1, axis2=2) + 3.0 * common_bias_sd_mm**2)
-
-
 def surface_target_error(
     knowledge: PoseKnowledge,
     target: np.ndarray,
@@ -116,8 +104,10 @@ def surface_target_error(
 ) -> TargetError:
     """Return the error to expect at a target (3,), RAS mm, with its interval.
 
-    The interval is that of fiducials (`rastrainer.registration.target_error.target_error`), and has
-    the same blind spots: errors that neighboring points share.
+    An offset that all points share, such as that of the tip's calibration, moves the whole head and
+    adds 3σ² of its standard deviation on each axis, as with fiducials. The interval is that of
+    fiducials, too (`rastrainer.registration.target_error.target_error`), and has the same blind
+    spots: errors that neighboring points share.
     """
     return error_of_covariance(
         target,
@@ -136,14 +126,10 @@ class NextPlace:
     Attributes:
         vertex: Of the mesh.
         position: (3,) float, RAS mm.
-        expected_now_mm: √E[TRE²], root mean square over the targets.
-        expected_then_mm: The same after a centimeter of way there.
     """
 
     vertex: int
     position: np.ndarray
-    expected_now_mm: float
-    expected_then_mm: float
 
 
 def next_best_place(
@@ -174,13 +160,7 @@ def next_best_place(
     gain = DAB * np.einsum("vi,ij,vj->v", turned, weight, turned)
     gain /= 1.0 + DAB * np.einsum("vi,vi->v", turned, directions)
     best = int(gain.argmax())
-    now = float(np.sum(inverse * weight))
-    return NextPlace(
-        vertex=int(rows[best]),
-        position=mesh.vertices[rows[best]],
-        expected_now_mm=knowledge.noise_mm * float(np.sqrt(now)),
-        expected_then_mm=knowledge.noise_mm * float(np.sqrt(max(now - gain[best], 0.0))),
-    )
+    return NextPlace(int(rows[best]), mesh.vertices[rows[best]])
 
 
 def _rows(

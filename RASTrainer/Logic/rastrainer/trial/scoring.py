@@ -145,7 +145,6 @@ class ScoreMeasures:
         return self.safety
 
 
-SCORE_PARTS = ("time", "accuracy", "common bias", "safety")
 SAFETY_METRICS = ("unintended_contact_time_s", "unintended_contact_path_mm", "pressing_depth_mm")
 """Motion metrics of `rastrainer.motion` that are scored."""
 
@@ -189,7 +188,7 @@ class TrialScore:
 
     @property
     def parts(self) -> dict[str, float]:
-        """The desirability of each part whose product is scored, 0 to 1, by `SCORE_PARTS`."""
+        """The desirability of each part whose product is scored, 0 to 1, by its name."""
         parts = {"time": self.time_desirability, "accuracy": self.accuracy_desirability}
         if self.measures.common_bias_mm is not None:
             trueness = _trueness(self.measures.common_bias_mm)

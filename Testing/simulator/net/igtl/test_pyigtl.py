@@ -17,15 +17,16 @@ from pyigtl.comm import OpenIGTLinkBase
 from pyigtl.messages import MessageBase, message_type_to_class_constructor
 
 from rastrainer.igtl.client import Client
-from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
+from rastrainer.igtl.content import Command, Point, Points, Status, String
 from rastrainer.igtl.message import Message
 from rastrainer_simulator.registration_state import TouchState
 from rastrainer_simulator.state import TrainingState
+from Testing.domain.igtl.sent_pose import transform_of
 from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import PlainServer, at_rest
 
 MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])
-TRANSFORM = Transform.from_matrix(MATRIX)
+TRANSFORM = transform_of(MATRIX)
 TIP = np.array([[0, -1, 0, 0.5], [1, 0, 0, -0.25], [0, 0, 1, 0.125], [0, 0, 0, 1]])
 TOUCHES = (TouchState("1", (0.5, -0.25, 0.125), 1, 1), TouchState("2", (0.1, 0.2, 0.3), 2, 2))
 

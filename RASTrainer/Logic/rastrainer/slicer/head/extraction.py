@@ -7,7 +7,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.progress import Progress, no_progress
+from rastrainer.progress import Progress
 from rastrainer.slicer.head import level_set, mask, surface
 from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody, HeadSettings
 from rastrainer.slicer.head.volume import Volume, onRasGrid
@@ -22,10 +22,8 @@ LONGEST_HEAD_MM = 200.0
 """From the crown down: what a scan shows below of neck and shoulders is cut off."""
 
 
-def extractHead(
-    volume: Volume, settings: HeadSettings | None = None, progress: Progress = no_progress
-) -> HeadMesh:
-    """Return the skin as one closed surface of genus 0 with a flat base.
+def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> HeadBody:
+    """Return the head of a volume.
 
     Args:
         volume: T1-weighted MRI or CT of a head.
@@ -33,14 +31,8 @@ def extractHead(
         progress: called with each step's name and the share of the work done; may raise to cancel.
 
     Raises:
-        InputError: there is no head in the volume, or no closed surface could be made of it.
+        InputError: there is no head in the volume.
     """
-    settings = settings or HeadSettings()
-    return skinOf(findHead(volume, settings, progress), settings, progress)
-
-
-def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> HeadBody:
-    """Return the head of a volume; arguments and errors as of `extractHead`."""
     progress("Reading the volume", 0.0)
     grid = onRasGrid(volume, SPACING_MM)
     progress("Finding the skin", 0.1)
@@ -66,7 +58,11 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
 
 
 def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMesh:
-    """Return the surface of a head; arguments and errors as of `extractHead`."""
+    """Return the skin as one closed surface of genus 0 with a flat base.
+
+    Raises:
+        InputError: no closed surface could be made of it.
+    """
     progress("Making the surface", 0.8)
     skin = surface.surfaceOf(_agreeing(head.level, head.body), head.origin, SPACING_MM)
     skin, wanted = surface.smoothed(skin), settings.triangles

@@ -127,11 +127,6 @@ class TrialLogic:
         for trialId in [each for each, state in self._scored.items() if state is _Scoring.DONE]:
             del self._scored[trialId]
 
-    @property
-    def isScoring(self) -> bool:
-        """Whether a trial is being scored."""
-        return _Scoring.UNDER_WAY in self._scored.values()
-
     def isBeingScored(self, trialId: str) -> bool:
         """Whether a trial is being scored, or being stored to be scored then."""
         return self._queue.isStoring(trialId) or self._isScoringUnderWay(trialId)

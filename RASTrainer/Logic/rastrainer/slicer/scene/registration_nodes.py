@@ -66,11 +66,6 @@ def movingNode(transformNode: Any) -> Any | None:
     return transformNode.GetNodeReference(MOVING_REFERENCE)
 
 
-def fixedNode(transformNode: Any) -> Any | None:
-    """Return the list of fiducials that the transform was made from, if it still exists."""
-    return transformNode.GetNodeReference(FIXED_REFERENCE)
-
-
 def isApplied(transformNode: Any) -> bool:
     """Return whether the touched points are shown on the head."""
     moving = movingNode(transformNode)

@@ -9,7 +9,6 @@ from rastrainer.study.curriculum.counted_trials import counted_trials
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
 from rastrainer.study.curriculum.standing import CurriculumStanding, standing_in
 from rastrainer.study.database import study_trainees
-from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text
@@ -94,11 +93,6 @@ class CurriculumStore:
             ).fetchall()
         return tuple(CurriculumChoice(name, _read(text), utc) for name, text, utc in rows)
 
-    def curriculum_of(self, pseudonym: str) -> Curriculum | None:
-        """Return what a trainee follows; an unknown one, what everybody does. None for nothing."""
-        with self._study.database.reading() as connection:
-            return _curriculum_of(connection, pseudonym)
-
     def standing(self, pseudonym: str) -> CurriculumStanding | None:
         """Return where a trainee stands; None without a curriculum.
 
@@ -127,20 +121,16 @@ class CurriculumStore:
         self, pseudonym: str, protocol: StudyProtocol | None
     ) -> CurriculumStanding | None:
         with self._study.database.reading() as connection:
-            curriculum = _curriculum_of(connection, pseudonym)
+            row = connection.execute(
+                "SELECT curriculum_json FROM curriculum_choices "
+                f"WHERE trainee_id = ({TRAINEE_ID}) OR trainee_id IS NULL ORDER BY id DESC LIMIT 1",
+                (pseudonym,),
+            ).fetchone()
+            curriculum = None if row is None else _read(row[0])
             if curriculum is None:
                 return None
             trials = counted_trials(connection, pseudonym)
         return standing_in(curriculum, trials, lambda version: pass_mark_of(protocol, version))
-
-
-def _curriculum_of(connection: Connection, pseudonym: str) -> Curriculum | None:
-    row = connection.execute(
-        "SELECT curriculum_json FROM curriculum_choices "
-        f"WHERE trainee_id = ({TRAINEE_ID}) OR trainee_id IS NULL ORDER BY id DESC LIMIT 1",
-        (pseudonym,),
-    ).fetchone()
-    return None if row is None else _read(row[0])
 
 
 def _read(text: str | None) -> Curriculum | None:
