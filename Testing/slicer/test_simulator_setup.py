@@ -110,7 +110,7 @@ def run_setup(setup, source):
     setup.progressed.connect(lines.append)
     setup.finished.connect(ends.append)
     setup.begin(source)
-    wait_until(lambda: ends, setup.process, 60.0)
+    wait_until(lambda: ends, setup.process)
     return lines, ends[0]
 
 
@@ -324,7 +324,7 @@ def test_a_set_up_can_be_canceled(setup, source):
         setup.remove()
     setup.cancel()
     assert setup.isEnding
-    wait_until(lambda: ends, setup.process, 60.0)
+    wait_until(lambda: ends, setup.process)
     assert ends == ["The set-up was canceled."]
     assert not setup.isRunning
     assert left_beside(setup) == []
