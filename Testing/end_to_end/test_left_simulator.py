@@ -26,7 +26,9 @@ def left(story):
     story.write_program()
     words = ["simulator", "--port", str(free_port()), "--records", str(story.records)]
     child = ChildProcess([story.program, *words])
-    wait_until(lambda: any("ready" in line for line in child.takeLines()), lambda: None, 60.0)
+    # It says so after it has left word in its folder of where it listens.
+    said = "computes the robot's kinematics"
+    wait_until(lambda: any(said in line for line in child.takeLines()), lambda: None)
     yield child
     child.close()
 

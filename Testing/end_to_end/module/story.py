@@ -81,7 +81,7 @@ class Story:
         host = self.host
         host.press("loadScenarioButton")
         host.wait_until(lambda: " now." in host.text("scenarioText"), "the scenario is loaded")
-        assert host.text("stateText").startswith("Connected")
+        self.wait_until_connected()
 
     def abort_a_trial_run(self) -> None:
         host = self.host
