@@ -69,10 +69,12 @@ def _opened(tmp_path, *arguments):
 
 def _usual_port_taken():
     """Return a socket at the usual port, once whoever else may have it is gone."""
+    give_up = time.monotonic() + 600.0
     while True:
         try:
             return socket.create_server((HOST, 18945))
         except OSError:
+            assert time.monotonic() < give_up, "another program keeps port 18945"
             time.sleep(0.05)
 
 
