@@ -200,6 +200,15 @@ class StreamTrainee:
         while (before := self.menu).name != name:
             self.press("accept", lambda b=before: self.menu != b, "the next page")
 
+    def read_introduction(self) -> None:
+        """Go from the start menu to that of the tasks."""
+        self.until_menu("start")
+        self.choose("train")
+        self.until_menu("introduction")
+        self.read_on("controls")
+        self.choose("next")
+        self.until_menu("experiment")
+
     def focus(self, item: str) -> None:
         """Move the focus to an item."""
         names = [each.name for each in self.menu.items if each.kind != "axis"]

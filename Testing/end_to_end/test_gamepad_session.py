@@ -131,11 +131,7 @@ def session(tmp_path_factory) -> dict:
 def to_experiment(trainee: StreamTrainee, photographer: Photographer) -> None:
     trainee.until_menu("start")
     photographer.keep("menu")
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    trainee.read_on("controls")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
+    trainee.read_introduction()
     type_by_gamepad(trainee, TRAINEE)
     photographer.keep("experiment")
 

@@ -48,12 +48,7 @@ def session(tmp_path_factory) -> dict:
 
 
 def to_task(trainee: StreamTrainee) -> None:
-    trainee.until_menu("start")
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    trainee.read_on("controls")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
+    trainee.read_introduction()
     trainee.focus("trainee")
     trainee.hands.type(TRAINEE)
     trainee.until(lambda: trainee.value("trainee").lower() == TRAINEE, "the typed ID")

@@ -127,12 +127,7 @@ def operate(trainee: ProcedureTrainee, lab: Lab, device: str) -> dict:
 
 def begin(trainee: ProcedureTrainee, device: str) -> None:
     """Choose the biopsy beside Task 1, which is touched first."""
-    trainee.until_menu("start")
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    trainee.read_on("controls")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
+    trainee.read_introduction()
     if device == "gamepad":
         type_by_gamepad(trainee, TRAINEE)
     else:

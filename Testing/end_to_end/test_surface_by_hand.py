@@ -41,7 +41,7 @@ def drawn(tmp_path_factory, request) -> dict:
         else:
             hands = GamepadHands(lab.simulator)
         trainee = DrawingTrainee(lab.view, hands)
-        to_experiment(trainee)
+        trainee.read_introduction()
         if device == "keyboard":
             trainee.focus("trainee")
             hands.type(TRAINEE.lower())
@@ -60,15 +60,6 @@ def drawn(tmp_path_factory, request) -> dict:
     (registered,), (scored,) = reading.of_kind("registration"), reading.of_kind("scored")
     seen["registered"], seen["scored"] = registered["arguments"], scored["arguments"]
     return seen | {"device": device, "result": trainee.menu}
-
-
-def to_experiment(trainee: DrawingTrainee) -> None:
-    trainee.until_menu("start")
-    trainee.choose("train")
-    trainee.until_menu("introduction")
-    trainee.read_on("controls")
-    trainee.choose("next")
-    trainee.until_menu("experiment")
 
 
 def test_landmarks_and_trace_are_given_by_that_device_alone(drawn):

@@ -34,8 +34,11 @@ def with_landmarks(scenario):
     return replace(scenario, landmarks=LANDMARKS)
 
 
-def write_landmarked(folder: Path) -> Path:
-    """Write the default scenario with landmarks into a new folder, and return it."""
+PLACES = [{"name": each.name, "positionRas": each.position.tolist()} for each in LANDMARKS]
+
+
+def write_landmarked(folder: Path, places: list[dict] = PLACES) -> Path:
+    """Write the default scenario with landmarks at places into a new folder, and return it."""
     default = asset_path("scenarios", "colin27")
     folder.mkdir()
     shutil.copy(default / "head.ply", folder)
@@ -43,9 +46,7 @@ def write_landmarked(folder: Path) -> Path:
     values = json.loads((default / "scenario.json").read_text())
     for left_out in ("volume", "procedures", "skull"):
         values.pop(left_out, None)
-    values["landmarks"] = [
-        {"name": landmark.name, "positionRas": landmark.position.tolist()} for landmark in LANDMARKS
-    ]
+    values["landmarks"] = places
     (folder / "scenario.json").write_text(json.dumps(values, indent=2) + "\n")
     return folder
 

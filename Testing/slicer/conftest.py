@@ -14,6 +14,7 @@ from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.host.fixtures import host, module_widget, start_slicer  # noqa: F401
 from Testing.slicer.simulator_double import SimulatorDouble
+from Testing.slicer.training_room import Room
 
 
 @pytest.fixture
@@ -24,6 +25,14 @@ def headless_scene():
 @pytest.fixture
 def scene(headless_scene):
     return headless_scene.scene
+
+
+@pytest.fixture
+def room(scene, scenario):
+    """The training logic on a link to a simulator double."""
+    room = Room(scene, scenario)
+    yield room
+    room.close()
 
 
 class Clock:

@@ -178,6 +178,15 @@ def process_link(link: Link) -> None:
     link.process()
 
 
+def connect_module(host, simulator):
+    """Connect the module that is open in the host, and wait until it has heard the heartbeat."""
+    host.type("portSpinBox", str(simulator.port))
+    host.press("connectButton")
+    host.wait_until(lambda: simulator.commands, "the module says hello")
+    simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
+    host.wait_until(lambda: host.text("stateText").startswith("Connected"), "the heartbeat")
+
+
 def run_link_until(link: Link, condition: Callable[[], Any], timeout: float = 120.0) -> None:
     """Let the link work until `condition()`."""
     wait_until(condition, lambda: process_link(link), timeout)

@@ -77,3 +77,12 @@ def test_a_layout_that_the_user_has_chosen_meanwhile_stays(looking):
     looking.leave()
     assert views() == (other, 0, 0)
     looking.enter()
+
+
+def test_the_users_layout_comes_back_when_the_tables_go_with_their_scene(looking):
+    looking.press("showTablesButton")
+    looking.clear_scene()
+    looking.wait_until(lambda: not looking.find("showTablesButton").checked, "the button follows")
+    assert slicer.app.layoutManager().layout == OWN
+    looking.press("showTablesButton")
+    assert looking.shown_tables() == ["Score"]

@@ -23,7 +23,6 @@ from rastrainer.slicer.scene.urdf import readArmChain
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import URDF, store_trial_on_colin, write_recorded_trial
 
-OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"
 
 
@@ -63,21 +62,6 @@ def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_former_reg
     target = add_list(host.scene, "target", np.zeros((1, 3)))
     with pytest.raises(InputError, match="no registration to map the plan with"):
         session.plan.read(target)
-
-
-def test_the_users_layout_comes_back_when_the_tables_go_with_their_scene(host, make_record):
-    host.open()
-    record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
-    store_trial_on_colin(host, record, 2)
-    host.press("createTraineeButton")
-    host.choose("traineeComboBox", "T001")
-    slicer.app.layoutManager().setLayout(OWN)
-    host.press("showTablesButton")
-    host.clear_scene()
-    host.wait_until(lambda: not host.find("showTablesButton").checked, "the button follows")
-    assert slicer.app.layoutManager().layout == OWN
-    host.press("showTablesButton")
-    assert host.shown_tables() == ["Score"]
 
 
 def test_a_replay_in_the_next_scene_does_not_stop_where_the_former_was_to(

@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.igtl.content import Status, String
+from rastrainer.igtl.content import String
 from rastrainer.panels.plain_text import LONGEST_TEXT, toolTip
-from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer_simulator.assets import asset_path
+from Testing.slicer.simulator_double import connect_module
 
 MODULE = Path(__file__).parents[2] / "RASTrainer"
 DOCK_WIDTH = 472
@@ -40,13 +41,8 @@ def open_module(host):
 
 @pytest.fixture
 def connected(open_module, simulator):
-    host = open_module
-    host.type("portSpinBox", str(simulator.port))
-    host.press("connectButton")
-    host.wait_until(lambda: simulator.commands, "the module says hello")
-    simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
-    host.wait_until(lambda: host.text("stateText").startswith("Connected"), "it is connected")
-    return host
+    connect_module(open_module, simulator)
+    return open_module
 
 
 def widgets():

@@ -10,6 +10,7 @@ import slicer
 from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.settings import HOST
+from Testing.slicer.simulator_double import connect_module
 
 pytestmark = pytest.mark.usefixtures("module_widget")
 
@@ -17,13 +18,7 @@ pytestmark = pytest.mark.usefixtures("module_widget")
 @pytest.fixture
 def connected(host, simulator):
     host.open()
-    host.type("portSpinBox", str(simulator.port))
-    host.press("connectButton")
-    host.wait_until(lambda: simulator.commands, "the module says hello")
-    simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
-    host.wait_until(
-        lambda: host.text("stateText").startswith("Connected"), "the heartbeat is heard"
-    )
+    connect_module(host, simulator)
 
 
 @pytest.mark.usefixtures("connected")

@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.igtl.content import Status
-from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName
+from rastrainer.protocol import CommandName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer_simulator.assets import asset_path
-from Testing.slicer.simulator_double import SimulatorDouble
+from Testing.slicer.simulator_double import SimulatorDouble, connect_module
 
 ANSWERS = {CommandName.PLAN_TARGET: {"reachable": True, "reason": ""}}
 
@@ -21,11 +20,7 @@ def planner(host):
     """The module, connected, with a registered head and a planned target."""
     with SimulatorDouble(lambda name, _arguments: ANSWERS.get(name, {})) as simulator:
         host.open()
-        host.type("portSpinBox", str(simulator.port))
-        host.press("connectButton")
-        host.wait_until(lambda: simulator.commands, "the module says hello")
-        simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
-        host.wait_until(lambda: host.text("stateText").startswith("Connected"), "the heartbeat")
+        connect_module(host, simulator)
         host.press("showScenarioButton")
         colin = load_scenario(asset_path("scenarios", "colin27"))
         noise = np.random.default_rng(3).normal(0.0, 0.6, (15, 3))

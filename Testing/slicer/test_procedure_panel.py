@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.igtl.content import Status, String
+from rastrainer.igtl.content import String
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.score import ProcedureMeasures, score_procedure
-from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.protocol import DeviceName
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
 from Testing.domain.procedure.procedure_records import recorded
-from Testing.slicer.simulator_double import SimulatorDouble
+from Testing.slicer.simulator_double import SimulatorDouble, connect_module
 
 TRIAL = str(uuid.UUID(int=21))
 STATE = {"trialId": TRIAL, "trainee": "T001", "task": "task-1", "mode": "desktop"}
@@ -42,11 +42,7 @@ def surgery(host):
     """The module, connected, with a trainee and a scenario that has procedures."""
     with SimulatorDouble(lambda _name, _arguments: {"scenario": "colin27"}) as simulator:
         host.open()
-        host.type("portSpinBox", str(simulator.port))
-        host.press("connectButton")
-        host.wait_until(lambda: simulator.commands, "the module says hello")
-        simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
-        host.wait_until(lambda: host.text("stateText").startswith("Connected"), "the heartbeat")
+        connect_module(host, simulator)
         host.press("createTraineeButton")
         yield host, simulator
 

@@ -12,18 +12,10 @@ from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.slicer.scene.views import jumpTo
 from Testing.slicer.head.placed import vtk_matrix
-from Testing.slicer.training_room import Room
 
 TRANSFORM = "vtkMRMLLinearTransformNode"
 TIP = np.array([480.0, -60.0, 330.0])
 UP = np.array([0.0, 0.0, 20.0])
-
-
-@pytest.fixture
-def room(scene, scenario):
-    room = Room(scene, scenario)
-    yield room
-    room.close()
 
 
 @pytest.fixture

@@ -17,7 +17,6 @@ from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import make_aborted
-from Testing.slicer.training_room import Room
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "published-protocol.json"
 STARTED = "2999-01-01T10:00:00Z"
@@ -40,6 +39,13 @@ class Lab:
     def next(self):
         return self.logic.progress().next_step.name
 
+    def begin(self, **changes):
+        """Begin a study by the published protocol with changes, and enroll the trainee."""
+        path = self.path.with_name("protocol.json")
+        path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changes))
+        self.logic.begin(path)
+        self.logic.enroll()
+
     def skip(self, reason):
         self.logic.skipStep(self.next, reason)
 
@@ -61,13 +67,6 @@ class Lab:
         told = {"trainee": "T001", "task": "trial-run", "mode": "hmd", **changes}
         self.room.tell(**told)
         self.room.run_until(lambda: told.items() <= vars(self.room.logic.progress).items())
-
-
-@pytest.fixture
-def room(scene, scenario):
-    room = Room(scene, scenario)
-    yield room
-    room.close()
 
 
 @pytest.fixture
@@ -182,16 +181,8 @@ def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_away(
     again.close()
 
 
-def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab, tmp_path):
-    short = json.loads(SHIPPED.read_text()) | {
-        "tasks": ["task-1"],
-        "questionnaires": [],
-        "trialRun": {"minutes": 0},
-    }
-    path = tmp_path / "short.json"
-    path.write_text(json.dumps(short))
-    lab.logic.begin(path)
-    lab.logic.enroll()
+def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab):
+    lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 0})
     lab.skip("the headset's battery was empty")
     assert lab.next == "desktop/break"
     lab.be_in_the_step_for(9.9)
@@ -206,18 +197,14 @@ def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab, tmp_path)
     assert lab.next == "desktop/1/task-1"
 
 
-def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab, tmp_path):
-    asked = json.loads(SHIPPED.read_text()) | {
-        "modes": ["desktop"],
-        "tasks": ["task-1"],
-        "questionnaires": [],
-        "trialRun": {"minutes": 0},
-        "procedures": {"task-1": "dbs"},
-    }
-    path = tmp_path / "asked.json"
-    path.write_text(json.dumps(asked))
-    lab.logic.begin(path)
-    lab.logic.enroll()
+def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab):
+    lab.begin(
+        modes=["desktop"],
+        tasks=["task-1"],
+        questionnaires=[],
+        trialRun={"minutes": 0},
+        procedures={"task-1": "dbs"},
+    )
     lab.logic.startTrial("task-1", "desktop", procedure="biopsy")
     lab.room.run_until(lambda: lab.room.sent("StartTask"))
     assert lab.room.sent("StartTask")[0]["procedure"] == "dbs"
@@ -256,16 +243,8 @@ def test_only_the_step_that_was_asked_about_is_skipped(enrolled):
     assert enrolled.next == "hmd/trial-run"
 
 
-def test_a_break_that_another_slicer_has_ended_ends_no_other_step(lab, tmp_path):
-    short = json.loads(SHIPPED.read_text()) | {
-        "tasks": ["task-1"],
-        "questionnaires": [],
-        "trialRun": {"minutes": 5},
-    }
-    path = tmp_path / "short.json"
-    path.write_text(json.dumps(short))
-    lab.logic.begin(path)
-    lab.logic.enroll()
+def test_a_break_that_another_slicer_has_ended_ends_no_other_step(lab):
+    lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 5})
     while lab.next != "desktop/break":
         lab.skip("this is not what is tested")
     lab.trainees.choose("")
@@ -428,12 +407,8 @@ def test_answers_that_do_not_belong_to_the_step_are_not_kept(enrolled, wrong):
     assert enrolled.next == "hmd/before/ssq"
 
 
-def test_a_simulator_that_connects_later_is_sent_the_elapsed_time_of_a_break(lab, tmp_path):
-    path = tmp_path / "short.json"
-    changed = {"tasks": ["task-1"], "questionnaires": [], "trialRun": {"minutes": 0}}
-    path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changed))
-    lab.logic.begin(path)
-    lab.logic.enroll()
+def test_a_simulator_that_connects_later_is_sent_the_elapsed_time_of_a_break(lab):
+    lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 0})
     lab.skip("the headset's battery was empty")
     lab.room.run_until(lambda: told(lab).get("minutes") == 10.0)
     lab.be_in_the_step_for(4.0)
@@ -471,14 +446,15 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     assert enrolled.logic.offProtocolSentence() == ""
 
 
-def test_a_trial_of_a_study_is_started_by_the_method_of_its_protocol(lab, tmp_path):
-    path = tmp_path / "methods.json"
-    changed = {"questionnaires": [], "trialRun": {"minutes": 0}, "modes": ["desktop"]}
+def test_a_trial_of_a_study_is_started_by_the_method_of_its_protocol(lab):
     skin = {"shiftMm": 2.0, "indentationMm": 0.0}
-    changed |= {"methods": {"task-1": "landmarks-surface"}, "skin": {"task-1": skin}}
-    path.write_text(json.dumps(json.loads(SHIPPED.read_text()) | changed))
-    lab.logic.begin(path)
-    lab.logic.enroll()
+    lab.begin(
+        modes=["desktop"],
+        questionnaires=[],
+        trialRun={"minutes": 0},
+        methods={"task-1": "landmarks-surface"},
+        skin={"task-1": skin},
+    )
     assert "by landmarks and a trace" in lab.logic.progress().sentence
     lab.room.run_until(lambda: told(lab).get("method") == "landmarks-surface")
     lab.logic.startStep()

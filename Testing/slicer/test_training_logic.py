@@ -10,14 +10,7 @@ from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import isApplied, isPlanned, matrixOf
 from rastrainer.slicer.scene.scene import Role
-from Testing.slicer.training_room import TRIAL, Room
-
-
-@pytest.fixture
-def room(scene, scenario):
-    room = Room(scene, scenario)
-    yield room
-    room.close()
+from Testing.slicer.training_room import TRIAL
 
 
 def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):

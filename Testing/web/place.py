@@ -167,6 +167,13 @@ class Trainee(StreamTrainee):
         while self.menu_name != "experiment":
             self.choose("skip" if self.menu_name == "introduction" else "next")
 
+    def play_to_result(self) -> None:
+        """Touch all fiducials, register them, and read the score."""
+        self.touch_all()
+        self.register()
+        self.until_menu("result")
+        assert self.menu.facts[0].label == "Score"
+
     def begin(self, task: str, page: Page | None = None) -> None:
         """Go from the start menu into a task.
 

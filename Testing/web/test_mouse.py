@@ -130,10 +130,7 @@ def test_by_the_mouse_alone_a_whole_trial_is_touched_and_scored(tmp_path, browse
         page = open_page(browser, simulator.url, simulator.code, size=SIZE, draws=False)
         trainee = ClickingTrainee(place.view, PageMouse(page))
         trainee.begin_by_sticks("task-1")
-        trainee.touch_all()
-        trainee.register()
-        trainee.until_menu("result")
-        assert trainee.menu.facts[0].label == "Score"
+        trainee.play_to_result()
         assert len(place.entries("touch")) == 15
         assert {entry["operator"] for entry in place.entries("input")} <= {"mouse", ""}
         assert page.problems == []

@@ -86,10 +86,7 @@ def test_by_two_thumbs_alone_a_whole_trial_is_touched_and_scored(tmp_path, brows
         trainee = SteeringTrainee(place, page)
         trainee.begin_by_taps("task-1")
         page.wait_for_selector("#touch-controls .stick")
-        trainee.touch_all()
-        trainee.register()
-        trainee.until_menu("result")
-        assert trainee.menu.facts[0].label == "Score"
+        trainee.play_to_result()
         assert len(place.entries("touch")) == 15
         assert {entry["operator"] for entry in place.entries("input")} <= {"touch screen", ""}
         assert page.problems == []

@@ -82,8 +82,5 @@ def test_a_tracked_hand_leads_the_tip_to_a_touch_takes_it_back_and_opens_the_men
 @pytest.mark.soak
 def test_a_whole_trial_is_touched_and_scored_by_a_tracked_hand_alone(place, trainee):
     begin(trainee)
-    trainee.touch_all()
-    trainee.register()
-    trainee.until_menu("result")
-    assert trainee.menu.facts[0].label == "Score"
+    trainee.play_to_result()
     assert len(place.entries("touch")) == 15

@@ -1,7 +1,6 @@
 """Landmarks of a scenario, and what a method of registration has a trial touch."""
 
-import json
-import shutil
+import itertools
 
 import numpy as np
 import pytest
@@ -10,8 +9,8 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.method_task import method_of, task_by_method
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import landmarks_sha256, scenario_sha256
+from Testing.simulator.landmarked import write_landmarked
 
 PLACES = [
     {"name": "Nasion", "positionRas": [0.0, 95.0, -10.0]},
@@ -24,21 +23,8 @@ PLACES = [
 @pytest.fixture
 def load(tmp_path):
     """Load the default scenario with other landmarks."""
-    default = asset_path("scenarios", "colin27")
-    folder = tmp_path / "scenario"
-    folder.mkdir()
-    shutil.copy(default / "head.ply", folder)
-    shutil.copytree(default / "tasks", folder / "tasks")
-    values = json.loads((default / "scenario.json").read_text())
-    for left_out in ("volume", "procedures", "skull"):
-        values.pop(left_out, None)
-
-    def load(landmarks):
-        text = json.dumps({**values, "landmarks": landmarks}, indent=2, ensure_ascii=False)
-        (folder / "scenario.json").write_text(text + "\n")
-        return load_scenario(folder)
-
-    return load
+    folders = (tmp_path / str(number) for number in itertools.count())
+    return lambda landmarks: load_scenario(write_landmarked(next(folders), landmarks))
 
 
 def test_each_method_has_its_own_points_touched(load):

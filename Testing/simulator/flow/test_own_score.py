@@ -35,11 +35,7 @@ def register(trainee):
     """Play Task 1 and register it; return the trial's UUID."""
     trainee.start("task-1")
     trainee.play("task-1")
-    trainee.tap("touch")
-    trainee.until_menu("complete")
-    trainee.choose("register")
-    trainee.until_menu("waiting")
-    return trainee.state.training.trial_id
+    return trainee.register()
 
 
 def entries_of(outside, trial_id, kind):
@@ -98,13 +94,9 @@ def test_after_a_trial_on_shifted_skin_one_sentence_tells_of_it_and_none_before(
     trainee.until_menu(None)
     trainee.play("task-1")
     assert "skin had" not in str(trainee.presenter.screen)
-    trainee.tap("touch")
-    trainee.until_menu("complete")
-    trainee.choose("register")
-    trainee.until_menu("waiting")
+    trial = trainee.register()
     assert "skin had" not in str(trainee.menu)
     trainee.until_menu("result")
-    trial = trainee.state.training.trial_id
     (own,) = entries_of(outside, trial, "scored")
     (told,) = [each for each in own["details"]["feedback"] if each["key"] == "skin and error"]
     assert told["text"] in trainee.menu.paragraphs

@@ -38,11 +38,7 @@ def registered(shared, tmp_path_factory):
         trainee.until_menu("start")
         trainee.start("task-1")
         trainee.play("task-1")
-        trainee.tap("touch")
-        trainee.until_menu("complete")
-        trainee.choose("register")
-        trainee.until_menu("waiting")
-        trial = trainee.state.training.trial_id
+        trial = trainee.register()
         assert trainee.submit("SubmitRegistration", trialId=trial, **REGISTRATION).ok
         yield trainee
         trainee.close()

@@ -288,6 +288,16 @@ def test_the_camera_changes_by_its_control(trainee):
     change_the_camera(trainee)
 
 
+def abort_and_open_settings(trainee):
+    trainee.submit("Abort")
+    trainee.until_menu("experiment")
+    trainee.until(lambda: trainee.menu.focus)
+    trainee.tap("back")
+    trainee.until_menu("start")
+    trainee.choose("settings")
+    trainee.until_menu("settings")
+
+
 def change_the_camera(trainee):
     before = trainee.state.camera
     for _ in range(2):
@@ -306,13 +316,7 @@ def test_what_the_arm_s_settings_would_change_waits_for_the_end_of_a_trial(train
     trainee.until_menu("settings")
     assert not trainee.item("direction").is_enabled
     assert trainee.item("volume").is_enabled
-    trainee.submit("Abort")
-    trainee.until_menu("experiment")
-    trainee.until(lambda: trainee.menu.focus)
-    trainee.tap("back")
-    trainee.until_menu("start")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    abort_and_open_settings(trainee)
     trainee.focus("fine")
     trainee.tap("right", "right", "left")
     trainee.until(lambda: outside.settings, "the new simulation")
@@ -335,13 +339,7 @@ def test_quitting_is_asked_for(trainee, outside):
 
 def test_another_simulation_after_a_trial_leaves_the_settings_open(trainee, loop, setup):
     trainee.start("task-1")
-    trainee.submit("Abort")
-    trainee.until_menu("experiment")
-    trainee.until(lambda: trainee.menu.focus)
-    trainee.tap("back")
-    trainee.until_menu("start")
-    trainee.choose("settings")
-    trainee.until_menu("settings")
+    abort_and_open_settings(trainee)
     handover = loop.replace_simulation(Simulation(setup, 4))
     trainee.until(handover.done)
     trainee.step(5)

@@ -55,10 +55,7 @@ def train_and_look_at_the_result(trainee, outside, monkeypatch):
     trainee.choose("task-1")
     trainee.until_menu(None)
     trainee.play("task-1")
-    trainee.tap("touch")
-    trainee.until_menu("complete")
-    trainee.choose("register")
-    trainee.until_menu("waiting")
+    trainee.register()
     training = trainee.state.training
     assert (training.trainee, training.task, training.mode) == ("P07", "task-1", "desktop")
     outside.has_slicer = True

@@ -51,11 +51,7 @@ def train_and_look_at_the_result(clicking, outside, task):
     """Touch all points of a task that runs, register them and read the score."""
     clicking.play(task)
     assert len(clicking.state.training.touches) == 15
-    clicking.tap("touch")
-    clicking.until_menu("complete")
-    clicking.choose("register")
-    clicking.until_menu("waiting")
-    trial_id = clicking.state.training.trial_id
+    trial_id = clicking.register()
     outside.has_slicer = True
     assert clicking.submit("SubmitRegistration", trialId=trial_id, **REGISTRATION).ok
     assert clicking.submit("TrialScored", trialId=trial_id, score=81.0, details={}).ok

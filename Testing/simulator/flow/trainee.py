@@ -197,6 +197,14 @@ class Trainee:
         assert self.submit("StartTask", **start).ok
         self.until_menu(None)
 
+    def register(self) -> str:
+        """Register the touches, which are complete; return the trial's UUID."""
+        self.tap("touch")
+        self.until_menu("complete")
+        self.choose("register")
+        self.until_menu("waiting")
+        return self.state.training.trial_id
+
     def touch(self, point: np.ndarray, center: np.ndarray) -> None:
         """Carry the tip over the head to a point of the skin (3,) m, and record a touch there."""
         self.lower_onto(point, center)

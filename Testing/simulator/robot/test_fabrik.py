@@ -46,16 +46,6 @@ def truth():
     return Truth()
 
 
-@pytest.fixture(scope="module")
-def robot():
-    return load_robot()
-
-
-@pytest.fixture(scope="module")
-def fabrik(robot):
-    return Fabrik(robot)
-
-
 def target(tip, mode):
     """Return the arguments of `solve` in a mode."""
     direction = tip[:3, 2] if mode == "direction" else None

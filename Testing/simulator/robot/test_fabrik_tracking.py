@@ -4,24 +4,12 @@ import numpy as np
 import pytest
 
 from rastrainer_simulator.core.arm import limit_step
-from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.robot.model import load_robot
 
 TICK = 0.004
 STEP = 0.001
 CLINICAL_BOX = ([0.35, -0.15, 0.15], [0.65, 0.15, 0.5])
 DOWN = [0.0, 0.0, -1.0]
-
-
-@pytest.fixture(scope="module")
-def robot():
-    return load_robot()
-
-
-@pytest.fixture(scope="module")
-def fabrik(robot):
-    return Fabrik(robot)
 
 
 def wander(box, count, seed):

@@ -11,11 +11,6 @@ from rastrainer_simulator.robot.model import load_robot
 
 
 @pytest.fixture(scope="module")
-def robot():
-    return load_robot()
-
-
-@pytest.fixture(scope="module")
 def postures(robot):
     return np.random.default_rng(20).uniform(robot.lower, robot.upper, (10_000, 7))
 

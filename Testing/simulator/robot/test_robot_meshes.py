@@ -34,11 +34,6 @@ LINK_ORIGINS_M = {  # data sheet: sums of the lengths of the arm, at q = 0
 
 
 @pytest.fixture(scope="module")
-def robot():
-    return load_robot()
-
-
-@pytest.fixture(scope="module")
 def visuals(robot):
     return load_meshes(robot)
 

@@ -9,11 +9,6 @@ from rastrainer_simulator.robot.model import load_robot
 URDF = asset_path("robots", "iiwa7", "iiwa7.urdf")
 
 
-@pytest.fixture(scope="module")
-def robot():
-    return load_robot()
-
-
 @pytest.fixture
 def changed(tmp_path):
     """Write the robot's URDF with one change and return its path."""
