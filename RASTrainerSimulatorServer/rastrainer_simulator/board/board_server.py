@@ -17,7 +17,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import accepted, one_of, text
 from rastrainer.study.database.address import StudyPlace
 from rastrainer_simulator.assets import NOT_BUILT, page_folder
-from rastrainer_simulator.board.class_watch import ClassWatch
+from rastrainer_simulator.board.class_table import ClassWatch
 from rastrainer_simulator.board.live_view import SEAT_PATH, LiveView
 from rastrainer_simulator.board.seat_client import RefusedError, SeatClient
 from rastrainer_simulator.board.seat_list import (

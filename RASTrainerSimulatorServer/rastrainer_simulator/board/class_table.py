@@ -1,10 +1,15 @@
-"""The table of a class as the board's page gets it, in the words that trainees read."""
+"""The table of a class: read periodically, away from the event loop, and put into words."""
 
 from __future__ import annotations
 
+import asyncio
+import logging
 from collections.abc import Mapping
 from typing import Any
 
+from aiohttp import hdrs, web
+
+from rastrainer.errors import InputError
 from rastrainer.study.curriculum.curriculum import Curriculum
 from rastrainer.study.curriculum.standing import (
     AssignmentStanding,
@@ -12,9 +17,88 @@ from rastrainer.study.curriculum.standing import (
     by_curriculum,
 )
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment
-from rastrainer_simulator.board.class_reader import ClassStanding
+from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.database import StudyBusyError
+from rastrainer.study.database.values import utc_now
+from rastrainer_simulator.board.class_reader import ClassReader, ClassStanding
 from rastrainer_simulator.flow.session.curricula import AssignmentWords
+from rastrainer_simulator.ops.study_thread import StudyThread
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+
+_log = logging.getLogger(__name__)
+ROUND_S = 2.0
+UNEXPECTED = "The study cannot be read because of an unexpected error; the board's log has more."
+
+
+class ClassWatch:
+    """Keeps what was last read of a study, also while it cannot be read."""
+
+    def __init__(self, place: StudyPlace | None) -> None:
+        """Read nothing yet, and without a study never."""
+        self._thread = None if place is None else StudyThread(lambda: ClassReader(place))
+        self._found: ClassStanding | None = None
+        self._tables: dict[str, list[dict[str, Any]]] = {}
+        self._problem = self._as_of = ""
+        self._task: asyncio.Task[None] | None = None
+
+    async def begin(self) -> None:
+        """Read once, and from now on again and again.
+
+        Raises:
+            InputError: the study cannot be read, and waiting would not help.
+        """
+        if self._thread is None:
+            return
+        try:
+            await self._read(self._thread)
+        except StudyBusyError as error:
+            self._problem = str(error)
+        self._task = asyncio.create_task(self._keep_reading(self._thread))
+
+    async def close(self) -> None:
+        """Read no longer."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+        if self._thread is not None:
+            await self._thread.close()
+
+    async def send(self, request: web.Request) -> web.Response:
+        """Answer a page with the table in its language."""
+        asked = request.query.get("language", "")
+        language = asked if asked in LANGUAGES else next(iter(LANGUAGES))
+        return web.json_response(self.message(language), headers={hdrs.CACHE_CONTROL: "no-store"})
+
+    def message(self, language: str) -> dict[str, Any]:
+        """Return what the page is sent, ready for JSON; docs/views.md says what each member is."""
+        found = self._found
+        if found is not None and language not in self._tables:
+            self._tables[language] = class_table(found, language)
+        return {
+            "hasStudy": self._thread is not None,
+            "problem": self._problem,
+            "asOf": self._as_of,
+            "curricula": self._tables.get(language, []),
+            "without": [] if found is None else list(found.without),
+        }
+
+    async def _keep_reading(self, thread: StudyThread[ClassReader]) -> None:
+        while True:
+            await asyncio.sleep(ROUND_S)
+            try:
+                await self._read(thread)
+            except InputError as error:
+                self._problem = str(error)
+            except Exception:
+                # The seats are still to be seen.
+                _log.exception(UNEXPECTED)
+                self._problem = UNEXPECTED
+
+    async def _read(self, thread: StudyThread[ClassReader]) -> None:
+        found = await thread.do(ClassReader.read)
+        if found is not self._found:
+            self._found, self._tables = found, {}
+        self._problem, self._as_of = "", utc_now()
 
 
 def class_table(found: ClassStanding, language: str) -> list[dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -162,8 +163,7 @@ class TrialRecorder:
         """
         phase = result.state.training.phase
         if phase is Phase.IDLE:
-            self._writer.submit(trial.journal.discard)
-            self._open = self._registering = None
+            self._end(trial.journal.discard)
         elif not self._is_registered():
             self._registering = None
             self._is_stuck = True
@@ -217,7 +217,7 @@ class TrialRecorder:
                 self._archive.add_aborted(record, journal)
 
         written = Written(self._writer.submit(write), is_awaited=False)
-        self._close(trial)
+        self._end(trial.journal.close)
         return written
 
     def _after_registration(
@@ -235,9 +235,10 @@ class TrialRecorder:
 
     def _submit_and_close(self, trial: _OpenTrial) -> Written:
         written = self._submit(trial, is_awaited=False)
-        self._close(trial)
+        self._end(trial.journal.close)
         return written
 
-    def _close(self, trial: _OpenTrial) -> None:
-        self._writer.submit(trial.journal.close)
+    def _end(self, leave: Callable[[], None]) -> None:
+        """End the open trial; `leave` closes or discards its journal."""
+        self._writer.submit(leave)
         self._open = self._registering = None

@@ -17,7 +17,7 @@ from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.database import LockWait, StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
-from rastrainer_simulator.board import class_reader, class_watch
+from rastrainer_simulator.board import class_reader
 from rastrainer_simulator.board.class_reader import ClassReader
 from rastrainer_simulator.board.class_table import class_table
 from rastrainer_simulator.cli.main import main
@@ -196,7 +196,7 @@ def until(board, is_wanted):
 def test_while_the_study_is_away_the_last_table_stays_and_the_page_is_told(
     open_board, study, monkeypatch
 ):
-    monkeypatch.setattr(class_watch, "ROUND_S", 0.05)
+    monkeypatch.setattr("rastrainer_simulator.board.class_table.ROUND_S", 0.05)
     board = open_board(study)
     first = until(board, lambda found: found["curricula"])
     assert first["problem"] == ""
