@@ -14,7 +14,7 @@ from rastrainer.head.pose import Perturbation, perturbed_pose
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.surface_path import SurfaceGraph
-from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.collision import Collision, head_collision
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -72,10 +72,7 @@ class PlanningSetup:
         self.scenario = scenario
         self.mesh = mesh
         self.setup = replace(setup or load_setup(), scenario=scenario)
-        around = Surroundings(stand_radius=scenario.furniture.stand_diameter / 2.0 / MM_PER_M)
-        self.collision = Collision(
-            self.setup.shape, mesh.vertices / MM_PER_M, mesh.triangles, around
-        )
+        self.collision = head_collision(self.setup.shape, mesh, scenario.furniture)
         self.kinematics = make_kinematics(self.setup.robot)
         self._planner = TouchPlanner(self.setup.robot, self.collision)
 

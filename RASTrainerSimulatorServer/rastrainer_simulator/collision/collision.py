@@ -9,6 +9,9 @@ from functools import partial
 
 import numpy as np
 
+from rastrainer.head.mesh import HeadMesh
+from rastrainer.scenario.scenario import Furniture
+from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.capsules import segment_distance
 from rastrainer_simulator.collision.clearance import SHAFT_NEAR, Clearance, DistanceBounds, Nearest
 from rastrainer_simulator.collision.head_clearance import HeadClearance, LineOfSight
@@ -227,3 +230,9 @@ class Collision:
     ) -> Nearest | None:
         """Return the place of the head nearest to the shaft; None where none is within `limit`."""
         return self._head.nearest_to_shaft(self._arm.pose(link_to_world), limit)
+
+
+def head_collision(shape: RobotShape, head: HeadMesh, furniture: Furniture) -> Collision:
+    """Return what measures a robot against a head, RAS mm, and the table and stand around it."""
+    surroundings = Surroundings(stand_radius=furniture.stand_diameter / 2.0 / MM_PER_M)
+    return Collision(shape, head.vertices / MM_PER_M, head.triangles, surroundings)

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.collision import Collision, Surroundings, stand_pose
+from rastrainer_simulator.collision.collision import head_collision, stand_pose
 from rastrainer_simulator.collision.contact import Contact, Moved
 from rastrainer_simulator.collision.proximity import Pressing, next_proximity
 from rastrainer_simulator.collision.touch_planner import PlanReach
@@ -74,7 +74,7 @@ class Simulation:
         self._teleoperation = Teleoperation(settings.teleoperation)
         head = read_head_mesh(setup.scenario.head_mesh)
         self._head_base = head.base / MM_PER_M
-        self._collision = _collision(setup, head)
+        self._collision = head_collision(setup.shape, head, setup.scenario.furniture)
         kinematics = make_kinematics(setup.robot)
         self.kinematics_name = type(kinematics).__name__
         self._contact = Contact(self._collision, kinematics)
@@ -337,13 +337,6 @@ def listed(scenario: Scenario) -> dict[str, Any]:
             for procedure in scenario.procedures
         ],
     }
-
-
-def _collision(setup: SimulationSetup, head: HeadMesh) -> Collision:
-    surroundings = Surroundings(
-        stand_radius=setup.scenario.furniture.stand_diameter / 2.0 / MM_PER_M
-    )
-    return Collision(setup.shape, head.vertices / MM_PER_M, head.triangles, surroundings)
 
 
 def _ended(outcome: MotionOutcome, sim_time: float) -> Event:

@@ -15,7 +15,7 @@ from rastrainer.head.surface_queries import outward_normals
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
@@ -37,13 +37,7 @@ class TouchViews:
         """
         self._scenario: Scenario = setup.scenario
         self._head = head or read_head_mesh(setup.scenario.head_mesh)
-        stand = setup.scenario.furniture.stand_diameter / 2.0 / MM_PER_M
-        self._collision = Collision(
-            setup.shape,
-            self._head.vertices / MM_PER_M,
-            self._head.triangles,
-            Surroundings(stand_radius=stand),
-        )
+        self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)
         self._kinematics = make_kinematics(setup.robot)
         self._planner = TouchPlanner(setup.robot, self._collision)
         self._known: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}

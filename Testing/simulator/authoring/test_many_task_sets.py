@@ -14,7 +14,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_set import TaskSetProposer
-from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.skin_marks import skin_marks
@@ -68,10 +68,7 @@ def crowded(planning, places, poses):
 
     The planner's posture is judged by a collision model of its own, as a simulation makes it.
     """
-    stand = Surroundings(stand_radius=planning.scenario.furniture.stand_diameter / 2.0 / MM_PER_M)
-    collision = Collision(
-        planning.setup.shape, planning.mesh.vertices / MM_PER_M, planning.mesh.triangles, stand
-    )
+    collision = head_collision(planning.setup.shape, planning.mesh, planning.scenario.furniture)
     kinematics = make_kinematics(planning.setup.robot)
     planner = TouchPlanner(planning.setup.robot, planning.collision)
     found = []

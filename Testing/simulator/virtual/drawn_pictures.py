@@ -12,7 +12,7 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.surface_queries import outward_normals
 from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M, apply
-from rastrainer_simulator.collision.collision import Collision, Surroundings
+from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.collision.head_clearance import LineOfSight
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -100,13 +100,7 @@ class DrawnPictures:
     def __init__(self, setup: SimulationSetup, seed: int) -> None:
         self._setup = setup
         self._head: HeadMesh = read_head_mesh(setup.scenario.head_mesh)
-        stand = setup.scenario.furniture.stand_diameter / 2.0 / MM_PER_M
-        self._collision = Collision(
-            setup.shape,
-            self._head.vertices / MM_PER_M,
-            self._head.triangles,
-            Surroundings(stand_radius=stand),
-        )
+        self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)
         self._kinematics = make_kinematics(setup.robot)
         self._random = np.random.default_rng(seed)
         self._marks: dict[str, tuple[np.ndarray, np.ndarray]] = {}
