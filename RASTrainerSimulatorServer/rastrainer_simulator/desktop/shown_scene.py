@@ -249,11 +249,8 @@ class ShownScene:
             glow(actor.GetProperty(), color)
 
     def _actor(self, part: Part) -> vtkActor:
-        data = surface(part.vertices, part.triangles)
-        normals = np.ascontiguousarray(part.normals, dtype=np.float32)
-        data.GetPointData().SetNormals(numpy_to_vtk(normals, deep=True))
         mapper = vtkPolyDataMapper()
-        mapper.SetInputData(data)
+        mapper.SetInputData(surface(part.vertices, part.triangles, part.normals))
         mapper.ScalarVisibilityOff()
         mapper.StaticOn()
         actor = vtkActor()

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty, vtkRenderer
 
 from rastrainer.head.mesh import HeadMesh
@@ -107,11 +106,8 @@ def node_actors(
 
 
 def _actor(shape: Surface, material: Material, pose: np.ndarray) -> vtkActor:
-    data = surface(shape.vertices, shape.triangles)
-    normals = np.ascontiguousarray(shape.normals, dtype=np.float32)
-    data.GetPointData().SetNormals(numpy_to_vtk(normals, deep=True))
     mapper = vtkPolyDataMapper()
-    mapper.SetInputData(data)
+    mapper.SetInputData(surface(shape.vertices, shape.triangles, shape.normals))
     mapper.ScalarVisibilityOff()
     made = vtkActor()
     made.SetMapper(mapper)

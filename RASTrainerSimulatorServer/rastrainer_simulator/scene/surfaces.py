@@ -98,8 +98,10 @@ def _stack(
     return shaded(vertices, np.concatenate(triangles), material)
 
 
-def surface(vertices: np.ndarray, triangles: np.ndarray) -> vtkPolyData:
-    """Return a surface from (n, 3) float vertices and (m, 3) int triangles."""
+def surface(
+    vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray | None = None
+) -> vtkPolyData:
+    """Return a surface from vertices and normals (n, 3) float and triangles (m, 3) int."""
     points = vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(vertices, dtype=np.float32), deep=True))
     corners = np.ascontiguousarray(triangles, dtype=np.int64).reshape(-1)
@@ -108,6 +110,9 @@ def surface(vertices: np.ndarray, triangles: np.ndarray) -> vtkPolyData:
     data = vtkPolyData()
     data.SetPoints(points)
     data.SetPolys(cells)
+    if normals is not None:
+        directions = np.ascontiguousarray(normals, dtype=np.float32)
+        data.GetPointData().SetNormals(numpy_to_vtk(directions, deep=True))
     return data
 
 
