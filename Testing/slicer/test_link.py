@@ -87,10 +87,22 @@ def test_a_connection_that_was_dead_before_the_first_heartbeat_is_made_anew(link
     simulator.beats = False
     link.connectTo(port=simulator.port)
     run_link_until(link, lambda: simulator.commands)
-    clock.ahead += RECONNECT_AFTER_S + 1.0
+    run_link_until(link, lambda: clock.goes_on() and not link.isOpen)
     run_link_until(link, lambda: len(simulator.commands) == 2)
     beat(simulator)
     run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
+
+
+def test_a_slicer_that_was_held_up_itself_does_not_take_the_simulator_for_silent(
+    link, simulator, clock
+):
+    clock.stop()
+    connect(link, simulator)
+    simulator.beats = False
+    clock.ahead += 10 * RECONNECT_AFTER_S
+    link.process()
+    assert link.isOpen
+    assert link.status.state is LinkState.CONNECTED
 
 
 def test_a_simulator_of_another_version_is_named_and_gets_no_commands(link, simulator):

@@ -52,6 +52,9 @@ NOWHERE = 0
 it would reconnect 0.1 s after a loss, to whatever has the simulator's port by then."""
 CONNECT_WITHIN_S = 1.0
 """How long the connector may connect to a simulator that has answered; then it is tested again."""
+LONGEST_LOOK_S = 0.5
+"""At most so much of the time since the last look counts as silence: while Slicer itself is held
+up, such as by loading a volume, nobody is heard."""
 
 
 class SlicerConnection:
@@ -89,7 +92,7 @@ class SlicerConnection:
         self._isListening = False
         self._connectsUntil = 0.0
         self._hasHeartbeat = False
-        self._lastSign = 0.0
+        self._silenceS = self._lastLook = 0.0
         self._heartbeatTime: int | None = None
 
     @property
@@ -110,7 +113,7 @@ class SlicerConnection:
                 isListening=self._isListening,
                 finding=self._search.finding,
                 isOpen=self.isOpen,
-                silenceS=self._clock() - self._lastSign,
+                silenceS=self._silenceS,
                 hasHeartbeat=self._hasHeartbeat,
                 peerVersion=self.peerVersion,
             )
@@ -148,7 +151,7 @@ class SlicerConnection:
         if not wasOpen:
             self._noteOpened()
         self._readHeartbeat()
-        if self._clock() - self._lastSign > RECONNECT_AFTER_S:
+        if self._silenceS > RECONNECT_AFTER_S:
             # Half-open: nothing will ever come over this connection again, if anything ever did.
             if self.connector is not None:
                 self.connector.Stop()
@@ -196,7 +199,8 @@ class SlicerConnection:
         """Note that a connection has just been opened."""
         self._hasHeartbeat = False
         self.peerVersion = None
-        self._lastSign = self._connectsUntil = self._clock()
+        self._silenceS = 0.0
+        self._lastLook = self._connectsUntil = self._clock()
         if self.connector is not None and not self._isListening:
             self.connector.SetServerPort(NOWHERE)
 
@@ -225,12 +229,15 @@ class SlicerConnection:
         self._heartbeatTime = None
 
     def _readHeartbeat(self) -> None:
+        now = self._clock()
+        self._silenceS += min(now - self._lastLook, LONGEST_LOOK_S)
+        self._lastLook = now
         node = findIncomingNode(self.connector, DeviceName.SIM_SERVER)
         if node is None or node.GetMTime() == self._heartbeatTime:
             return
         self._heartbeatTime = node.GetMTime()
         self._hasHeartbeat = True
-        self._lastSign = self._clock()
+        self._silenceS = 0.0
         self.peerVersion = node.GetSubCode()
 
     @vtk.calldata_type(vtk.VTK_OBJECT)

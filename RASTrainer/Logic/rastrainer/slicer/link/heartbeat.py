@@ -51,7 +51,8 @@ class LinkObservation:
         isListening: the simulator is to connect to this side.
         finding: what answers there; None before the test has a result.
         isOpen: there is a TCP connection.
-        silenceS: seconds since the last heartbeat, or since the connection was opened.
+        silenceS: seconds since the last heartbeat, or since the connection was opened, without
+            those in which Slicer itself was held up.
         hasHeartbeat: a heartbeat has come over this connection.
         peerVersion: version of the simulator's protocol; None as long as it is not known.
     """
