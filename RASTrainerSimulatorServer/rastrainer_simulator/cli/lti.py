@@ -129,9 +129,9 @@ def _show(settings: LtiSettings, key: ToolKey) -> None:
 
 def _tls(certificate: Path | None, config: Path) -> ssl.SSLContext:
     if certificate is None:
-        from rastrainer_simulator.net.views.certificate import tls_context
+        from rastrainer_simulator.net.views.certificate import own_certificate
 
-        return tls_context(config)
+        return own_certificate(config).tls
     context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
     context.minimum_version = ssl.TLSVersion.TLSv1_2
     try:

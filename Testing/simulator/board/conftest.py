@@ -9,7 +9,7 @@ import pytest
 
 from rastrainer_simulator.board.board_server import SUBPROTOCOL, BoardServer
 from rastrainer_simulator.board.seat_client import SeatClient
-from rastrainer_simulator.net.views.certificate import fingerprint, tls_context
+from rastrainer_simulator.net.views.certificate import own_certificate
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST
@@ -33,9 +33,10 @@ class WatchedSimulator:
     def __init__(self, served: ServedViews, config, certificates, port: int = 0):
         self.served = served
         self.config = config
-        listening = served.server.listen_in_network(port or free_port(), tls_context(certificates))
+        certificate = own_certificate(certificates)
+        listening = served.server.listen_in_network(port or free_port(), certificate.tls)
         self.port = served.thread.run(listening)
-        self.fingerprint = fingerprint(certificates)
+        self.fingerprint = certificate.fingerprint
         self.address = f"https://{HOST}:{self.port}"
 
 

@@ -8,6 +8,7 @@ import os
 import socket
 import ssl
 import tempfile
+from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from ipaddress import ip_address
 from pathlib import Path
@@ -23,10 +24,23 @@ FILE_NAME = "views.pem"
 NAMES_NAME = "views.names"
 
 
-def tls_context(folder: Path) -> ssl.SSLContext:
-    """Return TLS with this machine's certificate, renewed when old or when addresses changed.
+@dataclass(frozen=True)
+class Certificate:
+    """This machine's certificate.
 
-    The file holds the private key: only its owner can read it, and it leaves the machine never.
+    Attributes:
+        tls: Serves with it.
+        fingerprint: SHA-256, as browsers show it.
+    """
+
+    tls: ssl.SSLContext
+    fingerprint: str
+
+
+def own_certificate(folder: Path) -> Certificate:
+    """Return this machine's certificate, renewed when old or when addresses changed.
+
+    The file holds the private key: only its owner can read it, and it never leaves the machine.
 
     Raises:
         InputError: the file cannot be read or written.
@@ -38,23 +52,14 @@ def tls_context(folder: Path) -> ssl.SSLContext:
         if _is_usable(file, names_file, names):
             # An incomplete one, as after a full disk, is replaced.
             with contextlib.suppress(ssl.SSLError):
-                return _context(file)
+                return _read(file)
         _make(file, names_file, names)
-        return _context(file)
+        return _read(file)
     except OSError as error:
         raise InputError(
             f"The certificate for the local network cannot be kept in {folder}: {error.strerror}. "
             "Allow writing to it, or choose another folder of settings."
         ) from None
-
-
-def fingerprint(folder: Path) -> str:
-    """Return the SHA-256 fingerprint of the certificate that `tls_context` uses, as browsers do."""
-    content = (folder / FILE_NAME).read_text(encoding="ascii")
-    _before, begin, rest = content.partition(ssl.PEM_HEADER)
-    certificate, end, _after = rest.partition(ssl.PEM_FOOTER)
-    digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(begin + certificate + end))
-    return digest.digest().hex(":").upper()
 
 
 def own_names() -> tuple[str, ...]:
@@ -76,11 +81,22 @@ def own_addresses() -> tuple[str, ...]:
     return tuple(dict.fromkeys(text for text in usable if not ip_address(text).is_loopback))
 
 
-def _context(file: Path) -> ssl.SSLContext:
-    context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
-    context.minimum_version = ssl.TLSVersion.TLSv1_2
-    context.load_cert_chain(file)
-    return context
+def _read(file: Path) -> Certificate:
+    while True:
+        content = file.read_bytes()
+        tls = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
+        tls.minimum_version = ssl.TLSVersion.TLSv1_2
+        tls.load_cert_chain(file)
+        # Another simulator that starts at the same time may just have made its own.
+        if file.read_bytes() == content:
+            return Certificate(tls, _fingerprint(content.decode("ascii")))
+
+
+def _fingerprint(content: str) -> str:
+    _before, begin, rest = content.partition(ssl.PEM_HEADER)
+    certificate, end, _after = rest.partition(ssl.PEM_FOOTER)
+    digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(begin + certificate + end))
+    return digest.digest().hex(":").upper()
 
 
 def _is_usable(file: Path, names_file: Path, names: tuple[str, ...]) -> bool:

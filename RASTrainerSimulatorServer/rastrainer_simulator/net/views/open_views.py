@@ -73,20 +73,20 @@ async def open_views(
 async def _listen_in_network(
     server: ViewServer, local: int, certificates: Path, announce: Callable[[str], None]
 ) -> None:
-    from rastrainer_simulator.net.views import certificate
+    from rastrainer_simulator.net.views.certificate import own_addresses, own_certificate
 
-    tls = await asyncio.to_thread(certificate.tls_context, certificates)
+    certificate = await asyncio.to_thread(own_certificate, certificates)
     try:
-        found = await server.listen_in_network(local + 1, tls)
+        found = await server.listen_in_network(local + 1, certificate.tls)
     except InputError:
-        found = await server.listen_in_network(0, tls)
-    addresses = [address for address in certificate.own_addresses() if ":" not in address]
+        found = await server.listen_in_network(0, certificate.tls)
+    addresses = [address for address in own_addresses() if ":" not in address]
     pages = [f"https://{name}:{found}" for name in addresses or [socket.gethostname()]]
     server.announce(*pages)
     where = " or ".join(pages)
     announce(
         f"serves the local network on {where}; the browser warns of a certificate made here: "
-        f"compare its SHA-256 fingerprint, {certificate.fingerprint(certificates)}"
+        f"compare its SHA-256 fingerprint, {certificate.fingerprint}"
     )
     announce(
         f"serves a headset on a USB cable: adb reverse tcp:{local} tcp:{local}, then open "

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.net.views.certificate import FILE_NAME, fingerprint, tls_context
+from rastrainer_simulator.net.views.certificate import FILE_NAME, own_certificate
 from Testing.forked_child import in_child
 from Testing.simulator.net.igtl.servers import HOST
 from Testing.simulator.net.views.served import ViewClient
@@ -24,14 +24,14 @@ REQUEST = f"GET / HTTP/1.1\r\nHost: {HOST}\r\nConnection: close\r\n\r\n".encode(
 def certificates(tmp_path_factory):
     """Return a folder with a certificate."""
     folder = tmp_path_factory.mktemp("certificates")
-    tls_context(folder)
+    own_certificate(folder)
     return folder
 
 
 @pytest.fixture
 def port(served, certificates):
     """Return the port on which the local network is served."""
-    return served.thread.run(served.server.listen_in_network(0, tls_context(certificates)))
+    return served.thread.run(served.server.listen_in_network(0, own_certificate(certificates).tls))
 
 
 def connected(port: int, version: ssl.TLSVersion) -> ssl.SSLSocket:
@@ -58,13 +58,13 @@ def test_tls_older_than_1_2_is_refused(port, certificates, version):
     with pytest.raises(ssl.SSLError, match=r"(?i)alert protocol version|EOF"):
         connected(port, version)
     # Where the system's own OpenSSL would allow it, too.
-    assert tls_context(certificates).minimum_version > version
+    assert own_certificate(certificates).tls.minimum_version > version
 
 
 def test_a_view_that_says_nothing_is_sent_everything_by_tls_too(serve, certificates):
     # So long that no ping of the server makes the view answer.
     served = serve(gone_s=1000.0)
-    port = served.thread.run(served.server.listen_in_network(0, tls_context(certificates)))
+    port = served.thread.run(served.server.listen_in_network(0, own_certificate(certificates).tls))
     with ViewClient(served.thread, f"https://{HOST}:{port}", served.new_key()) as view:
         view.join()
         ticks = [view.next("state")["tick"] for _ in range(20)]
@@ -86,26 +86,42 @@ def test_plain_http_gets_no_answer_from_the_local_network_s_port(port):
 def test_the_fingerprint_that_is_told_is_that_of_the_certificate_that_is_shown(port, certificates):
     with connected(port, ssl.TLSVersion.TLSv1_3) as browser:
         shown = browser.getpeercert(binary_form=True)
-    told = fingerprint(certificates)
+    told = own_certificate(certificates).fingerprint
     assert bytes.fromhex(told.replace(":", "")) == hashlib.sha256(shown).digest()
 
 
 def test_a_certificate_is_kept_and_a_torn_one_made_anew(tmp_path):
-    tls_context(tmp_path)
-    first = fingerprint(tmp_path)
-    tls_context(tmp_path)
-    assert fingerprint(tmp_path) == first
+    first = own_certificate(tmp_path).fingerprint
+    assert own_certificate(tmp_path).fingerprint == first
     file = tmp_path / FILE_NAME
     file.write_bytes(file.read_bytes()[:700])
-    tls_context(tmp_path)
-    assert fingerprint(tmp_path) != first
+    assert own_certificate(tmp_path).fingerprint != first
+
+
+def test_the_fingerprint_is_that_of_the_served_certificate_though_another_start_replaces_it(
+    served, tmp_path, monkeypatch
+):
+    other, load = tmp_path / "other", ssl.SSLContext.load_cert_chain
+    own_certificate(other)
+
+    def load_and_be_replaced(context, file):
+        load(context, file)
+        if (other / FILE_NAME).exists():
+            (other / FILE_NAME).replace(file)
+
+    monkeypatch.setattr(ssl.SSLContext, "load_cert_chain", load_and_be_replaced)
+    certificate = own_certificate(tmp_path / "own")
+    port = served.thread.run(served.server.listen_in_network(0, certificate.tls))
+    with connected(port, ssl.TLSVersion.TLSv1_3) as browser:
+        shown = hashlib.sha256(browser.getpeercert(binary_form=True))
+    assert certificate.fingerprint == shown.digest().hex(":").upper()
 
 
 def refused_without_rights(folder: Path) -> str:
     if os.getuid() == 0:
         os.setuid(65534)
     with pytest.raises(InputError) as refused:
-        tls_context(folder / "certificates")
+        own_certificate(folder / "certificates")
     return str(refused.value)
 
 
