@@ -16,8 +16,7 @@ from pathlib import Path
 import trustme
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.address import PostgresAddress
-from rastrainer.study.database.database import LockWait
+from rastrainer.study.database.database import LockWait, PostgresAddress
 from rastrainer.study.database.study import Study
 from Testing.free_port import free_port
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.study.database.address import PostgresAddress
+from rastrainer.study.database.database import PostgresAddress
 from Testing.postgres_server import PostgresServer
 
 

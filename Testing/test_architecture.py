@@ -33,7 +33,7 @@ LAYERS = {
         rastrainer.motion, rastrainer.scenario
         rastrainer.journal, rastrainer.trial
         rastrainer.study.database
-        rastrainer.study.protocol, rastrainer.study.rating
+        rastrainer.study.protocol
         rastrainer.study.curriculum
         rastrainer.study
         rastrainer.export, rastrainer.report.elements

@@ -7,8 +7,7 @@ from pathlib import Path
 from uuid import uuid4
 
 from rastrainer.study.database.study import Study
-from rastrainer_simulator.board.class_reader import ClassReader
-from rastrainer_simulator.board.class_table import class_table
+from rastrainer_simulator.board.class_table import ClassReader, class_table
 from Testing.benchmarks.row import row
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.simulator.board.class_study import play_class

@@ -11,7 +11,7 @@ from pathlib import Path
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.logic.module_session import ModulePaths, ModuleSession
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
-from rastrainer.study.database.address import PostgresAddress, study_place
+from rastrainer.study.database.database import PostgresAddress, study_place
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path

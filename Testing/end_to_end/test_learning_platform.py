@@ -18,7 +18,7 @@ from urllib.parse import parse_qsl, urlsplit
 import pytest
 from playwright.sync_api import sync_playwright
 
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
 from rastrainer_simulator.lti.settings import SETTINGS_FILE

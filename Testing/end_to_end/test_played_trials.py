@@ -24,8 +24,8 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.replay.resimulation import ReplayReport, replay
+from rastrainer_simulator.virtual.play import VirtualTrial, play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
-from rastrainer_simulator.virtual.virtual_trial import VirtualTrial, play_virtual_trial
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=None)
 STEP_S = 0.05

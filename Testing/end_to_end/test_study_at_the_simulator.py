@@ -9,10 +9,9 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.study.curriculum.counted_trials import CountedTrial
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.curriculum.standing import standing_in
+from rastrainer.study.curriculum.standing import CountedTrial, standing_in
 from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_step import StudyStep

@@ -10,10 +10,10 @@ import numpy as np
 
 from rastrainer.number_text import fixed
 from rastrainer.protocol import AssignmentState, GoalKind
-from rastrainer.study.curriculum.counted_trials import CountedTrial
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
 from rastrainer.study.curriculum.standing import (
     AssignmentStanding,
+    CountedTrial,
     CurriculumStanding,
     standing_in,
 )

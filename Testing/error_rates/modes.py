@@ -8,8 +8,7 @@ from rastrainer.statistics.crossover import fit_differences
 from rastrainer.statistics.intervals import small_sample_factor
 from rastrainer.statistics.paired import compare_paired, rank_test
 from rastrainer.statistics.scipy_modules import scipy_module
-from rastrainer_simulator.virtual.outcome_model import OutcomeModel
-from rastrainer_simulator.virtual.rejection_rates import rejection_rates
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from Testing.error_rates.measured import Measured, share_of, share_text
 
 COVERAGE = "coverage of the 95 % interval"

@@ -16,7 +16,7 @@ from playwright.sync_api import sync_playwright
 
 from rastrainer.protocol import Phase
 from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
-from rastrainer_simulator.board.class_reader import ClassReader, ClassStanding
+from rastrainer_simulator.board.class_table import ClassReader, ClassStanding
 from rastrainer_simulator.flow.session.curricula import AssignmentWords
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
 from rastrainer_simulator.net.views.presenter import Seat

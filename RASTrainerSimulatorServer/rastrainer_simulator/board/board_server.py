@@ -15,7 +15,7 @@ from aiohttp import hdrs, web
 from rastrainer.command_arguments import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.json_checks import accepted, one_of, text
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.assets import NOT_BUILT, page_folder
 from rastrainer_simulator.board.class_table import ClassWatch
 from rastrainer_simulator.board.live_view import SEAT_PATH, LiveView

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.cli.options import STUDY_HELP, add_config, add_study, check_ports
 from rastrainer_simulator.cli.output import announce
 

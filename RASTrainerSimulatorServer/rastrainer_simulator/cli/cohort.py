@@ -16,9 +16,8 @@ from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_p
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.output import text_table
-from rastrainer_simulator.virtual.outcome_model import OutcomeModel
+from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from rastrainer_simulator.virtual.population import ModeEffect, Population
-from rastrainer_simulator.virtual.rejection_rates import rejection_rates
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 SHIPPED_PROTOCOL = ("studies", "published-protocol.json")

@@ -17,20 +17,20 @@ from rastrainer.number_text import fixed
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.sections.mode_comparison import Series, grouped_bars
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.trial.given_points import GivenPoints
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.options import add_json, add_study
 from rastrainer_simulator.cli.output import json_text, text_table
-from rastrainer_simulator.virtual.method_comparison import (
+from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
+from rastrainer_simulator.virtual.method_trials import (
     MethodResult,
     mean_of,
     points_of_trial,
     register_by,
     targets_of,
 )
-from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 
 Found = Mapping[RegistrationMethod, Sequence[tuple[str, MethodResult]]]
 """By method, the trials' names and their results."""

@@ -8,8 +8,7 @@ from itertools import zip_longest
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
-from rastrainer.study.database.address import beside_study
-from rastrainer.study.database.database import Connection
+from rastrainer.study.database.database import Connection, beside_study
 from rastrainer.study.database.schema import Table, study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.platform_links import PlatformLinks

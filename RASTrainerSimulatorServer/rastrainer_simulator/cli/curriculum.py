@@ -8,8 +8,8 @@ from pathlib import Path
 from rastrainer.number_text import fixed
 from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.curriculum.wording import (
+from rastrainer.study.curriculum.standing import (
+    CurriculumStanding,
     advice_of,
     goal_of,
     short_progress_of,

@@ -20,8 +20,8 @@ from rastrainer.export.tidy_csv import (
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.journal.folder import read_trajectory
 from rastrainer.json_checks import accepted
-from rastrainer.report.elements.scores import with_ctps
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.report.sections.published_tables import with_ctps
+from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import StudyData, TrialRow

@@ -16,8 +16,7 @@ from rastrainer_simulator.cli.options import add_config, add_study, check_ports
 from rastrainer_simulator.cli.output import announce
 
 if TYPE_CHECKING:
-    from rastrainer_simulator.lti.settings import LtiSettings
-    from rastrainer_simulator.lti.tool_key import ToolKey
+    from rastrainer_simulator.lti.settings import LtiSettings, ToolKey
     from rastrainer_simulator.net.limits import ViewLimits
 
 DEFAULT_LTI_PORT = 18965
@@ -69,8 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     if importlib.util.find_spec("jwt") is None:
         raise InputError("This needs PyJWT: install it with pip install 'rastrainer[lti]'.")
     check_ports(arguments)
-    from rastrainer_simulator.lti.settings import read_lti_settings
-    from rastrainer_simulator.lti.tool_key import ToolKey
+    from rastrainer_simulator.lti.settings import ToolKey, read_lti_settings
     from rastrainer_simulator.net.limits import read_limits
     from rastrainer_simulator.ops.folders import config_folder
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.address import EXAMPLE, StudyPlace, study_place
+from rastrainer.study.database.database import EXAMPLE, StudyPlace, study_place
 
 if TYPE_CHECKING:
     from rastrainer.study.study_data import StudyData

@@ -15,7 +15,7 @@ from rastrainer.files.reading import printable_name, read_json, read_text
 from rastrainer.files.writing import write_json
 from rastrainer.json_checks import accepted
 from rastrainer.number_text import counted
-from rastrainer.study.database.address import beside_study
+from rastrainer.study.database.database import beside_study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.options import add_study
 from rastrainer_simulator.cli.record_store_settings import (

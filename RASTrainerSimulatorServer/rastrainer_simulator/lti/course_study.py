@@ -9,13 +9,12 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.study.database import study_trainees
-from rastrainer.study.database.address import StudyPlace, beside_study
+from rastrainer.study.database.database import StudyPlace, beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import LinkedAssignment, PlatformLinks
 from rastrainer.study.study_data import TrialRow, trial_rows
-from rastrainer_simulator.lti.grades import GradeTerms
-from rastrainer_simulator.lti.launch_message import PlatformLaunch
+from rastrainer_simulator.lti.launch_message import GradeTerms, PlatformLaunch
 
 FOLLOWED_DAYS = 180
 """After a link was opened last, for which its course is sent new grades."""

@@ -17,8 +17,7 @@ from rastrainer.study.database.values import moment, utc_now
 from rastrainer_simulator.lti.course_study import CourseStudy, DueGrade
 from rastrainer_simulator.lti.launch_message import SCORE_SCOPE
 from rastrainer_simulator.lti.platform_client import PlatformAwayError, PlatformClient
-from rastrainer_simulator.lti.settings import LearningPlatform, LtiSettings
-from rastrainer_simulator.lti.tool_key import ToolKey
+from rastrainer_simulator.lti.settings import LearningPlatform, LtiSettings, ToolKey
 from rastrainer_simulator.ops.study_thread import StudyThread
 
 _log = logging.getLogger(__name__)

@@ -15,7 +15,7 @@ from aiohttp.typedefs import Handler
 from yarl import URL
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.loop.rates import AsyncRateLimiter
 from rastrainer_simulator.lti.course_study import CourseStudy
 from rastrainer_simulator.lti.grade_return import GradeReturn
@@ -30,8 +30,7 @@ from rastrainer_simulator.lti.launch_message import (
 )
 from rastrainer_simulator.lti.launch_page import PAGE_HEADERS, LaunchPage
 from rastrainer_simulator.lti.platform_client import KeySets, PlatformAwayError, PlatformClient
-from rastrainer_simulator.lti.settings import KEYS, LAUNCH, LOGIN, LtiSettings
-from rastrainer_simulator.lti.tool_key import ToolKey
+from rastrainer_simulator.lti.settings import KEYS, LAUNCH, LOGIN, LtiSettings, ToolKey
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.connections import Connections
 from rastrainer_simulator.net.views.limited_server import LimitedServer

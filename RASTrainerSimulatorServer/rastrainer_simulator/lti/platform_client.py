@@ -16,7 +16,7 @@ from cryptography.hazmat.primitives.asymmetric.rsa import RSAPublicKey
 
 from rastrainer.errors import InputError
 from rastrainer.finite_json import decode_finite_json
-from rastrainer_simulator.lti.tool_key import ALGORITHM
+from rastrainer_simulator.lti.settings import ALGORITHM
 
 TIMEOUT_S = 20.0
 MAX_ANSWER_BYTES = 100_000

@@ -24,8 +24,7 @@ from rastrainer_simulator.net.views.presenter import (
 )
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
-from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
-from rastrainer_simulator.rating.rating_work import RatingWork
+from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage, RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import SimulationState

@@ -15,8 +15,8 @@ from rastrainer.journal.replay_track import find_track
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
-from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial

@@ -16,12 +16,15 @@ from rastrainer_simulator.state import Event, EventKind, TrainingState
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE, ProcedurePhases
-from rastrainer_simulator.training.registered_trial import (
+from rastrainer_simulator.training.replies import (
+    RefusedStep,
+    TrainingReply,
+    TrialStep,
+    summary,
     take_registration,
     take_score,
     trial_data,
 )
-from rastrainer_simulator.training.replies import RefusedStep, TrainingReply, TrialStep, summary
 from rastrainer_simulator.training.rules import (
     INTERRUPTED,
     RECORDING_FAILED,
@@ -31,14 +34,14 @@ from rastrainer_simulator.training.rules import (
     refusal,
     refused_touch,
 )
-from rastrainer_simulator.training.trial_clock import (
+from rastrainer_simulator.training.trial_start import (
     KeptStates,
     TrialClock,
+    TrialStarter,
     interrupted,
     paused,
     resumed,
 )
-from rastrainer_simulator.training.trial_start import TrialStarter
 from rastrainer_simulator.training.true_error import PlacedHead, Truth
 from rastrainer_simulator.vectors import Vector
 

@@ -9,8 +9,7 @@ import pytest
 from rastrainer.report.report import report_html
 from rastrainer.report.sections.raters import raters
 from rastrainer.statistics.agreement import intraclass_correlations, quadratic_kappa
-from rastrainer.study.rating.forms import FORMS, GEARS, OSATS
-from rastrainer.study.rating.rating_store import Rating
+from rastrainer.study.ratings import FORMS, GEARS, OSATS, Rating
 from Testing.domain.report.test_report import cohort
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.report.elements.comparisons import CONFIRMATORY, compare_modes
-from rastrainer.report.elements.scores import with_ctps
+from rastrainer.report.sections.published_tables import with_ctps
 from rastrainer.statistics import paired
 from rastrainer.statistics.competence import lc_cusum, lc_cusum_limit
 from rastrainer.statistics.intervals import correlation

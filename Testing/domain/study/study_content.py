@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.schema import study_tables
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.cli.main import main

@@ -14,8 +14,13 @@ from rastrainer.study.database import (
     postgres_connecting,
     postgres_database,
 )
-from rastrainer.study.database.address import PostgresAddress, beside_study, study_place
-from rastrainer.study.database.database import LockWait, StudyAwayError
+from rastrainer.study.database.database import (
+    LockWait,
+    PostgresAddress,
+    StudyAwayError,
+    beside_study,
+    study_place,
+)
 from rastrainer.study.database.postgres_connecting import postgres_error
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.cli.main import main

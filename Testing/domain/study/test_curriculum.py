@@ -12,15 +12,14 @@ from rastrainer.command_arguments import check_arguments, decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.export.trainee_data import export_trainee
 from rastrainer.protocol import MAX_ASSIGNMENTS, MAX_GATES, AssignmentState, CommandName, GoalKind
-from rastrainer.study.curriculum.counted_trials import CountedTrial, counted_trials
 from rastrainer.study.curriculum.curriculum import (
     Assignment,
     Curriculum,
     curriculum_from_json,
     read_curriculum,
 )
-from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.curriculum.standing import standing_in
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore, counted_trials
+from rastrainer.study.curriculum.standing import CountedTrial, standing_in
 from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study

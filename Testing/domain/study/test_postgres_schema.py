@@ -7,7 +7,7 @@ import sqlite3
 
 import pytest
 
-from rastrainer.study.database.postgres_sql import in_postgres, portable_to_postgres
+from rastrainer.study.database.postgres_database import in_postgres, portable_to_postgres
 from rastrainer.study.database.schema import MIGRATIONS, study_tables
 from rastrainer.study.database.study import Study
 

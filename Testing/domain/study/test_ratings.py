@@ -7,9 +7,8 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
-from rastrainer.study.rating.forms import FORMS, GEARS, OSATS, find_form
-from rastrainer.study.rating.rating_store import RatingStore
-from rastrainer_simulator.rating.rating_work import RatingWork
+from rastrainer.study.ratings import FORMS, GEARS, OSATS, RatingStore, find_form
+from rastrainer_simulator.rating.rating_pages import RatingWork
 from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import make_record
 

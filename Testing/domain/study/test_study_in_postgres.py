@@ -21,8 +21,7 @@ from rastrainer.study.database.schema import MIGRATIONS, study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
-from rastrainer.study.rating.forms import FORMS
-from rastrainer.study.rating.rating_store import RatingStore
+from rastrainer.study.ratings import FORMS, RatingStore
 from rastrainer_simulator.cli.copy_study import copy_study
 from rastrainer_simulator.cli.main import main
 from Testing.domain.study.played_study import STUDIES, study_with_trials
@@ -225,8 +224,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.schema import study_tables
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
-from rastrainer.study.rating.forms import FORMS
-from rastrainer.study.rating.rating_store import RatingStore
+from rastrainer.study.ratings import FORMS
+from rastrainer.study.ratings import RatingStore
 study = Study.open(sys.argv[1])
 with study.database.writing() as connection:
     print("locked", flush=True)

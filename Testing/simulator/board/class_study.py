@@ -10,13 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.study.curriculum.counted_trials import counted_trials
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum, read_curriculum
-from rastrainer.study.curriculum.curriculum_store import CurriculumStore
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore, counted_trials
 from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.address import StudyPlace
-from rastrainer.study.database.database import Connection
+from rastrainer.study.database.database import Connection, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import PASS_MARK, score_version

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rastrainer.study.database.study import Study
-from rastrainer_simulator.board.class_reader import ClassReader
-from rastrainer_simulator.board.class_table import class_table
+from rastrainer_simulator.board.class_table import ClassReader, class_table
 from Testing.postgres_server import PostgresServer
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.test_class_table import NAMES, until

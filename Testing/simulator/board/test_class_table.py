@@ -17,9 +17,7 @@ from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.database import LockWait, StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
-from rastrainer_simulator.board import class_reader
-from rastrainer_simulator.board.class_reader import ClassReader
-from rastrainer_simulator.board.class_table import class_table
+from rastrainer_simulator.board.class_table import ClassReader, class_table
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from Testing.domain.study.old_study import write_old_study
@@ -166,7 +164,7 @@ def test_reading_holds_up_no_seat_and_a_seat_holds_up_no_reading(reader, study):
 
 
 def test_a_locked_study_is_named_and_read_once_it_is_free(study, monkeypatch):
-    monkeypatch.setattr(class_reader, "LOCK_WAIT_S", 0.01)
+    monkeypatch.setattr("rastrainer_simulator.board.class_table.LOCK_WAIT_S", 0.01)
     reader, other = ClassReader(study), sqlite3.connect(study, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
     with pytest.raises(StudyBusyError, match="has the study"):
@@ -177,7 +175,7 @@ def test_a_locked_study_is_named_and_read_once_it_is_free(study, monkeypatch):
 
 
 def test_more_trainees_than_a_table_shows_are_said(reader, monkeypatch):
-    monkeypatch.setattr(class_reader, "MOST_TRAINEES", 3)
+    monkeypatch.setattr("rastrainer_simulator.board.class_table.MOST_TRAINEES", 3)
     with pytest.raises(InputError, match="4 active trainees, and a table shows at most 3: archive"):
         reader.read()
 

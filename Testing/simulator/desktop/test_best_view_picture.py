@@ -20,8 +20,8 @@ from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.viewpoint.orbit import camera_pose, orbit_to
 from rastrainer_simulator.viewpoint.touch_views import TouchViews
 from rastrainer_simulator.viewpoint.view_control import Pictures, along_skin
+from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
-from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
 from Testing.simulator.desktop.conftest import SIZE
 
 TASK, SEED, STEP_S = "task-5", 3, 0.05

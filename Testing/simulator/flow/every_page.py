@@ -10,7 +10,7 @@ from types import MappingProxyType
 from rastrainer.protocol import MAX_ASSIGNMENTS, Phase
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
-from rastrainer.study.rating.forms import FORMS
+from rastrainer.study.ratings import FORMS
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
     assignments,

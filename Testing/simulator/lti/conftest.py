@@ -9,8 +9,7 @@ import pytest
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.lti.lti_server import LtiServer
 from rastrainer_simulator.lti.platform_client import PlatformClient
-from rastrainer_simulator.lti.settings import SETTINGS_FILE, read_lti_settings
-from rastrainer_simulator.lti.tool_key import KEY_FILE, ToolKey
+from rastrainer_simulator.lti.settings import KEY_FILE, SETTINGS_FILE, ToolKey, read_lti_settings
 from Testing.simulator.lti.platform_double import Browser, PlatformDouble
 from Testing.simulator.net.igtl.servers import HOST, PATIENCE_S
 

@@ -12,8 +12,7 @@ from cryptography.hazmat.primitives.asymmetric import rsa
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.lti.settings import SETTINGS_FILE, read_lti_settings
-from rastrainer_simulator.lti.tool_key import KEY_FILE, ToolKey
+from rastrainer_simulator.lti.settings import KEY_FILE, SETTINGS_FILE, ToolKey, read_lti_settings
 
 ADDRESS = "https://rastrainer.example.org"
 PLATFORM = {

@@ -23,7 +23,7 @@ from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
+from rastrainer_simulator.virtual.play import play_virtual_trial
 
 BRISK = Skill(speed_mm_s=300.0, gain_per_s=6.0, reaction_s=0.1, dwell_s=0.04, slip_at=3)
 with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(1) as writer:

@@ -26,8 +26,8 @@ from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, Oper
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.state import Answer, Motion
 from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
-from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
 
 DT = 0.02
 FLE_MM = 1.0

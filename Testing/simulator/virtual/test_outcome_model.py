@@ -14,9 +14,9 @@ from rastrainer_simulator.virtual.outcome_model import (
     OutcomeModel,
     draw_outcomes,
     expected_outcomes,
+    rejection_rates,
 )
 from rastrainer_simulator.virtual.population import ModeEffect, Population
-from rastrainer_simulator.virtual.rejection_rates import rejection_rates
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.drawn_study import draw_study
 

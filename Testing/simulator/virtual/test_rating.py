@@ -16,14 +16,13 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals
 from rastrainer.study.database.study import STUDY_FILE, Study
-from rastrainer.study.rating.forms import GEARS, OSATS
-from rastrainer.study.rating.rating_store import RatingStore
+from rastrainer.study.ratings import GEARS, OSATS, RatingStore
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.presenter import Feedback, Hello, Seat
 from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
-from rastrainer_simulator.rating.rating_work import RatingWork
 from rastrainer_simulator.server.rating_server import ReplayLoader, trials_to_show
 from rastrainer_simulator.virtual.cohort import RECORDS
 from Testing.simulator.net.views.served import ViewClient

@@ -6,8 +6,8 @@ import pytest
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import LIFT_MM, Skill
-from rastrainer_simulator.virtual.virtual_trial import play_virtual_trial
 from Testing.simulator.authoring.planned_heads import setup_of
 
 DT = 0.05

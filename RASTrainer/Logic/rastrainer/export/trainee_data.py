@@ -10,12 +10,12 @@ from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.address import beside_study
+from rastrainer.study.database.database import beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer.study.rating.rating_store import RatingStore
+from rastrainer.study.ratings import RatingStore
 
 FORMAT = "RASTrainer trainee 4"
 

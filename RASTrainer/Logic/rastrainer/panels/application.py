@@ -18,7 +18,7 @@ from rastrainer.slicer.program.simulator_package import SimulatorPackage, python
 from rastrainer.slicer.scene.views import WITH_PLOT, WITH_TABLE, BorrowedLayout
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Settings
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.address import PostgresAddress, study_place
+from rastrainer.study.database.database import PostgresAddress, study_place
 
 
 def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:

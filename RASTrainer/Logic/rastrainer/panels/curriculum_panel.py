@@ -12,8 +12,9 @@ from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import fillTable, setText, setUsable
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
-from rastrainer.study.curriculum.standing import AssignmentStanding, CurriculumStanding
-from rastrainer.study.curriculum.wording import (
+from rastrainer.study.curriculum.standing import (
+    AssignmentStanding,
+    CurriculumStanding,
     advice_of,
     progress_of_assignment,
     short_progress_of,

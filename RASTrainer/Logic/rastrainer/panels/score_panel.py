@@ -36,7 +36,7 @@ from rastrainer.slicer.scene.score_board import (
 )
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.address import StudyPlace
+from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.analysis import TrialAnalysis

@@ -28,7 +28,7 @@ from rastrainer.slicer.scene.study_plots import showCalibration, showLearningCur
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import StoredAborted
-from rastrainer.study.database.address import EXAMPLE, study_place
+from rastrainer.study.database.database import EXAMPLE, study_place
 from rastrainer.study.database.values import StoredTrial, Trainee
 
 

@@ -13,9 +13,13 @@ from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import counted
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.report.elements.comparisons import ModeComparison, compare_modes
+from rastrainer.report.elements.comparisons import (
+    ModeComparison,
+    compare_modes,
+    versions_note,
+    with_one_score_version,
+)
 from rastrainer.report.elements.markup import bullets, page, paragraph, section
-from rastrainer.report.elements.scores import versions_note, with_ctps, with_one_score_version
 from rastrainer.report.sections.calibration import calibration
 from rastrainer.report.sections.learning import learning
 from rastrainer.report.sections.method_comparison import method_comparison, shifted_skin
@@ -24,7 +28,7 @@ from rastrainer.report.sections.mode_comparison import distributions, mode_compa
 from rastrainer.report.sections.paired_statistics import findings, order_caveat, paired_statistics
 from rastrainer.report.sections.passing import passing, started_trials
 from rastrainer.report.sections.procedures import procedures
-from rastrainer.report.sections.published_tables import paper_notes, published_tables
+from rastrainer.report.sections.published_tables import paper_notes, published_tables, with_ctps
 from rastrainer.report.sections.raters import raters
 from rastrainer.report.sections.trainees import curricula, groups, questionnaires
 from rastrainer.report.sections.variation import variation

@@ -13,13 +13,13 @@ from rastrainer.registration.fits import RIGID
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
-from rastrainer.study.database.address import StudyPlace
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
+from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure, StoredTrial
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
-from rastrainer.study.rating.rating_store import Rating, RatingStore
+from rastrainer.study.ratings import Rating, RatingStore
 from rastrainer.study.study_notes import StudyNotes, read_notes
 from rastrainer.trial.ctps import Trial, read_trials
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, TrialScore

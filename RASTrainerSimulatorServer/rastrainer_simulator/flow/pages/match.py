@@ -19,7 +19,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.net.views.screen import Fact, Menu, Tone
 from rastrainer_simulator.state import TrainingState
-from rastrainer_simulator.training.registered_trial import given
+from rastrainer_simulator.training.replies import given
 
 
 @dataclass(frozen=True)

@@ -1,1 +1,1 @@
-"""The building blocks of a report: HTML, charts, comparisons and scores."""
+"""The building blocks of a report: HTML, SVG and comparisons."""

@@ -4,10 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rastrainer.number_text import fixed, p_text
-from rastrainer.report.elements.charts import effect_sizes, paired_lines
+import numpy as np
+
+from rastrainer.number_text import fixed, p_text, significant
 from rastrainer.report.elements.comparisons import ModeComparison, tested
 from rastrainer.report.elements.markup import Cell, Line, figure, heading, paragraph, section, table
+from rastrainer.report.elements.svg import (
+    FAINT,
+    INK,
+    Axis,
+    Sheet,
+    axis_over,
+    mode_color,
+    number,
+    y_grid,
+)
 from rastrainer.statistics.few_subjects import what_it_shows
 from rastrainer.statistics.paired import equivalence_margin
 from rastrainer.study.outcomes import mode_name, mode_title
@@ -159,3 +170,115 @@ def interval_text(value: float, interval: tuple[float, float], digits: int) -> s
     """Return a value with its interval, such as `0.15 [0.08, 0.21]`."""
     low, high = interval
     return f"{fixed(value, digits)} [{fixed(low, digits)}, {fixed(high, digits)}]"
+
+
+PAIRED_WIDTH, PAIRED_HEIGHT = 330, 250
+PAIRED_TOP, PAIRED_BOTTOM = 40, 212
+PAIRED_LEFT, FIRST, SECOND = 44, 82, 176
+DIFFERENCE = 268
+
+
+def paired_lines(comparison: ModeComparison) -> str:
+    """Return the chart of one outcome; differences have their own axis on the right."""
+    outcome = comparison.outcome
+    sheet = Sheet(PAIRED_WIDTH, PAIRED_HEIGHT, f"{outcome.title} of every trainee in both modes")
+    sheet.text(10, 16, outcome.heading, 12.5, INK, weight="600")
+    both = np.concatenate([comparison.first_means, comparison.second_means])
+    axis = axis_over(both.tolist(), PAIRED_BOTTOM, PAIRED_TOP)
+    y_grid(sheet, axis, PAIRED_LEFT, SECOND + 22)
+    colors = [mode_color(mode, i) for i, mode in enumerate((comparison.first, comparison.second))]
+    opacity = 0.75 if len(comparison.trainees) <= 12 else max(0.12, 8 / len(comparison.trainees))
+    pairs = zip(comparison.trainees, comparison.first_means, comparison.second_means, strict=True)
+    for trainee, first, second in pairs:
+        sheet.polyline([(FIRST, axis.at(first)), (SECOND, axis.at(second))], FAINT, 1.1, opacity)
+        for x, value, color in ((FIRST, first, colors[0]), (SECOND, second, colors[1])):
+            sheet.dot(
+                x,
+                axis.at(value),
+                3.4,
+                color,
+                max(opacity, 0.5),
+                f"{trainee}: {significant(value, 4)}",
+            )
+    means = [float(comparison.first_means.mean()), float(comparison.second_means.mean())]
+    sheet.polyline([(FIRST, axis.at(means[0])), (SECOND, axis.at(means[1]))], INK, 2.6)
+    for x, mode in ((FIRST, comparison.first), (SECOND, comparison.second)):
+        sheet.text(x, PAIRED_HEIGHT - 20, mode_title(mode).split(" ")[0], 11, INK, "middle")
+    _difference(sheet, comparison)
+    return sheet.svg()
+
+
+def _difference(sheet: Sheet, comparison: ModeComparison) -> None:
+    result = comparison.result
+    if result is None:
+        sheet.text(DIFFERENCE, (PAIRED_TOP + PAIRED_BOTTOM) / 2, "no test", 10, FAINT, "middle")
+        return
+    low, high = result.interval
+    axis = axis_over([low, high, 0.0, 1.1 * low, 1.1 * high], PAIRED_BOTTOM, PAIRED_TOP)
+    for tick in axis.ticks(4):
+        y = axis.at(tick)
+        sheet.line(DIFFERENCE - 22, y, DIFFERENCE + 22, y, "#9aa5b1" if tick == 0 else "#eceff2")
+        sheet.text(DIFFERENCE + 28, y + 3.5, number(tick), 9.5, FAINT)
+    sheet.line(DIFFERENCE, axis.at(low), DIFFERENCE, axis.at(high), INK, 2)
+    for end in (low, high):
+        sheet.line(DIFFERENCE - 6, axis.at(end), DIFFERENCE + 6, axis.at(end), INK, 2)
+    sheet.dot(DIFFERENCE, axis.at(result.mean_difference), 5, INK)
+    sheet.text(DIFFERENCE, PAIRED_HEIGHT - 20, "difference", 11, INK, "middle")
+    sheet.text(DIFFERENCE, PAIRED_HEIGHT - 7, "mean, 95 % interval", 9, FAINT, "middle")
+
+
+EFFECTS_WIDTH, EFFECT_HEIGHT = 680, 27
+EFFECTS_LEFT, EFFECTS_RIGHT = 226, 536
+MAX_EFFECT_SIZE = 6.0
+
+
+def effect_sizes(comparisons: Sequence[ModeComparison]) -> str:
+    """Return the chart; intervals beyond the axis end in an arrow."""
+    shown = [
+        (comparison, result.hedges_gz, result.gz_interval)
+        for comparison, result in tested(comparisons)
+        if result.hedges_gz is not None and result.gz_interval is not None
+    ]
+    reach = max([1.0, *(abs(end) for _comparison, _gz, interval in shown for end in interval)])
+    reach = min(MAX_EFFECT_SIZE, reach * 1.05)
+    axis = Axis(-reach, reach, EFFECTS_LEFT, EFFECTS_RIGHT)
+    height = 64 + EFFECT_HEIGHT * len(shown)
+    sheet = Sheet(EFFECTS_WIDTH, height, "Effect sizes with their intervals")
+    for tick in axis.ticks(8):
+        x = axis.at(tick)
+        sheet.line(x, 24, x, height - 32, "#7b8794" if tick == 0 else "#e3e7ec")
+        sheet.text(x, height - 18, number(tick), 10, FAINT, "middle")
+    for index, (comparison, gz, interval) in enumerate(shown):
+        _effect_size(
+            sheet, axis, 42 + EFFECT_HEIGHT * index, comparison.outcome.title, gz, interval
+        )
+    if shown:
+        first, second = (mode_title(mode) for mode in (shown[0][0].first, shown[0][0].second))
+        sheet.text(axis.at(0) - 8, 14, f"← higher with {first}", 10, FAINT, "end")
+        sheet.text(axis.at(0) + 8, 14, f"higher with {second} →", 10, FAINT)
+    sheet.text(
+        (EFFECTS_LEFT + EFFECTS_RIGHT) / 2,
+        height - 3,
+        "Hedges' g_z with 95 % interval",
+        10,
+        FAINT,
+        "middle",
+    )
+    return sheet.svg()
+
+
+def _effect_size(
+    sheet: Sheet, axis: Axis, y: float, title: str, gz: float, interval: tuple[float, float]
+) -> None:
+    low, high = interval
+    sheet.text(EFFECTS_LEFT - 14, y + 4, title, 11, INK, "end")
+    ends = [max(low, axis.low), min(high, axis.high)]
+    sheet.line(axis.at(ends[0]), y, axis.at(ends[1]), y, INK, 2)
+    if low < axis.low:
+        sheet.text(axis.at(axis.low) - 3, y + 4, "◂", 12, INK, "middle")
+    if high > axis.high:
+        sheet.text(axis.at(axis.high) + 3, y + 4, "▸", 12, INK, "middle")
+    if axis.low <= gz <= axis.high:
+        sheet.dot(axis.at(gz), y, 5, INK)
+    words = f"{fixed(gz, 2)} [{fixed(low, 2)}, {fixed(high, 2)}]"
+    sheet.text(EFFECTS_RIGHT + 14, y + 4, words, 10, FAINT)

@@ -1,11 +1,13 @@
-"""The paper's Tables I and II from the trials, and its numbers and claims checked."""
+"""The paper's score (CTPS) and Tables I and II from the trials; its numbers and claims checked."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
+from rastrainer.errors import InputError
 from rastrainer.number_text import counted, fixed, p_phrase, significant
 from rastrainer.report.elements.markup import (
     Cell,
@@ -16,16 +18,59 @@ from rastrainer.report.elements.markup import (
     section,
     table,
 )
-from rastrainer.report.elements.scores import cohort_scores, complexity_correlation
-from rastrainer.statistics.intervals import Correlation
+from rastrainer.statistics.intervals import Correlation, correlation
 from rastrainer.study.outcomes import mode_title, task_title
-from rastrainer.study.study_data import StudyData
+from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.study.study_notes import Printed
-from rastrainer.trial.ctps import CTPS_WARNING, CohortScores
+from rastrainer.trial.ctps import (
+    CTPS_WARNING,
+    CohortReference,
+    CohortScores,
+    published_ctps,
+    score_cohort,
+    task_number,
+)
 
 MAX_COLUMNS = 6
 ROMAN = ("I", "II", "III", "IV")
 RED, YELLOW, GREEN = (244, 165, 158), (252, 234, 170), (171, 219, 165)
+
+
+def with_ctps(data: StudyData) -> StudyData:
+    """Return the study with `ctps` in the values of each registered trial."""
+    references = {}
+    for mode in data.modes:
+        scores = cohort_scores(data, mode)
+        if scores is not None:
+            references[mode] = scores.reference
+    return replace(
+        data, trials=tuple(_with_ctps(trial, references.get(trial.mode)) for trial in data.trials)
+    )
+
+
+def cohort_scores(data: StudyData, mode: str) -> CohortScores | None:
+    """Return the CTPS table of a mode, or None without a reference."""
+    try:
+        return score_cohort(data.ctps_trials(mode), data.mean_ct_s.get(mode))
+    except InputError:
+        return None
+
+
+def complexity_correlation(values: Iterable[tuple[str, float]]) -> Correlation | None:
+    """Return the correlation of values (task, value) with the tasks' numbers, or None."""
+    pairs = [(task_number(task), value) for task, value in values]
+    numbered = np.array([pair for pair in pairs if pair[0] is not None], dtype=float)
+    try:
+        return correlation(*numbered.T) if len(numbered) else None
+    except InputError:
+        return None
+
+
+def _with_ctps(trial: TrialRow, reference: CohortReference | None) -> TrialRow:
+    if reference is None or "rmse_mm" not in trial.values:
+        return trial
+    ctps = published_ctps(trial.values["completion_time_s"], trial.values["rmse_mm"], reference)
+    return replace(trial, values={**trial.values, "ctps": ctps})
 
 
 def published_tables(data: StudyData) -> str:
@@ -125,7 +170,7 @@ def _overall(mode: str, scores: CohortScores) -> str:
         else f" ± {scores.sd_sample:.2f} "
         f"(SD, divided by n − 1; {scores.sd_population:.2f} divided by n)"
     )
-    correlation = (
+    correlated = (
         ""
         if scores.pearson_r is None
         else " Task number and mean time of the task correlate "
@@ -136,7 +181,7 @@ def _overall(mode: str, scores: CohortScores) -> str:
         f"{len(scores.trials)} trials; {fixed(scores.equation_3_overall, 2)} by the paper's "
         "equation 3. "
         f"Measured against a mean time of {scores.reference.mean_ct_s:.2f} s and a best RMSE of "
-        f"{scores.reference.best_rmse_mm:.2f} mm.{correlation}"
+        f"{scores.reference.best_rmse_mm:.2f} mm.{correlated}"
     )
 
 

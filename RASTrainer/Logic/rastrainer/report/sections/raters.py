@@ -19,8 +19,7 @@ from rastrainer.statistics.agreement import (
 )
 from rastrainer.statistics.intervals import correlation
 from rastrainer.statistics.scipy_modules import scipy_module
-from rastrainer.study.rating.forms import FORMS, HIGHEST, LOWEST, RatingForm
-from rastrainer.study.rating.rating_store import Rating
+from rastrainer.study.ratings import FORMS, HIGHEST, LOWEST, Rating, RatingForm
 from rastrainer.study.study_data import StudyData
 
 _WORDS = ((0.5, "poor"), (0.75, "moderate"), (0.9, "good"), (float("inf"), "excellent"))

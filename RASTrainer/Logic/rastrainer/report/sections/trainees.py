@@ -27,8 +27,10 @@ from rastrainer.study.curriculum.standing import (
     AssignmentStanding,
     CurriculumStanding,
     by_curriculum,
+    goal_of,
+    short_progress_of,
+    title_of,
 )
-from rastrainer.study.curriculum.wording import goal_of, short_progress_of, title_of
 from rastrainer.study.outcomes import CLUSTER_METRICS, MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES, Scale
 from rastrainer.study.study_data import StudyData

@@ -41,8 +41,7 @@ from rastrainer.slicer.scene.scenario_volume import VolumeLoader
 from rastrainer.slicer.scene.views import BorrowedLayout
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
-from rastrainer.study.database.address import PostgresAddress, StudyPlace
-from rastrainer.study.database.database import LockWait
+from rastrainer.study.database.database import LockWait, PostgresAddress, StudyPlace
 from rastrainer.study.database.postgres_connecting import search_driver_in
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial

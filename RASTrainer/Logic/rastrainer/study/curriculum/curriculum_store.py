@@ -1,20 +1,29 @@
-"""Which curriculum each trainee of a study follows: each choice is stored, the last one counts."""
+"""Which curriculum each trainee of a study follows, and which trials count for where they stand.
+
+Each choice is stored, the last one counts. Scored trials count, and aborted ones as failures.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rastrainer.errors import InputError
-from rastrainer.study.curriculum.counted_trials import counted_trials
+from rastrainer.procedure.score import ProcedureScore
+from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
-from rastrainer.study.curriculum.standing import CurriculumStanding, standing_in
+from rastrainer.study.curriculum.standing import CountedTrial, CurriculumStanding, standing_in
 from rastrainer.study.database import study_trainees
+from rastrainer.study.database.aborted_trials import stored_of
+from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text
-from rastrainer.study.database.values import utc_now
+from rastrainer.study.database.values import StoredProcedure, moment, utc_now
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, pass_mark_of
+from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.scoring import TrialScore, method_of_version
 
 _STAMPS = """
     SELECT pseudonym,
@@ -135,3 +144,70 @@ class CurriculumStore:
 
 def _read(text: str | None) -> Curriculum | None:
     return None if text is None else decoded(text, curriculum_from_json)
+
+
+def counted_trials(connection: Connection, pseudonym: str) -> tuple[CountedTrial, ...]:
+    """Return a trainee's trials in order of starting; in the caller's transaction.
+
+    Raises:
+        InputError: an unknown trainee.
+    """
+    study_trainees.find(connection, pseudonym)
+    rows = connection.execute(
+        "SELECT started_utc, trials.stored_utc, task, mode, scenario, "
+        "(SELECT score_json FROM scores WHERE scores.trial_id = trials.trial_id "
+        "ORDER BY scores.id DESC LIMIT 1), "
+        "(SELECT outcome_json FROM procedure_outcomes "
+        "WHERE procedure_outcomes.trial_id = trials.trial_id "
+        "ORDER BY procedure_outcomes.id DESC LIMIT 1) "
+        f"FROM trials WHERE trainee_id = ({TRAINEE_ID}) AND task != ?",
+        (pseudonym, TRIAL_RUN),
+    )
+    timed = [
+        (moment(started), stored, _scored(started, task, mode, scenario, score, outcome))
+        for started, stored, task, mode, scenario, score, outcome in rows
+        if score is not None
+    ]
+    timed += [
+        (moment(stored.record.started_utc), "", _aborted(stored.record))
+        for stored in stored_of(connection, pseudonym)
+        if stored.record.counts_as_failed
+    ]
+    return tuple(trial for *_when, trial in sorted(timed, key=lambda each: each[:2]))
+
+
+def _scored(
+    started: str, task: str, mode: str, scenario: str, score_json: str, outcome_json: str | None
+) -> CountedTrial:
+    score = decoded(score_json, TrialScore.from_json)
+    method = method_of_version(score.version)
+    found: TrialScore | ProcedureScore = score
+    parts: Mapping[str, float] = score.parts
+    procedure = ""
+    if outcome_json is not None:
+        outcome = decoded(outcome_json, StoredProcedure.from_json)
+        found, parts, procedure = outcome.score, outcome.score.desirabilities, outcome.name
+    return CountedTrial(
+        task,
+        mode,
+        scenario,
+        method,
+        procedure,
+        found.score,
+        found.acceptable,
+        found.version,
+        parts,
+        started_utc=started,
+    )
+
+
+def _aborted(record: AbortedTrial) -> CountedTrial:
+    return CountedTrial(
+        record.task,
+        record.mode,
+        record.scenario,
+        record.method.value,
+        is_aborted=True,
+        is_in_procedure=record.phase in {phase.value for phase in PROCEDURE_PHASES},
+        started_utc=record.started_utc,
+    )

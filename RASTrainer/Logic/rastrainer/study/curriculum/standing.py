@@ -1,4 +1,4 @@
-"""Where a trainee stands in a curriculum, and which assignment should come next.
+"""Where a trainee stands in a curriculum, which assignment should come next, and that in English.
 
 Everything follows from the curriculum and the trainee's trials, so that nothing more is stored.
 Scores of different versions are not compared: a goal is reached by trials of one version, and stays
@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from statistics import fmean
 
+from rastrainer.number_text import fixed
 from rastrainer.procedure.score import PROCEDURE_SCORE_VERSION
 from rastrainer.protocol import AssignmentState, GoalKind, RegistrationMethod
-from rastrainer.study.curriculum.counted_trials import CountedTrial
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
 from rastrainer.study.database.values import moment
+from rastrainer.study.protocol.steps import trial_title
 from rastrainer.trial.scoring import passes, score_version
 from rastrainer.trial.trainee_progress import competence_of
 
@@ -25,6 +26,48 @@ PassMarkOf = Callable[[str], "float | None"]
 RECENT = 3
 """How many of the latest trials of an assignment it is compared with others by."""
 WHOLE_WAY = 100
+
+
+@dataclass(frozen=True)
+class CountedTrial:
+    """A trial as a curriculum counts it.
+
+    Attributes:
+        task, mode, scenario: As recorded.
+        method: By what it was registered, or would have been.
+        procedure: That it continued with; "" for touches alone, and for aborted trials, which do
+            not say which.
+        score: Of the procedure where there is one, else of the touches; 0 of an aborted trial.
+        acceptable: Whether it was within all limits of its score.
+        version: Of the score; "" of an aborted trial.
+        parts: Desirability of each part of the score, 0 to 1.
+        is_aborted: Whether it was aborted after a touch.
+        is_in_procedure: Whether it was aborted in a procedure.
+        started_utc: ISO 8601.
+    """
+
+    task: str
+    mode: str
+    scenario: str = ""
+    method: str = RegistrationMethod.FIDUCIALS.value
+    procedure: str = ""
+    score: float = 0.0
+    acceptable: bool = False
+    version: str = ""
+    parts: Mapping[str, float] = field(default_factory=dict, hash=False)
+    is_aborted: bool = False
+    is_in_procedure: bool = False
+    started_utc: str = ""
+
+    def counts_for(self, assignment: Assignment) -> bool:
+        """Return whether it was played as an assignment asks."""
+        if (self.task, self.method) != (assignment.task, assignment.method):
+            return False
+        if assignment.mode not in ("", self.mode) or assignment.scenario not in ("", self.scenario):
+            return False
+        if self.is_aborted:
+            return bool(assignment.procedure) or not self.is_in_procedure
+        return self.procedure == assignment.procedure
 
 
 @dataclass(frozen=True)
@@ -224,3 +267,75 @@ def _weakest(trials: Sequence[CountedTrial]) -> str:
         for name in names
     }
     return min(means, key=lambda name: means[name], default="")
+
+
+PARTS = {
+    "time": "time",
+    "accuracy": "accuracy",
+    "common bias": "the bias that all touches share",
+    "safety": "unintended contact and pressing",
+    "target": "the error at the target",
+    "entry": "the error at the entry",
+    "angle": "the angle",
+    "plunge": "drilling too deep",
+    "distance": "the distance to no-go structures",
+}
+"""Of the scores of touches and of procedures."""
+
+DAY = len("2026-01-31")
+"""Of a time as ISO 8601, what its day takes."""
+
+
+def title_of(assignment: Assignment) -> str:
+    """Return what people call an assignment, such as "Task 3 by a trace over the skin"."""
+    title = trial_title(assignment.task, assignment.mode, assignment.method, assignment.procedure)
+    return f"{title} on {assignment.scenario}" if assignment.scenario else title
+
+
+def progress_of_assignment(standing: AssignmentStanding) -> str:
+    """Return how far a trainee is, such as "1 of 3 trials in a row at 70 or more"."""
+    if standing.mark is not None and standing.assignment.goal is GoalKind.COMPETENT:
+        return f"{standing.done} % of the way to {goal_of(standing)}"
+    done = "" if standing.mark is None else f"{standing.done} of "
+    return f"{done}{goal_of(standing)}"
+
+
+def goal_of(standing: AssignmentStanding) -> str:
+    """Return the goal, such as "3 trials in a row at 70 or more"."""
+    if standing.mark is None:
+        return "no pass mark set for its score"
+    mark = f"{standing.mark:g} or more"
+    if standing.assignment.goal is GoalKind.COMPETENT:
+        return f"competence (LC-CUSUM), a trial passes at {mark}"
+    trials = "trial" if standing.needed == 1 else "trials in a row"
+    return f"{standing.needed} {trials} at {mark}"
+
+
+def short_progress_of(standing: AssignmentStanding) -> str:
+    """Return the state for a narrow column: of a reached one the day (UTC), of an open how far."""
+    if standing.state is not AssignmentState.OPEN:
+        return f"{standing.state.value} {standing.reached_utc[:DAY]}".rstrip()
+    if standing.assignment.goal is GoalKind.COMPETENT:
+        return f"{standing.done} %"
+    return f"{standing.done} of {standing.needed}"
+
+
+def state_of(standing: AssignmentStanding) -> str:
+    """Return the state, and what a locked assignment waits for, by name."""
+    if standing.state is not AssignmentState.LOCKED:
+        return standing.state.value
+    are = "is" if len(standing.missing) == 1 else "are"
+    return f"locked until {' and '.join(standing.missing)} {are} reached"
+
+
+def advice_of(standing: CurriculumStanding) -> str:
+    """Return the sentence about what to practice next, and why."""
+    best = standing.next_best
+    if best is None:
+        return "All assignments are reached."
+    task = title_of(best.assignment)
+    if best.mean is None:
+        return f"Next: {task}, which has not been played yet."
+    part = PARTS.get(best.weakest, "")
+    why = f"; most points are lost on {part}" if part else ""
+    return f"Next: {task}, the weakest open one (latest mean {fixed(best.mean, 0)}){why}."

@@ -21,8 +21,7 @@ from types import ModuleType
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.address import PostgresAddress
-from rastrainer.study.database.database import StudyAwayError, StudyBusyError
+from rastrainer.study.database.database import PostgresAddress, StudyAwayError, StudyBusyError
 
 _folders: list[Path] = []
 """In which Psycopg is searched where this Python has none of its own."""

@@ -15,8 +15,7 @@ from rastrainer.files import writing
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees, study_trials
-from rastrainer.study.database.address import PostgresAddress, study_place
-from rastrainer.study.database.database import LockWait, StudyDatabase
+from rastrainer.study.database.database import LockWait, PostgresAddress, StudyDatabase, study_place
 from rastrainer.study.database.postgres_database import PostgresDatabase
 from rastrainer.study.database.sqlite_database import ReadOnlySqliteDatabase, SqliteDatabase
 from rastrainer.study.database.values import StoredTrial, Trainee, TrialOutcome

@@ -19,8 +19,14 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text
 from rastrainer.study.database.values import utc_now
-from rastrainer.study.protocol.played_trials import aborted_before, played_next
-from rastrainer.study.protocol.progress import DONE, SKIPPED, Progress, StepEntry
+from rastrainer.study.protocol.progress import (
+    DONE,
+    SKIPPED,
+    Progress,
+    StepEntry,
+    aborted_before,
+    played_next,
+)
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import Step, StepKind, steps_for
 from rastrainer.study.protocol.study_protocol import StudyProtocol, study_protocol_from_json

@@ -1,1 +1,0 @@
-"""Blinded rating of replays: forms, marks and who has marked what."""
