@@ -224,7 +224,7 @@ def test_only_the_checksum_may_look_for_a_package_that_slicer_lacks():
     users = [module for module in FILES if "fastcrc" in " ".join(imports()[module])]
     assert [user for user in users if user.startswith("rastrainer.")] in (
         [],
-        ["rastrainer.igtl.wire"],
+        ["rastrainer.igtl.message"],
     )
 
 

@@ -19,8 +19,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Command, CommandReply, Status
-from rastrainer.igtl.message import Header, Message, pack, unpack
-from rastrainer.igtl.wire import crc64
+from rastrainer.igtl.message import Header, Message, crc64, pack, unpack
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.scene.link_nodes import ORIGINAL_NAME, decodedText
 from rastrainer_headless.command import HeadlessCommand, OutgoingCommand

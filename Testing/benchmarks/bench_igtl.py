@@ -11,8 +11,7 @@ import numpy as np
 
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Transform
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer.protocol import PROTOCOL_VERSION
 from Testing.benchmarks.row import cpu_share, resident_mb, row
 from Testing.end_to_end.simulator_process import SimulatorProcess

@@ -15,11 +15,15 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import review, store_delivered, with_progress
-from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.analysis import (
+    RevealedTruth,
+    analyze_trial,
+    registration_arguments,
+    score_arguments,
+)
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION
-from rastrainer.trial.submission import registration_arguments, score_arguments
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_alone, score_alone
 from rastrainer_simulator.flow.session.trainee_history import ScoreHistory

@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.surface_queries import outward_normals
+from rastrainer.head.mesh import outward_normals, read_head_mesh
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import register

@@ -12,9 +12,8 @@ from rastrainer import transforms
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.touch_registration import register_trial
+from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.end_to_end.onto_skin import lower_onto_skin

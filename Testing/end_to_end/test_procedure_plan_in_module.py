@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.control_points import setPoints, worldPoints

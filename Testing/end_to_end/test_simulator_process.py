@@ -10,8 +10,7 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, CommandReply
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer_simulator.cli.main import main
 from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
 

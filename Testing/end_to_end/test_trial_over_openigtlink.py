@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.surface_queries import outward_normal
+from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Point
 from rastrainer.protocol import PROTOCOL_VERSION

@@ -7,10 +7,8 @@ import json
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.surface_queries import outward_normal
-from rastrainer.scenario.method_task import method_of, task_by_method
-from rastrainer.scenario.scenario import Scenario
+from rastrainer.head.mesh import outward_normal, read_head_mesh
+from rastrainer.scenario.scenario import Scenario, method_of, task_by_method
 from Testing.end_to_end.test_trial_over_openigtlink import Player
 from Testing.simulator.landmarked import on_skin
 

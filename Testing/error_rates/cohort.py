@@ -21,7 +21,7 @@ from rastrainer import transforms
 from rastrainer.number_text import fixed
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import Scenario, load_scenario
-from rastrainer.statistics.estimates import Estimate
+from rastrainer.statistics.intervals import Estimate
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.trial.score_reference import fiducial_normals
 from rastrainer_simulator.assets import asset_path

@@ -10,9 +10,8 @@ import numpy as np
 
 from rastrainer.report.sections.method_comparison import TITLES
 from rastrainer.statistics.crossover import fit_differences, is_separable
-from rastrainer.statistics.intervals import ALPHA
+from rastrainer.statistics.intervals import ALPHA, scipy_module
 from rastrainer.statistics.paired import holm
-from rastrainer.statistics.scipy_modules import scipy_module
 from rastrainer.study.study_data import StudyData, TrialRow
 from Testing.error_rates.measured import Measured, share_of, share_text
 

@@ -21,9 +21,8 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.skin_shift import SkinShift
-from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM
+from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, TARGETS_ASIDE_MM
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
-from rastrainer.registration.surface_slide import TARGETS_ASIDE_MM
 from Testing.domain.registration.traces import coarse_start, head_pose, places, random_walk
 from Testing.error_rates.measured import Measured, share_text
 from Testing.simulator.authoring import heads

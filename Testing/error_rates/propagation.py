@@ -9,8 +9,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.number_text import fixed
 from rastrainer.procedure.errors import analyze_procedure
-from rastrainer.procedure.meshes import ProcedureMeshes, read_procedure_meshes
-from rastrainer.procedure.plan import Procedure
+from rastrainer.procedure.plan import Procedure, ProcedureMeshes, read_procedure_meshes
 from rastrainer.registration.localization_error import stated_error
 from rastrainer.registration.registration import Registration, register
 from rastrainer.registration.target_error import expected_tre, target_error

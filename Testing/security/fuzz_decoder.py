@@ -19,9 +19,7 @@ with atheris.instrument_imports(include=["rastrainer.igtl", "rastrainer.protocol
     from rastrainer.command_arguments import check_arguments, decode_json_object
     from rastrainer.errors import InputError
     from rastrainer.igtl.content import Command
-    from rastrainer.igtl.message import CONTENTS, HEADER_BYTES, pack
-    from rastrainer.igtl.stream import MessageReader
-    from rastrainer.igtl.wire import plain_crc64
+    from rastrainer.igtl.message import CONTENTS, HEADER_BYTES, MessageReader, pack, plain_crc64
 
 from Testing.security.mutated_messages import valid_messages
 

@@ -8,8 +8,7 @@ import gc
 import itertools
 from collections import Counter
 
-from rastrainer.igtl.message import CONTENTS
-from rastrainer.igtl.stream import MessageReader, StreamError
+from rastrainer.igtl.message import CONTENTS, MessageReader, StreamError
 from rastrainer_simulator.net.limits import LinkLimits
 from Testing.security.mutated_messages import MutatedMessages
 from Testing.security.wire_police import WirePolice

@@ -6,8 +6,7 @@ import struct
 from collections.abc import Callable
 
 from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
-from rastrainer.igtl.message import HEADER_BYTES, Message, pack
-from rastrainer.igtl.wire import crc64
+from rastrainer.igtl.message import HEADER_BYTES, Message, crc64, pack
 from Testing.security.hostile_content import HOSTILE_JSON
 
 TRIAL = "6b8f2f1e-6a60-4c0e-9a37-111111111111"

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
 from rastrainer.scenario.tasks import Landmark
 from rastrainer_simulator.assets import asset_path
 

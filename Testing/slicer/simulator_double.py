@@ -21,8 +21,7 @@ from rastrainer.igtl.content import (
     CommandReply,
     Status,
 )
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link

@@ -7,8 +7,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList
 from rastrainer.igtl.content import Command, CommandReply, Point, Points, String
-from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
-from rastrainer.igtl.wire import crc64
+from rastrainer.igtl.message import HEADER_BYTES, Message, crc64, pack, read_header, unpack
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.link.link import Link

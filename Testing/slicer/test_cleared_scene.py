@@ -9,7 +9,7 @@ import slicer
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.journal.replay_track import find_track
+from rastrainer.journal.recording import find_track
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.logic import head_preview

@@ -8,8 +8,7 @@ import vtk
 
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Point, Points, Status, String
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.wire import crc64
+from rastrainer.igtl.message import Message, crc64, pack
 from rastrainer_headless.command import HeadlessCommand
 from rastrainer_headless.connector import HeadlessConnector
 from rastrainer_headless.peer_sockets import CrashError, takeCrashes

@@ -7,7 +7,7 @@ import pytest
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.procedure.meshes import MAX_NO_GO_TRIANGLES
+from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
 from rastrainer.slicer.logic.no_go_structures import noGoMeshes
 from rastrainer.slicer.logic.procedure_plan_logic import PlanDescription, ProcedurePlanLogic
 from rastrainer.slicer.scene.control_points import setPoints

@@ -7,7 +7,7 @@ import pytest
 import slicer
 
 from rastrainer import transforms
-from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.head.mesh import nearest_on_mesh
 from rastrainer.registration.fits import AFFINE, KINDS, RIGID
 from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import register

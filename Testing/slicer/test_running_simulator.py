@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder_lock import STARTED_BY, read_holder
+from rastrainer.journal.folder import STARTED_BY, read_holder
 from rastrainer.slicer.program import running_simulator
 from rastrainer.slicer.program.child_process import OPTIONS
 from rastrainer.slicer.program.running_simulator import RunningSimulator
@@ -133,7 +133,7 @@ def test_one_that_a_person_has_started_is_ended_alone_without_its_shell(running,
 
 
 def test_looking_for_a_simulator_keeps_none_from_starting(tmp_path):
-    look = "import sys, pathlib; from rastrainer.journal.folder_lock import read_holder\n"
+    look = "import sys, pathlib; from rastrainer.journal.folder import read_holder\n"
     look += "print(flush=True)\nwhile True: read_holder(pathlib.Path(sys.argv[1]))"
     RecordsFolder(tmp_path).close()
     words = [sys.executable, "-c", look, str(tmp_path)]

@@ -7,7 +7,7 @@ import pytest
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.journal.replay_track import find_track
+from rastrainer.journal.recording import find_track
 from rastrainer.slicer.scene.trial_replay import (
     STATES_A_SLICE,
     findReplay,

@@ -11,7 +11,7 @@ from Testing.forked_child import in_child
 
 RASTRAINER = Path(__file__).parents[2] / "RASTrainer"
 LOGIC = RASTRAINER / "Logic" / "rastrainer"
-ON_THE_COMMAND_LINE = {LOGIC / "statistics" / "scipy_modules.py"}
+ON_THE_COMMAND_LINE = {LOGIC / "statistics" / "intervals.py"}
 """Files whose sentences only somebody reads who has typed a command: Slicer has scipy."""
 COMMANDS = "simulator|scenario|demo|doctor|study|head|score|register|export|report"
 WORDS = re.compile(rf"(?<![\w-])--[a-z]|\brastrainer ({COMMANDS})\b|command line|terminal|\bpip\b")

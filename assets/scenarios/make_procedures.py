@@ -21,14 +21,13 @@ import trimesh
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_text
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
+from rastrainer.procedure.checks import distances_to_no_go, planned_bone
 from rastrainer.procedure.geometry import (
     axis_distance_mm,
     mesh_crossings,
     segment_distances_mm,
     skull_angle_deg,
 )
-from rastrainer.procedure.line_measures import distances_to_no_go, planned_bone
-from rastrainer.procedure.meshes import read_procedure_meshes
 from rastrainer.procedure.plan import (
     Checkpoint,
     NoGoStructure,
@@ -36,6 +35,7 @@ from rastrainer.procedure.plan import (
     ProcedureKind,
     ProcedureTrajectory,
     procedure_json,
+    read_procedure_meshes,
 )
 from rastrainer.scenario.scenario import FILE_NAME, load_scenario
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup

@@ -18,9 +18,8 @@ from rastrainer import transforms
 from rastrainer.files.markups import write_markups
 from rastrainer.files.point_list import PointList
 from rastrainer.files.writing import write_text
-from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.head.pose import Perturbation, perturbed_pose
-from rastrainer.head.surface_queries import outward_normal
 from rastrainer.scenario.scenario import FILE_NAME
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.transforms import MM_PER_M

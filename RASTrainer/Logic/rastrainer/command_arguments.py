@@ -8,10 +8,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import MAX_RECORD_VALUES, decode_message_object
 from rastrainer.json_checks import (
+    MAX_RECORD_VALUES,
     Argument,
     checked_keys,
+    decode_message_object,
     number,
     numbers,
     one_of,
@@ -233,7 +234,7 @@ def decode_json_object(body: str) -> dict[str, Any]:
     """Return the JSON object in a command's body; an empty body is an empty object.
 
     Raises:
-        InputError: as `rastrainer.finite_json.decode_message_object`.
+        InputError: as `rastrainer.json_checks.decode_message_object`.
     """
     return decode_message_object(body or "{}", "The command's body")
 

@@ -102,6 +102,14 @@ class RegistrationMethod(str, Enum):
     LANDMARKS_SURFACE = "landmarks-surface"
 
 
+TRACED_METHODS = (RegistrationMethod.SURFACE, RegistrationMethod.LANDMARKS_SURFACE)
+"""In a trial by one of them the skin is traced after the landmarks were touched."""
+PLAYED_METHODS = (RegistrationMethod.FIDUCIALS, RegistrationMethod.LANDMARKS, *TRACED_METHODS)
+"""By which a trial can be played."""
+COARSE_LANDMARKS = 3
+"""That are touched before the skin is traced alone: the first ones of the scenario."""
+
+
 class TouchRule(str, Enum):
     """Which touch counts: only on the skin, or, as in the paper, anywhere near the fiducial."""
 

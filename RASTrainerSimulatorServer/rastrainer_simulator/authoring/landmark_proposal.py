@@ -15,10 +15,8 @@ from functools import cache
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normals, read_head_mesh
 from rastrainer.registration.fits import RIGID, fit
-from rastrainer.registration.surface_steps import rotations
 from rastrainer.scenario.landmark_checks import FACE_LANDMARKS, NOSE_TIP, spread_first
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Landmark
@@ -155,7 +153,7 @@ def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
         rows = np.hstack([np.cross(q - middle, normal), normal, along])
         off = np.einsum("ij,ij->i", normal, places[nearest[counts]] - q)
         step = np.linalg.lstsq(rows, off, rcond=1e-6)[0]
-        turned = rotations(step[None, :3])[0]
+        turned = transforms.rotations(step[None, :3])[0]
         shift = middle + step[3:6] - turned @ middle
         pose = transforms.rigid(turned, shift) @ pose
         scales = np.clip(scales + step[6:], *SCALES)

@@ -11,8 +11,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
-from rastrainer.procedure.meshes import read_all_no_go
-from rastrainer.procedure.plan import Procedure
+from rastrainer.procedure.plan import Procedure, read_all_no_go
 from rastrainer.progress import Progress, Warn, no_progress
 from rastrainer.scenario.landmark_checks import on_skin
 from rastrainer.scenario.package import checked_scenario

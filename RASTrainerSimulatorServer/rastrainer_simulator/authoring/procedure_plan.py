@@ -11,9 +11,8 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.number_text import fixed
-from rastrainer.procedure.line_measures import LineMeasures, measure_lines
-from rastrainer.procedure.meshes import read_all_no_go, read_procedure_meshes
-from rastrainer.procedure.plan import NO_GO_FOLDER, Procedure
+from rastrainer.procedure.checks import LineMeasures, measure_lines
+from rastrainer.procedure.plan import NO_GO_FOLDER, Procedure, read_all_no_go, read_procedure_meshes
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_check import check_procedure_on_head, lines_held

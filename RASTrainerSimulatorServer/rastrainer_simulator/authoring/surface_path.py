@@ -11,8 +11,7 @@ import heapq
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import NearestPoint, hides, nearest_on_mesh, outward_normal
+from rastrainer.head.mesh import HeadMesh, NearestPoint, hides, nearest_on_mesh, outward_normal
 
 
 class SurfaceGraph:

@@ -11,8 +11,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.markups import read_markups
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normal
 from rastrainer.progress import Progress, Warn
 from rastrainer.scenario.tasks import LABELS, Task, touch_order
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

@@ -8,8 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import outward_normals
+from rastrainer.head.mesh import HeadMesh, outward_normals
 from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.tasks import LABELS, Task
 from rastrainer_simulator.authoring.face_removal import face_vertices

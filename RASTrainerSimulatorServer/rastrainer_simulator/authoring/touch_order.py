@@ -17,8 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import hides, outward_normal
+from rastrainer.head.mesh import HeadMesh, hides, outward_normal
 from rastrainer_simulator.authoring.surface_path import SurfaceGraph
 
 LENGTH_UNIT_MM = 100.0

@@ -13,7 +13,7 @@ import aiohttp
 from aiohttp import hdrs
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_message_object
+from rastrainer.json_checks import decode_message_object
 from rastrainer_simulator.board.seat_list import SeatEntry
 from rastrainer_simulator.net.views.messages import SUBPROTOCOL
 from rastrainer_simulator.net.views.presenter import InstructorOrder

@@ -11,8 +11,15 @@ from typing import Any
 import aiohttp
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_message_object
-from rastrainer.json_checks import accepted, number, one_of, text, whole_number, yes_or_no
+from rastrainer.json_checks import (
+    accepted,
+    decode_message_object,
+    number,
+    one_of,
+    text,
+    whole_number,
+    yes_or_no,
+)
 from rastrainer.protocol import Phase
 from rastrainer_simulator.board.seat_client import (
     OtherCertificateError,

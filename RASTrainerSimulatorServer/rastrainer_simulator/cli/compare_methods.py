@@ -19,7 +19,7 @@ from rastrainer.report.sections.mode_comparison import Series, grouped_bars
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
-from rastrainer.trial.given_points import GivenPoints
+from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.options import add_json, add_study
 from rastrainer_simulator.cli.output import json_text, text_table

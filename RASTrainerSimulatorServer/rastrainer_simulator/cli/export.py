@@ -18,7 +18,7 @@ from rastrainer.export.tidy_csv import (
     trials_csv,
 )
 from rastrainer.files.writing import make_empty_folder, write_text
-from rastrainer.journal.folder import read_trajectory
+from rastrainer.journal.recording import read_trajectory
 from rastrainer.json_checks import accepted
 from rastrainer.report.sections.published_tables import with_ctps
 from rastrainer.study.database.database import StudyPlace

@@ -12,7 +12,7 @@ from typing import Any
 import aiohttp
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, read_parts
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail

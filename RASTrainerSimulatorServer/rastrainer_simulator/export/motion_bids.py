@@ -17,8 +17,7 @@ import numpy as np
 import rastrainer
 from rastrainer.errors import InputError
 from rastrainer.files.writing import make_empty_folder, write_json, write_text
-from rastrainer.motion.path_metrics import resample
-from rastrainer.motion.trajectory import Trajectory
+from rastrainer.motion.trajectory import Trajectory, resample
 from rastrainer.motion.trial_motion import RATE_HZ
 from rastrainer.study.study_data import StudyData, TrialRow
 

@@ -15,7 +15,7 @@ import jwt
 from cryptography.hazmat.primitives.asymmetric.rsa import RSAPublicKey
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.lti.settings import ALGORITHM
 
 TIMEOUT_S = 20.0

@@ -15,7 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, CommandName, Phase
-from rastrainer.scenario.method_task import method_of
+from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial

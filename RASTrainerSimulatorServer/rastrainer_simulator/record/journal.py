@@ -13,7 +13,7 @@ from typing import Any
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.files.writing import make_private_folder, open_private
-from rastrainer.journal.folder_lock import lock
+from rastrainer.journal.folder import lock
 from rastrainer.journal.journal_file import (
     NO_LINE,
     Integrity,

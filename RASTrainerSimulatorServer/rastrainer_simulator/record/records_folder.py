@@ -11,10 +11,10 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import keep_others_out, make_private_folder, open_private
-from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.folder_lock import (
+from rastrainer.journal.folder import (
     LOCK_NAME,
     STARTED_BY,
+    SUFFIX,
     FolderHolder,
     lock,
     read_open_holder,

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.replay_track import ReplayTrack, read_track
+from rastrainer.journal.recording import ReplayTrack, read_track
 from rastrainer.protocol import GhostRule, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import moving_links

@@ -10,10 +10,10 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.journal.replay_track import RecordedEvent, ReplayTrack, read_track
+from rastrainer.journal.recording import RecordedEvent, ReplayTrack, read_track
 from rastrainer.procedure.plan import Procedure
-from rastrainer.protocol import Phase, Proximity, RegistrationMethod
-from rastrainer.scenario.method_task import TRACED_METHODS, method_of, task_by_method
+from rastrainer.protocol import TRACED_METHODS, Phase, Proximity, RegistrationMethod
+from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord

@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rastrainer.procedure.meshes import read_no_go_mesh
-from rastrainer.procedure.plan import Procedure
+from rastrainer.procedure.plan import Procedure, read_no_go_mesh
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.scene.nodes import AXIS, DRILL, ELECTRODE, GUIDE, NO_GO, Node, no_go_name
 from rastrainer_simulator.scene.surfaces import shaded, turned

@@ -11,7 +11,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals_of
-from rastrainer.journal.replay_track import find_track
+from rastrainer.journal.recording import find_track
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.core.setup import SimulationSetup

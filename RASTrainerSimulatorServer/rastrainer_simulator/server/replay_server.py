@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.journal.replay_track import read_track
+from rastrainer.journal.recording import read_track
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,

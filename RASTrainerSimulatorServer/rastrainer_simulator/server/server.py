@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
-from rastrainer.scenario.method_task import task_by_method
+from rastrainer.scenario.scenario import task_by_method
 from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.core.interrupted_trial import find_interrupted

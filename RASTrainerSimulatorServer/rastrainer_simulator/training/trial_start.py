@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.head.skin_shift import SkinShift
-from rastrainer.protocol import Phase
-from rastrainer.scenario.method_task import TRACED_METHODS, method_of, task_by_method
+from rastrainer.protocol import TRACED_METHODS, Phase
+from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.procedure_state import ProcedureState
 from rastrainer_simulator.registration_state import TraceState

@@ -10,8 +10,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.head.surface_queries import outward_normals
+from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M

@@ -14,10 +14,9 @@ from numpy.random import Generator
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
 from rastrainer.head.skin_shift import SkinShift
-from rastrainer.head.surface_queries import outward_normals
-from rastrainer.protocol import RegistrationMethod
+from rastrainer.protocol import COARSE_LANDMARKS, TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error
@@ -30,11 +29,9 @@ from rastrainer.registration.target_error import (
 )
 from rastrainer.registration.trace_guidance import guided_vertices
 from rastrainer.registration.warnings import RegistrationWarning
-from rastrainer.scenario.method_task import COARSE_LANDMARKS, TRACED_METHODS, task_by_method
-from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.given_points import GivenPoints
+from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.trial.score_reference import region_of
-from rastrainer.trial.touch_registration import LEAST_ALONG_SURFACE, normals_at
+from rastrainer.trial.touch_registration import LEAST_ALONG_SURFACE, GivenPoints, normals_at
 from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, MethodNoise, RangeCamera
 
 

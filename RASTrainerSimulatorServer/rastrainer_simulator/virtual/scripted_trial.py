@@ -14,13 +14,11 @@ from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import Message
 from rastrainer.procedure.checks import planned_bone
-from rastrainer.procedure.meshes import read_procedure_meshes
-from rastrainer.procedure.plan import ProcedureTrajectory
+from rastrainer.procedure.plan import ProcedureTrajectory, read_procedure_meshes
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Mode, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.touch_registration import register_trial
+from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.virtual.scripted_trainee import Observation, ScriptedTrainee, Skill
 
 ANSWER_TIMEOUT_S = 60.0

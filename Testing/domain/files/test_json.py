@@ -9,8 +9,16 @@ import pytest
 from rastrainer import json_checks
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import read_fields
-from rastrainer.finite_json import MAX_DEPTH, MAX_MESSAGE_VALUES, decode_finite_json, decode_message
-from rastrainer.json_checks import Argument, accepted, checked_keys, is_number
+from rastrainer.json_checks import (
+    MAX_DEPTH,
+    MAX_MESSAGE_VALUES,
+    Argument,
+    accepted,
+    checked_keys,
+    decode_finite_json,
+    decode_message,
+    is_number,
+)
 
 
 def nested(levels: int, opening: str, closing: str) -> str:

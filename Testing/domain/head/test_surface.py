@@ -3,7 +3,7 @@
 import numpy as np
 import trimesh
 
-from rastrainer.head.surface_queries import hides, nearest_on_mesh, outward_normal
+from rastrainer.head.mesh import hides, nearest_on_mesh, outward_normal
 from Testing.domain.head.spheres import on_sphere, sphere_mesh
 
 

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from rastrainer.head.followed_points import FollowedPoints
-from rastrainer.head.surface_queries import nearest_on_mesh
-from rastrainer.head.triangle_tree import TriangleTree
+from rastrainer.head.mesh import nearest_on_mesh
+from rastrainer.head.triangle_tree import FollowedPoints, TriangleTree
 from Testing.domain.head.spheres import sphere_mesh
 from Testing.domain.registration.traces import colin27
 

@@ -12,8 +12,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client, LinkError
 from rastrainer.igtl.content import Command, CommandReply, String, Transform
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import Message, MessageReader, pack
 from Testing.free_port import free_port
 
 TIP = Message("Tip", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 6, 7)), timestamp=1)

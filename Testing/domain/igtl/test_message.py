@@ -8,8 +8,15 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
-from rastrainer.igtl.message import CONTENTS, HEADER_BYTES, Message, pack, read_header, unpack
-from rastrainer.igtl.wire import crc64
+from rastrainer.igtl.message import (
+    CONTENTS,
+    HEADER_BYTES,
+    Message,
+    crc64,
+    pack,
+    read_header,
+    unpack,
+)
 
 IDENTITY = Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))
 EVERY_CONTENT = [

@@ -8,8 +8,15 @@ import pyigtl
 import pytest
 
 from rastrainer.igtl.content import Point, Points, String
-from rastrainer.igtl.message import HEADER_BYTES, Message, pack, read_header, unpack
-from rastrainer.igtl.wire import crc64, plain_crc64
+from rastrainer.igtl.message import (
+    HEADER_BYTES,
+    Message,
+    crc64,
+    pack,
+    plain_crc64,
+    read_header,
+    unpack,
+)
 from Testing.domain.igtl.sent_pose import transform_of
 
 MATRIX = np.array([[0, -1, 0, 10.5], [1, 0, 0, -20.25], [0, 0, 1, 300.125], [0, 0, 0, 1]])

@@ -8,9 +8,16 @@ import struct
 import pytest
 
 from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
-from rastrainer.igtl.message import MAX_BODY_BYTES, Message, pack
-from rastrainer.igtl.stream import MAX_GARBAGE_BYTES, MAX_KEPT_BYTES, MessageReader, StreamError
-from rastrainer.igtl.wire import crc64
+from rastrainer.igtl.message import (
+    MAX_BODY_BYTES,
+    MAX_GARBAGE_BYTES,
+    MAX_KEPT_BYTES,
+    Message,
+    MessageReader,
+    StreamError,
+    crc64,
+    pack,
+)
 
 TIP = Message("Tip", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 5, 6, 7)), {"seq": "1"}, timestamp=1)
 STATE = Message("SimState", String('{"phase": "idle"}'), timestamp=1)

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from rastrainer.journal.folder_lock import LOCK_NAME, FolderHolder, lock, read_holder, write_holder
+from rastrainer.journal.folder import LOCK_NAME, FolderHolder, lock, read_holder, write_holder
 
 HOLDER = FolderHolder(
     4711, "2026-01-02T03:04:05.000+00:00", "Slicer", "127.0.0.1", 18944, "http://x"

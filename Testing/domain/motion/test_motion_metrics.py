@@ -5,7 +5,7 @@ import pytest
 import scipy.signal
 
 from rastrainer.errors import InputError
-from rastrainer.motion.path_metrics import (
+from rastrainer.motion.trajectory import (
     idle_time,
     log_dimensionless_jerk,
     low_pass,

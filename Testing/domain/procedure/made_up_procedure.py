@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.procedure.meshes import ProcedureMeshes
 from rastrainer.procedure.plan import (
     Checkpoint,
     NoGoStructure,
     Procedure,
     ProcedureKind,
+    ProcedureMeshes,
     ProcedureTrajectory,
 )
 from rastrainer.scenario.writer import new_folder, write_scenario

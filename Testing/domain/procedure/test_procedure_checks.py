@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.procedure.checks import check_procedure
-from rastrainer.procedure.line_measures import distances_to_no_go, measure_lines, planned_bone
-from rastrainer.procedure.meshes import ProcedureMeshes
-from rastrainer.procedure.plan import Checkpoint
+from rastrainer.procedure.checks import (
+    check_procedure,
+    distances_to_no_go,
+    measure_lines,
+    planned_bone,
+)
+from rastrainer.procedure.plan import Checkpoint, ProcedureMeshes
 from Testing.domain.procedure.made_up_procedure import (
     VESSEL_MM,
     made_up_meshes,

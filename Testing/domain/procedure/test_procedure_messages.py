@@ -6,7 +6,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.command_arguments import check_arguments, decode_answer_object, decode_json_object
-from rastrainer.finite_json import MAX_MESSAGE_VALUES, MAX_RECORD_VALUES
+from rastrainer.json_checks import MAX_MESSAGE_VALUES, MAX_RECORD_VALUES
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import MAX_TRAJECTORIES, ProcedureKind
 from rastrainer.procedure.record import (

@@ -9,8 +9,12 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import write_head_mesh
-from rastrainer.procedure.meshes import MAX_NO_GO_TRIANGLES, read_procedure_meshes
-from rastrainer.procedure.plan import ProcedureKind, procedure_json
+from rastrainer.procedure.plan import (
+    MAX_NO_GO_TRIANGLES,
+    ProcedureKind,
+    procedure_json,
+    read_procedure_meshes,
+)
 from rastrainer.scenario.package import pack, unpack
 from rastrainer.scenario.scenario import load_scenario
 from Testing.domain.procedure.made_up_procedure import (

@@ -9,7 +9,6 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.registration.surface_steps import rotations
 
 COLIN27 = Path(__file__).parents[3] / "assets" / "scenarios" / "colin27"
 
@@ -38,14 +37,16 @@ def places(mesh: HeadMesh, where: str) -> np.ndarray:
 
 def head_pose(random: np.random.Generator) -> np.ndarray:
     """RAS→World: turned at will, and up to some decimeters away."""
-    return transforms.rigid(rotations(random.normal(0, 1, (1, 3)))[0], random.normal(0, 200, 3))
+    return transforms.rigid(
+        transforms.rotations(random.normal(0, 1, (1, 3)))[0], random.normal(0, 200, 3)
+    )
 
 
 def coarse_start(
     random: np.random.Generator, head_to_world: np.ndarray, sd_mm: float = 3.0, sd_deg: float = 3.0
 ) -> np.ndarray:
     """World→RAS as three landmarks give it."""
-    turn = rotations(np.radians(random.normal(0, sd_deg, (1, 3))))[0]
+    turn = transforms.rotations(np.radians(random.normal(0, sd_deg, (1, 3))))[0]
     off = transforms.rigid(turn, random.normal(0, sd_mm, 3))
     return off @ transforms.inverse(head_to_world)
 

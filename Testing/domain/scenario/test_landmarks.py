@@ -7,8 +7,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.scenario.method_task import method_of, task_by_method
-from rastrainer.scenario.scenario import load_scenario
+from rastrainer.scenario.scenario import load_scenario, method_of, task_by_method
 from rastrainer_simulator.core.setup import landmarks_sha256, scenario_sha256
 from Testing.simulator.landmarked import write_landmarked
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from rastrainer.statistics.estimates import (
+from rastrainer.statistics.intervals import (
     Estimate,
     MeanSquare,
     coefficient,

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.registration.registration import register
-from rastrainer.trial.advice import advise
-from rastrainer.trial.touch_findings import Reason, touch_findings
+from rastrainer.trial.advice import Reason, advise, touch_findings
 from rastrainer.trial.trainee_progress import PastTrial, progress_of
 from rastrainer.trial.trial_feedback import MAX_SHORT, trial_feedback
 from rastrainer.trial.trueness import CommonBias

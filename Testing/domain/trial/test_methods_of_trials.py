@@ -14,10 +14,9 @@ from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.report import methods_note, with_one_method
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import SCORE_VERSION, ScoreMeasures, score_trial, score_version
-from rastrainer.trial.touch_registration import register_trial
+from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.assets import asset_path
 from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, with_landmarks
 

@@ -12,9 +12,8 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_arguments
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.submission import score_arguments
 from rastrainer_simulator.assets import asset_path
 from Testing.domain.procedure.procedure_records import recorded
 from Testing.domain.trial.trial_records import make_record

@@ -14,9 +14,8 @@ from rastrainer.report.sections.method_comparison import shifted_skin
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import StudyData, trial_rows
-from rastrainer.trial.analysis import RevealedTruth, analyze_trial
+from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_arguments
 from rastrainer.trial.record import TouchedPoint, TrialRecord
-from rastrainer.trial.submission import score_arguments
 from rastrainer.trial.touch_registration import unshifted_tre_mm
 from rastrainer_simulator.assets import asset_path
 from Testing.domain.report.test_report import words_of

@@ -11,7 +11,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.procedure.errors import analyze_procedure
-from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import UsedRegistration
 from rastrainer.procedure.score import ProcedureMeasures, reference_duration_s, score_procedure
 from rastrainer.registration.registration import register

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
+from rastrainer.head.mesh import nearest_on_mesh, outward_normal, read_head_mesh
 from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import expected_tre

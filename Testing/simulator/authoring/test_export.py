@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.head.mesh import nearest_on_mesh, read_head_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
 from rastrainer.scenario.package import unpack
 from rastrainer.scenario.scenario import load_scenario

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from rastrainer import transforms
-from rastrainer.head.surface_queries import nearest_on_mesh, outward_normal
+from rastrainer.head.mesh import nearest_on_mesh, outward_normal
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.transforms import MM_PER_M

@@ -7,7 +7,7 @@ import pytest
 
 from rastrainer.files.markups import write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.head.surface_queries import nearest_on_mesh, outward_normals
+from rastrainer.head.mesh import nearest_on_mesh, outward_normals
 from rastrainer.scenario.tasks import LABELS
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks

@@ -9,9 +9,8 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh, write_head_mesh
-from rastrainer.procedure.line_measures import distances_to_no_go
-from rastrainer.procedure.meshes import read_procedure_meshes
-from rastrainer.procedure.plan import ProcedureKind, read_procedure
+from rastrainer.procedure.checks import distances_to_no_go
+from rastrainer.procedure.plan import ProcedureKind, read_procedure, read_procedure_meshes
 from rastrainer.scenario.package import checked_scenario
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.tasks import PlannedTarget

@@ -9,8 +9,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.files.markups import write_markups
 from rastrainer.files.point_list import PointList
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.tasks import LABELS, PlannedTarget, PlannedTrajectory, read_task
 from rastrainer.scenario.writer import HeadDraft

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.procedure.errors import analyze_procedure
-from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.score import ProcedureMeasures, reference_duration_s, score_procedure
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.transforms import MM_PER_M

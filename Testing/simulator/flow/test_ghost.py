@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.journal.replay_track import read_track
+from rastrainer.journal.recording import read_track
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION

@@ -5,8 +5,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.protocol import Phase, RegistrationMethod
-from rastrainer.trial.given_points import GivenPoints
-from rastrainer.trial.touch_registration import register_trial
+from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.flow.pages.match import match_report
 from rastrainer_simulator.registration_state import TouchState, TracedPoint, TraceState
 from rastrainer_simulator.state import TrainingState

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from rastrainer.journal.replay_track import read_track
+from rastrainer.journal.recording import read_track
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation

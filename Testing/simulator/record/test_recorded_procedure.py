@@ -10,8 +10,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, read_journal
-from rastrainer.journal.recording import Recording, WholeRecording
-from rastrainer.journal.replay_track import read_track
+from rastrainer.journal.recording import Recording, WholeRecording, read_track
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.transforms import MM_PER_M

@@ -8,8 +8,8 @@ import pytest
 
 from rastrainer.command_arguments import check_arguments, decode_json_object
 from rastrainer.errors import InputError
-from rastrainer.finite_json import MAX_DEPTH
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, Integrity, read_journal
+from rastrainer.json_checks import MAX_DEPTH
 from rastrainer.protocol import CommandName
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.ops.stamps import stamp

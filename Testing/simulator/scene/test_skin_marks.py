@@ -3,8 +3,7 @@ import pytest
 import trimesh
 from scipy.spatial import cKDTree
 
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer_simulator.authoring.task_set import smooth_places
 from rastrainer_simulator.scene.skin import NUMBER_HEIGHT, RIM_RADIUS
 from rastrainer_simulator.scene.skin_marks import (

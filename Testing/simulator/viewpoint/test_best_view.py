@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.surface_queries import hides, outward_normals
+from rastrainer.head.mesh import hides, outward_normals, read_head_mesh
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.task_check import check_tasks

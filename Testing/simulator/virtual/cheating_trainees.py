@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.command_arguments import check_arguments
-from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.surface_queries import outward_normal
+from rastrainer.head.mesh import outward_normal, read_head_mesh
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import CommandName, Proximity, TouchRule

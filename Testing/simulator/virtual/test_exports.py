@@ -14,7 +14,7 @@ import vtk
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.journal.folder import read_trajectory
+from rastrainer.journal.recording import read_trajectory
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.study.database.study import Study

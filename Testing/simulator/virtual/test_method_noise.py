@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import hides
+from rastrainer.head.mesh import HeadMesh, hides
 from rastrainer.protocol import RegistrationMethod
 from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, RangeCamera
 from Testing.domain.registration.traces import colin27

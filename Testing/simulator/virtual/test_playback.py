@@ -16,7 +16,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import journals
 from rastrainer.journal.journal_file import read_journal
-from rastrainer.journal.replay_track import read_track
+from rastrainer.journal.recording import read_track
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main

@@ -8,7 +8,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.procedure.errors import analyze_procedure
-from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.report.sections.procedures import procedures
 from rastrainer.scenario.scenario import load_scenario

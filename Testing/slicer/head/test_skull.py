@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rastrainer.head.surface_queries import nearest_on_mesh
+from rastrainer.head.mesh import nearest_on_mesh
 from rastrainer.procedure.geometry import bone_ahead
 from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.head_draft import makeDraft

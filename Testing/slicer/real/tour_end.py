@@ -128,7 +128,7 @@ def start_and_stop(tour: Tour) -> str:
 
 def _group_of_simulator(tour: Tour) -> int:
     """Return the number of the process group of the simulator; on Windows, of its process."""
-    from rastrainer.journal.folder_lock import read_holder
+    from rastrainer.journal.folder import read_holder
 
     holder = read_holder(tour.session.places.records)
     tour.hands.must(holder and holder.pid, "The simulator does not say who it is.")

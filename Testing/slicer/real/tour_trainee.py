@@ -104,7 +104,7 @@ def _checkpoint(scenario: Any, header: dict[str, Any], number: int) -> tuple[Any
 def _depth(scenario: Any, header: dict[str, Any], is_drill: bool) -> float:
     """Return how far drill or instrument must be beyond the guide's tip on the first line, mm."""
     from rastrainer.procedure.checks import planned_bone
-    from rastrainer.procedure.meshes import read_procedure_meshes
+    from rastrainer.procedure.plan import read_procedure_meshes
 
     procedure = scenario.procedure(header["procedure"]["name"])
     line = procedure.trajectories[0]

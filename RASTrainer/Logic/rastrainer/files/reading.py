@@ -13,7 +13,7 @@ from typing import Any
 from xml.parsers import expat
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.json_checks import decode_finite_json
 
 
 def read_bytes(path: str | os.PathLike[str], limit_bytes: int) -> bytes:

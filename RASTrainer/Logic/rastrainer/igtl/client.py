@@ -16,8 +16,7 @@ from typing import Any
 from rastrainer.command_arguments import decode_answer_object
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS, Command, CommandReply
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName
 
 PATIENCE_S = 60.0

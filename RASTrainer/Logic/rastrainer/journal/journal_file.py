@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import MAX_DEPTH, decode_finite_json
+from rastrainer.json_checks import MAX_DEPTH, decode_finite_json
 
 FORMAT = "rastrainer-trial-journal"
 FORMAT_VERSION = 1

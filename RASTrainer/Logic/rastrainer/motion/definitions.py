@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rastrainer.motion.path_metrics import (
+from rastrainer.motion.trajectory import (
     CUTOFF_HZ,
+    FAR_MM,
     IDLE_DURATION_S,
     IDLE_SPEED_MM_S,
+    INTENDED_MM,
+    NEAR_MM,
+    RELEASED_MM,
     SPARC_CUTOFF_HZ,
     SPARC_PAD_LEVEL,
     SPARC_THRESHOLD,
+    TOUCHING_MM,
 )
-from rastrainer.motion.trajectory import FAR_MM, INTENDED_MM, NEAR_MM, RELEASED_MM, TOUCHING_MM
 from rastrainer.motion.trial_motion import ACCEPTANCE_MM, DWELL_RADIUS_MM, RATE_HZ
 
 OWN = "RASTrainer"

@@ -22,21 +22,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.motion.path_metrics import (
+from rastrainer.motion.trajectory import (
+    Interval,
+    Touch,
+    Trajectory,
     idle_time,
     log_dimensionless_jerk,
     low_pass,
     path_efficiency,
     path_length,
+    pressing_depth,
     resample,
     sparc,
     speeds,
-)
-from rastrainer.motion.trajectory import (
-    Interval,
-    Touch,
-    Trajectory,
-    pressing_depth,
     unintended_contact,
 )
 

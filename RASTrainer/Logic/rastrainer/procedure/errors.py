@@ -29,8 +29,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.procedure.geometry import BoneAhead, angle_deg, axis_distance_mm, bone_ahead
-from rastrainer.procedure.meshes import ProcedureMeshes
-from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
+from rastrainer.procedure.plan import Procedure, ProcedureMeshes, ProcedureTrajectory
 from rastrainer.procedure.record import DEPTH_LIMIT_MM, PlacedInstrument, ProcedureRecord
 
 SAME_MM = 1e-3

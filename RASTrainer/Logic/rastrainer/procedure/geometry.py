@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import nearest_on_mesh, normal_at
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, normal_at
 
 DIPLOE_MM = 5.0
 """Gaps in bone up to this length belong to it: the marrow between both tables is dark in a CT."""

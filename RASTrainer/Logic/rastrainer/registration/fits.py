@@ -3,7 +3,7 @@
 All points are (n, 3) float in mm; every fit maps `moving` to `fixed` and minimizes the squared
 distances in the fixed space (the similarity's scale is an exception, described there). A rigid fit
 may weight the points, and minimizes Σ wᵢ|T(mᵢ) − fᵢ|² then (Horn 1987). The inputs are assumed to
-be valid: `rastrainer.registration.checks` checks them.
+be valid: `rastrainer.registration.registration` checks them.
 """
 
 from __future__ import annotations
@@ -83,6 +83,12 @@ def rigid_sums_of_squares(
     gain = singular[..., 0] + singular[..., 1] + sign * singular[..., 2]
     total = (weights * (a**2 + b**2)).sum(axis=(-1, -2))
     return np.maximum(total - 2.0 * gain, 0.0)
+
+
+def extents(points: np.ndarray) -> np.ndarray:
+    """Return the RMS extents of the points along their principal axes, (3,) float, falling."""
+    centered = points - points.mean(axis=0)
+    return np.linalg.svd(centered, compute_uv=False) / np.sqrt(len(points))
 
 
 def _rotation(moving: np.ndarray, fixed: np.ndarray, weights: np.ndarray | None) -> np.ndarray:

@@ -16,19 +16,159 @@ repeated from many places about as far off as the pose is uncertain, and the low
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
+
 import numpy as np
 from numpy.random import default_rng
 
-from rastrainer.head.followed_points import FollowedPoints
+from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.triangle_tree import NearestPoints
-from rastrainer.registration.surface_steps import (
-    SurfaceFit,
-    plane_normals,
-    rotations,
-    transforms_of,
-    whole_step,
-)
+from rastrainer.head.triangle_tree import FollowedPoints, NearestPoints
+
+STEP_MM = 10.0
+"""No step moves a point of the trace farther: the nearest points are others there."""
+_DAMPING = 1e-7
+"""Of the curvature's trace: a direction that the points leave open is not followed far."""
+
+
+@dataclass(frozen=True)
+class SurfaceFit:
+    """Where each of s starts ended, with n points.
+
+    Attributes:
+        matrices: (s, 4, 4) float, World→RAS, mm.
+        distances_mm: (s, n) float, to the surface.
+        nearest_mm: (s, n, 3) float, RAS, the nearest points.
+        triangles: (s, n) int, which they lie on.
+        converged: (s,) bool.
+        iterations: (s,) int.
+    """
+
+    matrices: np.ndarray
+    distances_mm: np.ndarray
+    nearest_mm: np.ndarray
+    triangles: np.ndarray
+    converged: np.ndarray
+    iterations: np.ndarray
+
+    def taken(self, rows: np.ndarray) -> SurfaceFit:
+        """Return the fit of some of the starts."""
+        return SurfaceFit(*(getattr(self, field.name)[rows] for field in fields(self)))
+
+    def joined(self, other: SurfaceFit) -> SurfaceFit:
+        """Return these fits and others of the same points."""
+        pairs = ((getattr(one, field.name) for one in (self, other)) for field in fields(self))
+        return SurfaceFit(*(np.concatenate(list(pair)) for pair in pairs))
+
+
+def plane_normals(mesh: HeadMesh, fit: SurfaceFit, points: np.ndarray) -> np.ndarray:
+    """Return the unit directions (s, n, 3) in which the distances grow.
+
+    It is the line from the nearest point; for a point on the surface, the triangle's normal.
+    """
+    offsets = transforms.apply_each(fit.matrices, points) - fit.nearest_mm
+    distances = fit.distances_mm[..., None]
+    normals = offsets / np.where(distances > 0.0, distances, 1.0)
+    close = np.nonzero(fit.distances_mm < 1e-6)
+    if len(close[0]):
+        normals[close] = mesh.triangle_normals[fit.triangles[close]]
+    return normals
+
+
+@dataclass(frozen=True)
+class WholeStep:
+    """The whole steps of s starts.
+
+    Attributes:
+        shifts: (s, 3) float, mm, of the trace's center.
+        turns: (s, 3) float, rad, about it.
+        centers: (s, 3) float, RAS mm.
+        slope: (s,) float, mm², by how much the cost changes along the step, to first order.
+    """
+
+    shifts: np.ndarray
+    turns: np.ndarray
+    centers: np.ndarray
+    slope: np.ndarray
+
+    def taken_by(
+        self, share: np.ndarray, here: SurfaceFit, points: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return matrices, the points' places, and the longest move after a share (s,) of it."""
+        turn = transforms.rotations(share[:, None] * self.turns)
+        moved = np.zeros_like(here.matrices)
+        moved[:, :3, :3] = turn @ here.matrices[:, :3, :3]
+        from_center = here.matrices[:, :3, 3] - self.centers
+        moved[:, :3, 3] = (turn @ from_center[..., None])[..., 0] + self.centers
+        moved[:, :3, 3] += share[:, None] * self.shifts
+        moved[:, 3, 3] = 1.0
+        places = transforms.apply_each(moved, points)
+        moves = places - transforms.apply_each(here.matrices, points)
+        return moved, places, np.sqrt(np.einsum("sni,sni->sn", moves, moves).max(axis=1))
+
+
+def whole_step(
+    points: np.ndarray, mesh: HeadMesh, here: SurfaceFit, gate: np.ndarray, is_near: np.ndarray
+) -> WholeStep:
+    """Return the steps of Gauss and Newton; of starts (s,) bool near their ends, of Newton."""
+    places = transforms.apply_each(here.matrices, points)
+    center = places.mean(axis=1)
+    arms = places - center[:, None]
+    # Rotations are counted in mm at the trace's own extent, so that all parameters are alike.
+    extent = np.sqrt(np.mean(np.sum(arms**2, axis=2), axis=1))
+    normals = plane_normals(mesh, here, points)
+    rows = np.concatenate(
+        [normals, transforms.cross_products(arms, normals) / extent[:, None, None]], axis=2
+    )
+    weighted = rows * (here.distances_mm <= gate[:, None])[..., None]
+    hessian = np.swapaxes(weighted, 1, 2) @ rows
+    if is_near.any():
+        gate = np.where(is_near, gate, -1.0)
+        _add_bends(hessian, mesh, here, normals, arms, extent, gate)
+    gradient = np.einsum("sni,sn->si", weighted, here.distances_mm)
+    scale = np.trace(hessian, axis1=1, axis2=2) * _DAMPING + 1e-12
+    step = -np.linalg.solve(hessian + scale[:, None, None] * np.eye(6), gradient[..., None])[..., 0]
+    reach = np.linalg.norm(step[:, :3], axis=1) + np.linalg.norm(step[:, 3:], axis=1)
+    step *= np.minimum(1.0, STEP_MM / np.maximum(reach, 1e-12))[:, None]
+    slope = 2.0 * np.einsum("si,si->s", gradient, step)
+    return WholeStep(step[:, :3], step[:, 3:] / extent[:, None], center, slope)
+
+
+def _add_bends(
+    hessian: np.ndarray,
+    mesh: HeadMesh,
+    here: SurfaceFit,
+    normals: np.ndarray,
+    arms: np.ndarray,
+    extent: np.ndarray,
+    gate: np.ndarray,
+) -> None:
+    """Add to the curvature (s, 6, 6) of points within gates (s,) what edges and corners add.
+
+    The squared distance to a plane bends along its normal alone, that to an edge also across the
+    edge, and that to a corner in all directions.
+    """
+    own = np.abs(np.einsum("sni,sni->sn", normals, mesh.triangle_normals[here.triangles]))
+    which, point = np.nonzero((own < 1.0 - 1e-7) & (here.distances_mm <= gate[:, None]))
+    if not len(which):
+        return
+    corners = mesh.vertices[mesh.triangles[here.triangles[which, point]]]
+    along = np.roll(corners, -1, axis=1) - corners
+    along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-12)
+    off = here.nearest_mm[which, point][:, None] - corners
+    is_on = np.linalg.norm(np.cross(off, along), axis=2) < 1e-6
+    normal = normals[which, point]
+    edge = along[np.arange(len(which)), is_on.argmax(axis=1)]
+    across = np.cross(edge, normal)
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    across *= is_on.any(axis=1)[:, None]
+    is_corner = is_on.sum(axis=1) > 1
+    third = np.cross(normal, across) * is_corner[:, None]
+    for direction in (across, third):
+        turning = transforms.cross_products(arms[which, point], direction) / extent[which][:, None]
+        rows = np.concatenate([direction, turning], axis=1)
+        np.add.at(hessian, which, rows[:, :, None] * rows[:, None, :])
+
 
 MAX_ITERATIONS = 60
 FOLLOWED_MM = 1.0
@@ -134,10 +274,10 @@ def fit_to_surface(
 def _followed(
     points: np.ndarray, mesh: HeadMesh, starts: np.ndarray, around: np.ndarray | None
 ) -> FollowedPoints:
-    places = transforms_of(starts, points)
+    places = transforms.apply_each(starts, points)
     if around is None:
         return FollowedPoints(mesh.tree, places.reshape(-1, 3), 0.0)
-    middle = transforms_of(around[None], points)[0]
+    middle = transforms.apply_each(around[None], points)[0]
     slack = AROUND * np.linalg.norm(places - middle, axis=2) + AROUND_MM
     followed = FollowedPoints(mesh.tree, middle, slack.max(axis=0))
     followed.repeat(slack)
@@ -213,7 +353,7 @@ def _moved(
 ) -> np.ndarray:
     """Return matrices (NEARBY, 4, 4) about that of a fit, by the covariance of its pose."""
     counts = fit.distances_mm[0] <= gate_mm
-    places = transforms_of(fit.matrices, points)[0]
+    places = transforms.apply_each(fit.matrices, points)[0]
     center = places.mean(axis=0)
     extent = float(np.sqrt(np.mean(np.sum((places - center) ** 2, axis=1))))
     normals = plane_normals(mesh, fit, points)[0][counts]
@@ -223,6 +363,6 @@ def _moved(
     sizes = np.minimum(np.resize(NEARBY_SD, (NEARBY, 1)) * np.sqrt(variance), NEARBY_MM)
     steps = (default_rng([seed, 1]).normal(size=(NEARBY, 6)) * sizes) @ axes.T
     moved = np.tile(np.eye(4), (NEARBY, 1, 1))
-    moved[:, :3, :3] = rotations(steps[:, 3:] / extent)
+    moved[:, :3, :3] = transforms.rotations(steps[:, 3:] / extent)
     moved[:, :3, 3] = center - moved[:, :3, :3] @ center + steps[:, :3]
     return np.asarray(moved @ fit.matrices[0])

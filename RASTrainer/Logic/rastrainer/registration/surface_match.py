@@ -15,15 +15,16 @@ from rastrainer.registration.surface_checks import (
     check_surface,
     check_trace,
     find_match_warnings,
+    slide_of,
     thinned,
 )
-from rastrainer.registration.surface_fit import costs, fit_to_surface, gates, lowest_nearby
-from rastrainer.registration.surface_slide import SurfaceSlide, slide_of
-from rastrainer.registration.surface_steps import (
+from rastrainer.registration.surface_fit import (
     SurfaceFit,
+    costs,
+    fit_to_surface,
+    gates,
+    lowest_nearby,
     plane_normals,
-    rotations,
-    transforms_of,
 )
 from rastrainer.registration.warnings import RegistrationWarning
 
@@ -45,7 +46,7 @@ SAME_MINIMUM_MM = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class SurfaceMatch:
+class SurfaceMatch(MatchMeasures):
     """The fit of a trace to the surface of a head, and how far it can be trusted.
 
     Attributes:
@@ -57,8 +58,6 @@ class SurfaceMatch:
         normals: (n, 3) float, RAS, unit directions in which the residuals grow.
         is_inlier: (n,) bool, whether a point counts; the others are too far off.
         iterations: Steps to the best fit.
-        measures: How good the match is, as numbers; also as `rms_mm`, `inlier_share`, `converged`,
-            `starts`, `best_starts`, `spread_mm` and `slide` of the match itself.
         warnings: What looks wrong, to be shown before the match is accepted.
     """
 
@@ -70,43 +69,7 @@ class SurfaceMatch:
     normals: np.ndarray
     is_inlier: np.ndarray
     iterations: int
-    measures: MatchMeasures
     warnings: tuple[RegistrationWarning, ...]
-
-    @property
-    def rms_mm(self) -> float:
-        """Root mean square of the inliers' residuals. It does not predict the target error."""
-        return self.measures.rms_mm
-
-    @property
-    def inlier_share(self) -> float:
-        """Share of the points that count."""
-        return self.measures.inlier_share
-
-    @property
-    def converged(self) -> bool:
-        """Whether the best fit has stopped to move."""
-        return self.measures.converged
-
-    @property
-    def starts(self) -> int:
-        """Number of starts."""
-        return self.measures.starts
-
-    @property
-    def best_starts(self) -> int:
-        """How many of the starts ended in the best minimum."""
-        return self.measures.best_starts
-
-    @property
-    def spread_mm(self) -> float:
-        """Largest distance at the head's center between the best and where another start ended."""
-        return self.measures.spread_mm
-
-    @property
-    def slide(self) -> SurfaceSlide:
-        """The direction in which the trace determines the head least."""
-        return self.measures.slide
 
 
 def match_surface(
@@ -162,7 +125,7 @@ def _starts_about(
     shifts[0], turns[0] = 0.0, 0.0
     center = transforms.apply(start, points.mean(axis=0))
     turned = np.tile(np.eye(4), (count, 1, 1))
-    turned[:, :3, :3] = rotations(turns)
+    turned[:, :3, :3] = transforms.rotations(turns)
     turned[:, :3, 3] = center + shifts - turned[:, :3, :3] @ center
     return turned @ start
 
@@ -286,6 +249,7 @@ def _match(
     for values in (matrix, nearest.positions, nearest.distances, normals, is_inlier):
         values.flags.writeable = False
     return SurfaceMatch(
+        **vars(measures),
         matrix=matrix,
         trace_mm=trace,
         nearest_mm=nearest.positions,
@@ -294,7 +258,6 @@ def _match(
         normals=normals,
         is_inlier=is_inlier,
         iterations=int(fit.iterations[0]),
-        measures=measures,
         warnings=find_match_warnings(measures, nearest.distances, is_inlier),
     )
 
@@ -302,7 +265,7 @@ def _match(
 def _apart(matrix: np.ndarray, others: np.ndarray, mesh: HeadMesh) -> np.ndarray:
     """Return how far other matrices (s, 4, 4) put the head's center from where one does, mm."""
     center = transforms.apply(transforms.inverse(matrix), mesh.middle)
-    return np.linalg.norm(transforms_of(others, center[None])[:, 0] - mesh.middle, axis=1)
+    return np.linalg.norm(transforms.apply_each(others, center[None])[:, 0] - mesh.middle, axis=1)
 
 
 def _rivals(fit: SurfaceFit, mesh: HeadMesh, gate: float) -> int:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import POINTS_AT_ONCE, nearest_vertices
+from rastrainer.head.mesh import POINTS_AT_ONCE, HeadMesh, nearest_vertices
 from rastrainer.protocol import MAX_TRACE_POINTS
 from rastrainer.registration.surface_error import DAB, NextPlace, knowledge_so_far, next_best_place
 

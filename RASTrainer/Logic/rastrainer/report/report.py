@@ -33,7 +33,7 @@ from rastrainer.report.sections.raters import raters
 from rastrainer.report.sections.trainees import curricula, groups, questionnaires
 from rastrainer.report.sections.variation import variation
 from rastrainer.statistics.few_subjects import FEW_SUBJECTS
-from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.statistics.intervals import scipy_module
 from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.study_data import StudyData
 

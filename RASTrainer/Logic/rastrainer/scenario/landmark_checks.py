@@ -7,9 +7,8 @@ from itertools import combinations
 
 import numpy as np
 
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import nearest_on_mesh
-from rastrainer.scenario.method_task import COARSE_LANDMARKS
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
+from rastrainer.protocol import COARSE_LANDMARKS
 from rastrainer.scenario.tasks import MAX_LANDMARKS, Landmark
 
 NASION, NOSE_TIP = "Nasion", "Tip of the nose"

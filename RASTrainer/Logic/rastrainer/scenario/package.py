@@ -15,7 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
 from rastrainer.procedure.checks import unusable_lines
-from rastrainer.procedure.meshes import read_all_no_go, read_procedure_meshes
+from rastrainer.procedure.plan import read_all_no_go, read_procedure_meshes
 from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario, load_scenario
 from rastrainer.scenario.writer import new_folder, write_scenario

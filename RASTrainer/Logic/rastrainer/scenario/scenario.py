@@ -2,12 +2,15 @@
 
 A scenario is a folder with `scenario.json`, the head's mesh, one `.mrk.json` file per task and,
 optionally, the images of the head.
+
+A trial that is registered without fiducials belongs to a task all the same: to its number in the
+study, and to what is compared with it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +24,12 @@ from rastrainer.head.skin_shift import UNMOVED, SkinShift, read_skin
 from rastrainer.head.volume import VolumeFile, read_volume_file
 from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
 from rastrainer.procedure.plan import Procedure, read_procedures
-from rastrainer.protocol import WORLD_LIMIT_MM
+from rastrainer.protocol import (
+    COARSE_LANDMARKS,
+    PLAYED_METHODS,
+    WORLD_LIMIT_MM,
+    RegistrationMethod,
+)
 from rastrainer.scenario.tasks import (
     Landmark,
     PlannedTarget,
@@ -279,3 +287,47 @@ def _array(values: list[float] | np.ndarray) -> np.ndarray:
     array = np.array(values, dtype=float)
     array.setflags(write=False)
     return array
+
+
+def method_of(name: str | None) -> RegistrationMethod:
+    """Return the method of a trial by its name; none stands for fiducials.
+
+    Raises:
+        InputError: no trial is played by it.
+    """
+    for method in PLAYED_METHODS:
+        if method.value == (name or RegistrationMethod.FIDUCIALS.value):
+            return method
+    names = ", ".join(method.value for method in PLAYED_METHODS)
+    raise InputError(f"No trial is registered by such a method; there are {names}.")
+
+
+def playable_methods(scenario: Scenario) -> tuple[RegistrationMethod, ...]:
+    """Return the methods by which a trial of a scenario can be played, fiducials first."""
+    has_landmarks = len(scenario.landmarks) >= COARSE_LANDMARKS
+    return PLAYED_METHODS if has_landmarks else PLAYED_METHODS[:1]
+
+
+def task_by_method(scenario: Scenario, task_name: str, method: RegistrationMethod) -> Task:
+    """Return a task with the points that a method has touched in place of its fiducials.
+
+    Raises:
+        InputError: the scenario has no such task, or too few landmarks for the method.
+    """
+    task = scenario.task(task_name)
+    if method is RegistrationMethod.FIDUCIALS:
+        return task
+    landmarks = scenario.landmarks
+    if len(landmarks) < COARSE_LANDMARKS:
+        raise InputError(
+            f"The scenario {scenario.name} has {len(landmarks)} landmarks, and a trial by "
+            f"{method.value} needs {COARSE_LANDMARKS}: add them to its scenario.json, or choose "
+            "fiducials."
+        )
+    if method is RegistrationMethod.SURFACE:
+        landmarks = landmarks[:COARSE_LANDMARKS]
+    places = np.array([landmark.position for landmark in landmarks], dtype=float)
+    places.setflags(write=False)
+    labels = tuple(landmark.name for landmark in landmarks)
+    # The shortest path is that through the fiducials.
+    return replace(task, labels=labels, fiducials=places, shortest_path_mm=None)

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.estimates import TAIL, t_quantile
-from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.statistics.intervals import TAIL, scipy_module, t_quantile
 
 FEWEST = 3
 """Of two rated objects, no agreement can be computed."""

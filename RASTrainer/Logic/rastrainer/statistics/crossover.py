@@ -13,8 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.statistics.intervals import CONFIDENCE
-from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.statistics.intervals import CONFIDENCE, scipy_module
 
 MIN_SUBJECTS = 4
 """Difference and period take two; one degree of freedom for the variance is not enough."""

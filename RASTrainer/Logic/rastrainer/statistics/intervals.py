@@ -1,14 +1,38 @@
-"""Effect sizes, correlations and proportions with intervals, and the power of paired tests."""
+"""Estimates with their intervals, and the power of paired tests."""
 
 from __future__ import annotations
 
+import functools
+import importlib
 import math
 from dataclasses import dataclass
+from types import ModuleType
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.scipy_modules import scipy_module
+
+
+def scipy_module(name: str) -> ModuleType:
+    """Return a module of scipy, such as `stats`, imported when first needed.
+
+    3D Slicer includes scipy; the simulator's installation needs it only for reports, power
+    calculations and groups of trainees. Trials and registration use numpy alone
+    (`rastrainer.registration.distributions`).
+
+    Raises:
+        InputError: scipy is not installed.
+    """
+    try:
+        return importlib.import_module(f"scipy.{name}")
+    except ModuleNotFoundError as error:
+        if not (error.name or "").startswith("scipy"):
+            raise
+        raise InputError(
+            "The statistics of studies need scipy, which is not installed here: "
+            "pip install scipy (3D Slicer brings it along)."
+        ) from None
+
 
 CONFIDENCE = 0.95
 
@@ -193,3 +217,98 @@ def proportion(count: int, total: int) -> Proportion:
     """
     interval = scipy_module("stats").binomtest(count, total).proportion_ci(0.95, "wilson")
     return Proportion(count, total, (float(interval.low), float(interval.high)))
+
+
+TAIL = (1 - CONFIDENCE) / 2
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value and its 95 % interval."""
+
+    value: float
+    interval: tuple[float, float]
+
+    def __neg__(self) -> Estimate:
+        low, high = self.interval
+        return Estimate(-self.value, (-high, -low))
+
+    def holds(self, truth: float) -> bool:
+        """Return whether the interval contains a true value."""
+        return self.interval[0] <= truth <= self.interval[1]
+
+
+@dataclass(frozen=True)
+class MeanSquare:
+    """A mean square σ²·χ²/dof and its degrees of freedom."""
+
+    value: float
+    dof: float
+
+
+def coefficient(value: float, error: float, dof: float) -> Estimate:
+    """Return a normal estimate whose standard error has so many degrees of freedom."""
+    reach = t_quantile(dof) * error
+    return Estimate(value, (value - reach, value + reach))
+
+
+def mean(values: np.ndarray) -> Estimate:
+    """Return the mean of (n,) float independent values, n ≥ 2."""
+    error = float(values.std(ddof=1)) / math.sqrt(len(values))
+    return coefficient(float(values.mean()), error, len(values) - 1)
+
+
+def variance(square: MeanSquare) -> Estimate:
+    """Return the variance that a mean square estimates."""
+    low, high = (chi2_ratio(tail, square.dof) for tail in (TAIL, 1 - TAIL))
+    return Estimate(square.value, (square.value / high, square.value / low))
+
+
+def difference(first: MeanSquare, second: MeanSquare) -> Estimate:
+    """Return the difference of the variances that two independent mean squares estimate.
+
+    The limits are those of Ting et al. (1990), the modified large-sample interval of Burdick and
+    Graybill (1992). They may be below 0.
+    """
+    one, other = first.value, second.value
+    difference_ = one - other
+    products = np.array([one**2, other**2, one * other])
+    low, high = (
+        products @ factors
+        for factors in (
+            _factors(TAIL, first.dof, second.dof),
+            _factors(1 - TAIL, first.dof, second.dof),
+        )
+    )
+    return Estimate(
+        difference_,
+        (difference_ - math.sqrt(max(low, 0.0)), difference_ + math.sqrt(max(high, 0.0))),
+    )
+
+
+@functools.lru_cache(maxsize=256)
+def _factors(tail: float, dof: float, other_dof: float) -> np.ndarray:
+    """Return the factors of both squares and of their product in the square of one reach.
+
+    Args:
+        tail: Probability above the quantile of the first mean square: small for the lower limit.
+        dof: Of the first mean square.
+        other_dof: Of the second.
+    """
+    own = 1 - 1 / chi2_ratio(1 - tail, dof)
+    others = 1 - 1 / chi2_ratio(tail, other_dof)
+    ratio = float(scipy_module("stats").f.isf(tail, dof, other_dof))
+    product = ((ratio - 1) ** 2 - (own * ratio) ** 2 - others**2) / ratio
+    return np.array([own**2, others**2, product])
+
+
+@functools.lru_cache(maxsize=256)
+def t_quantile(dof: float) -> float:
+    """Return by how many standard errors a 95 % interval reaches to either side."""
+    return float(scipy_module("stats").t.isf(TAIL, dof))
+
+
+@functools.lru_cache(maxsize=256)
+def chi2_ratio(probability: float, dof: float) -> float:
+    """Return the quantile of χ²/dof."""
+    return float(scipy_module("stats").chi2.ppf(probability, dof)) / dof

@@ -20,9 +20,9 @@ from rastrainer.statistics.crossover import (
 from rastrainer.statistics.intervals import (
     CONFIDENCE,
     noncentrality_interval,
+    scipy_module,
     small_sample_factor,
 )
-from rastrainer.statistics.scipy_modules import scipy_module
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from rastrainer.errors import RASTrainerError
 from rastrainer.number_text import p_phrase
-from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.statistics.intervals import scipy_module
 
 MIN_TRAINEES = 12
 TRAINEES_A_CLUSTER = 5

@@ -19,8 +19,7 @@ from enum import Enum
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.intervals import CONFIDENCE
-from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.statistics.intervals import CONFIDENCE, scipy_module
 
 ALPHA = 0.05
 MIN_TRIALS = 4

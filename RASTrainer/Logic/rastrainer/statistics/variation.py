@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.statistics.estimates import (
+from rastrainer.statistics.intervals import (
     Estimate,
     MeanSquare,
     coefficient,

@@ -15,11 +15,11 @@ from rastrainer.protocol import (
     FIDUCIAL_COUNT,
     MIN_ABORTED_S,
     OPEN_PHASES,
+    TRACED_METHODS,
     TRIAL_RUN,
     Phase,
     RegistrationMethod,
 )
-from rastrainer.scenario.method_task import TRACED_METHODS
 from rastrainer.trial.record import (
     MAX_TRACE_POINTS,
     SHARED_CHECKS,

@@ -1,4 +1,4 @@
-"""From a trial's record to its numbers: registrations, target errors, scores."""
+"""From a trial's record to its numbers: registrations, target errors, scores, what is submitted."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ from rastrainer.registration.target_error import TargetError
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial import ctps
 from rastrainer.trial.advice import advise
-from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import region_of, score_reference
@@ -31,6 +30,8 @@ from rastrainer.trial.scoring import (
     score_version,
 )
 from rastrainer.trial.touch_registration import (
+    GivenPoints,
+    TouchRegistration,
     normals_at,
     register_trial,
     skin_sentence,
@@ -264,3 +265,46 @@ def published_score(
         ctps.equation_3_ctps(time, fre_mm, reference),
         reference,
     )
+
+
+def registration_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
+    """Return the arguments of SubmitRegistration, ready for JSON.
+
+    Slicer sends them over OpenIGTLink; a simulator that no Slicer is connected to gives them to
+    itself.
+    """
+    registered = TouchRegistration(analysis.fits, analysis.target_errors)
+    return registered.arguments(analysis.record.trial_id)
+
+
+def score_arguments(analysis: TrialAnalysis) -> dict[str, Any]:
+    """Return the arguments of TrialScored for a trial with truth and score, ready for JSON."""
+    score, progress = analysis.score, analysis.feedback.progress
+    procedure = {} if analysis.procedure is None else {"procedure": analysis.procedure.summary()}
+    # What was analyzed with its truth has a score.
+    assert score is not None
+    published = analysis.published_score
+    # A trial run has no progress, and no mark; null is a study's without a mark for this version.
+    mark = {} if progress is None else {"passMark": progress.pass_mark}
+    return {
+        "trialId": analysis.record.trial_id,
+        "score": score.score,
+        "details": {
+            "scoreVersion": score.version,
+            "residualsMm": analysis.rigid.residuals_mm.tolist(),
+            "treIntervalMm": list(analysis.expected_tre.interval_mm),
+            "regionTreMm": score.measures.tre_mm,
+            "commonBiasMm": score.measures.common_bias_mm,
+            "timeDesirability": score.time_desirability,
+            "accuracyDesirability": score.accuracy_desirability,
+            "safetyDesirability": score.safety_desirability,
+            "isAccurate": score.is_accurate,
+            "isUnbiased": score.is_unbiased,
+            "isSafe": score.is_safe,
+            "ctps": None if published is None else published.published,
+            "warnings": [warning.message for warning in analysis.rigid.warnings],
+            **mark,
+            "feedback": [each.to_json() for each in analysis.feedback.short_sentences],
+            **procedure,
+        },
+    }

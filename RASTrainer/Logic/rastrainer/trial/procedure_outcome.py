@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.errors import ProcedureAnalysis, TrajectoryErrors, analyze_procedure
-from rastrainer.procedure.meshes import read_procedure_meshes
+from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.score import (
     ProcedureMeasures,
     ProcedureScore,

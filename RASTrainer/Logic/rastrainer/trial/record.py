@@ -18,15 +18,17 @@ from rastrainer.head.skin_shift import UNMOVED, SkinShift
 from rastrainer.json_checks import Argument, checked_keys
 from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.protocol import (
+    COARSE_LANDMARKS,
     FIDUCIAL_COUNT,
     MAX_TRACE_POINTS,
     MIN_TRACE_POINTS,
+    PLAYED_METHODS,
+    TRACED_METHODS,
     WORLD_LIMIT_MM,
     Mode,
     RegistrationMethod,
     TouchRule,
 )
-from rastrainer.scenario.method_task import COARSE_LANDMARKS, PLAYED_METHODS, TRACED_METHODS
 
 TIME_LIMIT_S = 1e6
 TOUCH_LIMIT = 1_000_000

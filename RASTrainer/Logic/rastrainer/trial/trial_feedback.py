@@ -10,7 +10,7 @@ import numpy as np
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.registration.registration import Registration
-from rastrainer.trial.advice import Advice, advise
+from rastrainer.trial.advice import Advice, TouchFinding, advise, touch_findings
 from rastrainer.trial.scoring import (
     COMMON_BIAS_LIMIT_MM,
     CONTACT_LIMIT_S,
@@ -21,7 +21,6 @@ from rastrainer.trial.scoring import (
     SafetyMeasures,
     TrialScore,
 )
-from rastrainer.trial.touch_findings import TouchFinding, touch_findings
 from rastrainer.trial.trainee_progress import TraineeProgress
 from rastrainer.trial.trueness import CommonBias
 from rastrainer.trial.wording import Sentence, say

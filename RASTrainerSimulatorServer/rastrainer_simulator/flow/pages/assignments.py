@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rastrainer.scenario.method_task import method_of
+from rastrainer.scenario.scenario import method_of
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.chosen_trial import start_task

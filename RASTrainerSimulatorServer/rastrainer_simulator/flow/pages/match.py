@@ -12,8 +12,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.protocol import CommandName
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.trial.given_points import GivenPoints
-from rastrainer.trial.touch_registration import register_trial
+from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority

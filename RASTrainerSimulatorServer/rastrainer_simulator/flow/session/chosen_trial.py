@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.protocol import TRIAL_RUN, CommandName, GhostRule, Guidance, RegistrationMethod
-from rastrainer.scenario.method_task import method_of, playable_methods
+from rastrainer.scenario.scenario import method_of, playable_methods
 from rastrainer_simulator.flow.session.preferences import faded_guidance
 from rastrainer_simulator.flow.session.session import TrainingSession
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rastrainer.protocol import TRIAL_RUN, StepKind, TutorialRule
-from rastrainer.scenario.method_task import playable_methods
+from rastrainer.scenario.scenario import playable_methods
 from rastrainer.study.curriculum.told_curriculum import ToldAssignment
 from rastrainer_simulator.flow.session.chosen_trial import procedure_of, registration_method
 from rastrainer_simulator.flow.session.session import TrainingSession

@@ -20,13 +20,17 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, CommandName, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.trial_review import scored_with_journal, with_progress_among
-from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.analysis import (
+    RevealedTruth,
+    TrialAnalysis,
+    analyze_trial,
+    registration_arguments,
+    score_arguments,
+)
 from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
-from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer.trial.submission import registration_arguments, score_arguments
-from rastrainer.trial.touch_registration import register_trial
+from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer.trial.trainee_progress import PastTrial
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.state import Answer, TrainingState

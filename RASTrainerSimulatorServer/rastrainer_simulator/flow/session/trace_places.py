@@ -13,7 +13,7 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.registration.trace_guidance import COVERED_MM, TraceGuide
 from rastrainer.scenario.scenario import Camera
 from rastrainer.transforms import MM_PER_M
-from rastrainer.trial.given_points import trace_guide
+from rastrainer.trial.touch_registration import trace_guide
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance

@@ -11,8 +11,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_message_object
-from rastrainer.json_checks import accepted, number, numbers, one_of, text, whole_number, yes_or_no
+from rastrainer.json_checks import (
+    accepted,
+    decode_message_object,
+    number,
+    numbers,
+    one_of,
+    text,
+    whole_number,
+    yes_or_no,
+)
 
 PROTOCOL = 1
 SUBPROTOCOL = "rastrainer.views.1"

@@ -9,8 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from rastrainer.igtl.content import CommandReply
-from rastrainer.igtl.message import Message
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import Message, MessageReader
 from rastrainer.protocol import Proximity
 from rastrainer_simulator.net.igtl.server import IgtlServer
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink

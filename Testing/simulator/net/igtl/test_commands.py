@@ -9,8 +9,7 @@ import pytest
 from rastrainer.command_arguments import COMMAND_ARGUMENTS
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, CommandReply
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.wire import crc64
+from rastrainer.igtl.message import Message, crc64, pack
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.state import Answer
 from Testing.simulator.net.igtl.servers import LinkServer, answer_to

@@ -13,7 +13,7 @@ from rastrainer.number_text import counted
 from rastrainer.report.elements.comparisons import ModeComparison, compared_version
 from rastrainer.report.elements.markup import bullets, heading, paragraph, section, table
 from rastrainer.statistics.few_subjects import what_cannot_be_concluded
-from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.statistics.intervals import scipy_module
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.protocol.study_protocol import BALANCED
 from rastrainer.study.study_data import StudyData

@@ -18,7 +18,7 @@ from rastrainer.procedure.score import (
 )
 from rastrainer.report.elements.markup import bullets, figure, heading, paragraph, section, table
 from rastrainer.report.elements.svg import FAINT, INK, Sheet, axis_over, number, y_grid
-from rastrainer.statistics.estimates import mean
+from rastrainer.statistics.intervals import mean
 from rastrainer.study.study_data import StudyData, TrialRow
 
 KINDS = {

@@ -17,8 +17,7 @@ from rastrainer.statistics.agreement import (
     intraclass_correlations,
     quadratic_kappa,
 )
-from rastrainer.statistics.intervals import correlation
-from rastrainer.statistics.scipy_modules import scipy_module
+from rastrainer.statistics.intervals import correlation, scipy_module
 from rastrainer.study.ratings import FORMS, HIGHEST, LOWEST, Rating, RatingForm
 from rastrainer.study.study_data import StudyData
 

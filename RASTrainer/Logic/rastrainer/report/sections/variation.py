@@ -11,8 +11,7 @@ import numpy as np
 from rastrainer.number_text import counted, fixed
 from rastrainer.report.elements.markup import Cell, Line, heading, paragraph, section, table
 from rastrainer.report.sections.paired_statistics import interval_text
-from rastrainer.statistics.estimates import Estimate, mean
-from rastrainer.statistics.intervals import Proportion, proportion
+from rastrainer.statistics.intervals import Estimate, Proportion, mean, proportion
 from rastrainer.statistics.variation import (
     MIN_TRAINEES,
     Trials,

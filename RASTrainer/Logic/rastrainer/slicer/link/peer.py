@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.igtl.content import Status
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.translation import _
 

@@ -10,7 +10,7 @@ import vtk
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.procedure.meshes import check_no_go_mesh, check_no_go_size
+from rastrainer.procedure.plan import check_no_go_mesh, check_no_go_size
 from rastrainer.slicer.translation import _
 
 

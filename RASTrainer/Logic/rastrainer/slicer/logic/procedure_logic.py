@@ -18,9 +18,8 @@ from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProced
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.trial.analysis import TrialAnalysis
-from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
-from rastrainer.trial.touch_registration import TouchRegistration
+from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration
 
 FEED_MM, FEED_MM_S = 1.0, 2.0
 """How far one press of a button feeds drill or instrument, and how fast."""

@@ -15,7 +15,6 @@ from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
 from rastrainer.json_checks import identifier_of
-from rastrainer.procedure.meshes import read_procedure_meshes
 from rastrainer.procedure.plan import (
     MAX_NO_GO,
     MAX_TRAJECTORIES,
@@ -27,6 +26,7 @@ from rastrainer.procedure.plan import (
     ProcedureKind,
     ProcedureTrajectory,
     procedure_json,
+    read_procedure_meshes,
 )
 from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import Scenario

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.journal.replay_track import ReplayTrack
+from rastrainer.journal.recording import ReplayTrack
 from rastrainer.progress import Progress, no_progress
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario

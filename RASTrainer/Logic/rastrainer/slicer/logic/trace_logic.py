@@ -15,7 +15,7 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import knownNumber
 from rastrainer.slicer.scene.trace_nodes import forgetTrace, showTrace
 from rastrainer.slicer.signal import Listening
-from rastrainer.trial.given_points import FollowedTrace, GivenPoints, TraceFollower
+from rastrainer.trial.touch_registration import FollowedTrace, GivenPoints, TraceFollower
 
 PERIOD_S = 1.0
 """Each time, the whole trace is asked for, and the head is drawn anew."""

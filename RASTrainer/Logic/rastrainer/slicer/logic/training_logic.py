@@ -18,8 +18,7 @@ from rastrainer.protocol import (
     Phase,
     RegistrationMethod,
 )
-from rastrainer.scenario.method_task import method_of
-from rastrainer.scenario.scenario import Scenario
+from rastrainer.scenario.scenario import Scenario, method_of
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import showPlannedPlace

@@ -18,9 +18,13 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import with_progress
-from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
+from rastrainer.trial.analysis import (
+    RevealedTruth,
+    TrialAnalysis,
+    registration_arguments,
+    score_arguments,
+)
 from rastrainer.trial.record import TrialRecord
-from rastrainer.trial.submission import registration_arguments, score_arguments
 
 ANSWER_TIMEOUT_S = 60.0
 """Nobody waits for these answers, and what times out is requested again only over the next

@@ -11,17 +11,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.journal.replay_track import ReplayTrack, find_track
+from rastrainer.journal.recording import ReplayTrack, find_track
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.trial_review import scored_with_journal, trajectory_of
 from rastrainer.trial import ctps
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
-from rastrainer.trial.given_points import GivenPoints
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
-from rastrainer.trial.touch_registration import TouchRegistration, register_trial
+from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration, register_trial
 
 REGISTER = f"{__name__}:register"
 REGISTER_OPEN = f"{__name__}:registerOpen"

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder_lock import STARTED_BY
+from rastrainer.journal.folder import STARTED_BY
 from rastrainer.progress import Progress, report_line
 from rastrainer.python_environment import clean_environment
 

@@ -11,7 +11,7 @@ from datetime import datetime
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.journal.folder_lock import FolderHolder, read_holder
+from rastrainer.journal.folder import FolderHolder, read_holder
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.program.child_process import KILL_AFTER_S, SLICER, endProcess

@@ -10,10 +10,9 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
-from rastrainer.registration.checks import extents
-from rastrainer.registration.faults import find_order
+from rastrainer.registration.fits import extents
 from rastrainer.registration.registration import Registration
-from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning
+from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, find_order
 from rastrainer.slicer.scene.control_points import labelsOf, localPoints, worldPoints
 from rastrainer.slicer.translation import _
 

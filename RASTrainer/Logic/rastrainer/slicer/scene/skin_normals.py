@@ -9,8 +9,7 @@ import slicer
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.surface_queries import nearest_on_mesh, normal_at
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, normal_at
 from rastrainer.registration.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration.registration import Registration
 from rastrainer.slicer.background_work import BackgroundWork

@@ -13,7 +13,7 @@ from rastrainer.slicer.scene.error_colors import colorSkin, uncolorHead
 from rastrainer.slicer.scene.link_nodes import TOUCH_COLOR
 from rastrainer.slicer.scene.scene import Role, findNode, findOrAddNode, removeNode
 from rastrainer.slicer.translation import _
-from rastrainer.trial.given_points import FollowedTrace
+from rastrainer.trial.touch_registration import FollowedTrace
 
 MODEL, MARKUPS = "vtkMRMLModelNode", "vtkMRMLMarkupsFiducialNode"
 DISTANCE_SCALARS = "distance to the trace (mm)"

@@ -11,7 +11,7 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.journal.replay_track import ReplayTrack
+from rastrainer.journal.recording import ReplayTrack
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.slicer.scene.scene import (

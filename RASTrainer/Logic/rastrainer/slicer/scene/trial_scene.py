@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import RegistrationMethod
-from rastrainer.registration.checks import MINIMUM_POINTS
-from rastrainer.registration.fits import RIGID
-from rastrainer.scenario.method_task import TRACED_METHODS
+from rastrainer.protocol import TRACED_METHODS, RegistrationMethod
+from rastrainer.registration.fits import MINIMUM_POINTS, RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.scene.control_points import labelsOf, localPoints, setPoints
 from rastrainer.slicer.scene.error_colors import showResidualArrows

@@ -11,12 +11,12 @@ from rastrainer.protocol import (
     MAX_ASSIGNMENTS,
     MAX_GATES,
     MAX_GOAL_TRIALS,
+    PLAYED_METHODS,
     TRIAL_RUN,
     GoalKind,
     Mode,
     RegistrationMethod,
 )
-from rastrainer.scenario.method_task import PLAYED_METHODS
 
 FORMAT_VERSION = 1
 MAX_TITLE = 80

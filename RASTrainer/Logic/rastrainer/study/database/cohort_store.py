@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.json_checks import decode_finite_json
 from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from rastrainer import json_checks, protocol
 from rastrainer.errors import InputError
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.json_checks import decode_finite_json
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError

@@ -12,8 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, fields_of, read_fields
 from rastrainer.head.skin_shift import read_skin
 from rastrainer.json_checks import is_identifier
-from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, Mode, TutorialRule
-from rastrainer.scenario.method_task import PLAYED_METHODS
+from rastrainer.protocol import PLAYED_METHODS, TRIAL_RUN, GhostRule, Guidance, Mode, TutorialRule
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, PASS_MARK, SCORE_VERSION, ScoreReference
 
