@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.study.database.study import Study

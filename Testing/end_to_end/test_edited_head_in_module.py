@@ -14,7 +14,7 @@ from vtk.util.numpy_support import numpy_to_vtk
 
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.library import user_library
-from rastrainer.scenario.tasks import LABELS
+from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.head import scenario_build
 from rastrainer.slicer.head.segment import SEGMENT_NAME
 from rastrainer.slicer.scene.control_points import setPoints

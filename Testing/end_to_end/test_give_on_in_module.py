@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.scenario.library import user_library
-from rastrainer.scenario.package import unpack
+from rastrainer.scenario.library import unpack, user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.control_points import setPoints, worldPoints
 from rastrainer.slicer.scene.scene import Role, findNode

@@ -7,8 +7,8 @@ import pytest
 import slicer
 
 from rastrainer.scenario.library import user_library
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.head.volume import Volume
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.scene import Role, findNode

@@ -12,8 +12,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.scenario.library import user_library
-from rastrainer.scenario.package import pack
+from rastrainer.scenario.library import pack, user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer_simulator.assets import asset_path

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer_headless.make_head import main as make_head
 from rastrainer_simulator.cli.main import main
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE

@@ -12,7 +12,7 @@ from rastrainer.motion.trial_motion import WIDTH_FACTOR, effective_throughput
 from rastrainer.number_text import fixed
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import PASS_MARK, TrialScore, passes, score_trial
-from rastrainer.trial.trainee_progress import TRAINING_TRIALS, competence_of
+from rastrainer.trial.trial_feedback import TRAINING_TRIALS, competence_of
 from Testing.error_rates.hands import TASKS, scenario_of
 from Testing.error_rates.measured import Measured, share_of
 from Testing.error_rates.played import COLIN27, OBLIQUE_WAYS, stored

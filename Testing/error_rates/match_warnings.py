@@ -20,7 +20,7 @@ from numpy.random import Generator
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.skin_shift import SkinShift
+from rastrainer.head.trial_head import SkinShift
 from rastrainer.registration.surface_checks import SLIDE_LIMIT_MM, TARGETS_ASIDE_MM
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from Testing.domain.registration.traces import coarse_start, head_pose, places, random_walk

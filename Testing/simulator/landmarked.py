@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
-from rastrainer.scenario.tasks import Landmark
+from rastrainer.scenario.points import Landmark
 from rastrainer_simulator.assets import asset_path
 
 LANDMARKS = (

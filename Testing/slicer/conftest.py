@@ -7,8 +7,8 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.scenario.points import LABELS, Task
 from rastrainer.scenario.scenario import Perturbation, Scenario
-from rastrainer.scenario.tasks import LABELS, Task
 from rastrainer.slicer.link.link import Link
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene

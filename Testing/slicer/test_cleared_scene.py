@@ -10,8 +10,8 @@ import slicer
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.logic import head_preview
 from rastrainer.slicer.logic.replay_logic import SLICES_A_TURN
 from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions

@@ -13,8 +13,8 @@ from rastrainer import transforms
 from rastrainer.igtl.content import String
 from rastrainer.panels.plain_text import LONGEST_TEXT, toolTip
 from rastrainer.protocol import DeviceName
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer_simulator.assets import asset_path

@@ -3,7 +3,7 @@
 import pytest
 import slicer
 
-from rastrainer.scenario.package import pack
+from rastrainer.scenario.library import pack
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer import settings
 from rastrainer.slicer.settings import PORT, STUDY_ADDRESS, Setting

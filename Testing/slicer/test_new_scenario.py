@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 import slicer
 
-from rastrainer.head.pose import Perturbation
-from rastrainer.scenario.library import user_library
-from rastrainer.scenario.package import pack, unpack
+from rastrainer.head.trial_head import Perturbation
+from rastrainer.scenario.library import pack, unpack, user_library
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer.head import scenario_build

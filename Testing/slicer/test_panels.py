@@ -15,8 +15,8 @@ from PySide6 import QtCore
 from rastrainer import transforms
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.registration.target_error import INTERVAL_NOTE
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.scene import Role, findNode

@@ -9,7 +9,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.scenario.tasks import LABELS, PlannedTarget, PlannedTrajectory
+from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.plan_logic import PlanLogic, targetsOf
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic

@@ -5,8 +5,8 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.protocol import CommandName
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer_simulator.assets import asset_path

@@ -11,8 +11,8 @@ from PySide6 import QtCore, QtTest
 from rastrainer import transforms
 from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode

@@ -9,7 +9,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.igtl.content import String
 from rastrainer.protocol import DeviceName
-from rastrainer.scenario.tasks import LABELS
+from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
 from Testing.slicer.simulator_double import run_logic_until, run_until_received

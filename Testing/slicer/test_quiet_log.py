@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer.scenario.tasks import LABELS
+from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.slicer.scene.trial_replay import findReplay

@@ -12,7 +12,7 @@ from rastrainer.registration.fits import AFFINE, KINDS, RIGID
 from rastrainer.registration.localization_error import error_along_surface
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
-from rastrainer.scenario.tasks import LABELS
+from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.control_points import setPoints, worldPoints

@@ -9,7 +9,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import write_head_mesh
-from rastrainer.scenario.tasks import PlannedTarget, PlannedTrajectory
+from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.scene import scenario_nodes as shown
 from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask

@@ -9,8 +9,8 @@ import pytest
 from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
+from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Camera
-from rastrainer.scenario.tasks import Landmark
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.trace_logic import TraceLogic
 from rastrainer.slicer.scene.scene import Role

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.link_nodes import capturedPointsNode
 from rastrainer.transforms import MM_PER_M

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.head.pose import Perturbation
+from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.scenario import FORMAT_VERSION
 
 HEAD_CENTER_MM = np.array([480.0, 0.0, 220.0])

@@ -12,8 +12,8 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import PREVIEW_NAME, load_scenario
-from rastrainer.scenario.tasks import Task
 from rastrainer_simulator.rendering.picture import draw_preview
 
 FOLDER = Path(__file__).parent / "colin27"

@@ -15,13 +15,12 @@ import numpy as np
 from colin27_setup import CLOSE_UP_MM, PERTURBATION, head_to_world, scenario_json
 
 from rastrainer import transforms
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.files.writing import write_text
 from rastrainer.head.mesh import outward_normal, read_head_mesh
-from rastrainer.head.pose import Perturbation, perturbed_pose
+from rastrainer.head.trial_head import Perturbation, perturbed_pose
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import FILE_NAME
-from rastrainer.scenario.tasks import LABELS
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import touchable
 from rastrainer_simulator.authoring.surface_path import SurfaceGraph, shortest_path_mm

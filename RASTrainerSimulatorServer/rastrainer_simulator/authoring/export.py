@@ -20,7 +20,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
 from rastrainer.procedure.plan import read_all_no_go
-from rastrainer.scenario.package import checked_scenario, pack
+from rastrainer.scenario.library import checked_scenario, pack
 from rastrainer.scenario.scenario import PREVIEW_NAME, Scenario
 from rastrainer.scenario.writer import scenario_name, write_scenario
 from rastrainer_simulator.authoring.face_removal import (

@@ -8,12 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import read_markups, write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, read_markups, write_markups
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.scenario.landmark_checks import check_landmarks, on_skin
+from rastrainer.scenario.points import MAX_LANDMARKS, Landmark, check_landmarks, on_skin
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import MAX_LANDMARKS, Landmark
 from rastrainer_simulator.authoring.landmark_proposal import propose_landmarks, unreachable
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 

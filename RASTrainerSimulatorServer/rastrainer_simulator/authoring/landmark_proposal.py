@@ -17,9 +17,8 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normals, read_head_mesh
 from rastrainer.registration.fits import RIGID, fit
-from rastrainer.scenario.landmark_checks import FACE_LANDMARKS, NOSE_TIP, spread_first
+from rastrainer.scenario.points import FACE_LANDMARKS, NOSE_TIP, Landmark, spread_first
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.scenario.tasks import Landmark
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.face_removal import nose_tip
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

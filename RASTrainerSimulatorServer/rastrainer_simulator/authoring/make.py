@@ -13,11 +13,10 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
 from rastrainer.procedure.plan import Procedure, read_all_no_go
 from rastrainer.progress import Progress, Warn, no_progress
-from rastrainer.scenario.landmark_checks import on_skin
-from rastrainer.scenario.package import checked_scenario
+from rastrainer.scenario.library import checked_scenario
+from rastrainer.scenario.points import Landmark, PlannedTarget, PlannedTrajectory, Task, on_skin
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
 from rastrainer.scenario.setup import SetUp
-from rastrainer.scenario.tasks import Landmark, PlannedTarget, PlannedTrajectory, Task
 from rastrainer.scenario.writer import HeadDraft, new_folder, scenario_name, write_scenario
 from rastrainer_simulator.authoring.landmark_plan import check_on_planned_head
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.head.pose import Perturbation, perturbed_pose
+from rastrainer.head.trial_head import Perturbation, perturbed_pose
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.surface_path import SurfaceGraph

@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.procedure.checks import check_procedure
 from rastrainer.procedure.plan import Procedure, ProcedureTrajectory, read_procedure_meshes
-from rastrainer.scenario.package import require_usable_lines
+from rastrainer.scenario.library import require_usable_lines
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.collision.touch_planner import PlanReach

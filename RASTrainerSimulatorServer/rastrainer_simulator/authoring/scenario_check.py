@@ -10,7 +10,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.procedure.checks import ENTRY_OFF_SKIN_MM
-from rastrainer.scenario.package import checked_scenario
+from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

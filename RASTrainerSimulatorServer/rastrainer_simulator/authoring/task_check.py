@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import read_markups
+from rastrainer.files.point_list import read_markups
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normal
 from rastrainer.progress import Progress, Warn
-from rastrainer.scenario.tasks import LABELS, Task, touch_order
+from rastrainer.scenario.points import LABELS, Task, touch_order
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.surface_path import shortest_path_mm
 from rastrainer_simulator.authoring.task_proposal import PLANS, TaskPlan, target_spread

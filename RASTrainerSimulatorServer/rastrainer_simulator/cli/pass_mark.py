@@ -16,7 +16,7 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
 from rastrainer.trial.scoring import SCORE_VERSION
-from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.cli.options import add_study
 
 LAST_TRIALS = 3

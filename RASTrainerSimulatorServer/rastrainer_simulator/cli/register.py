@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import read_point_numbers, read_points
-from rastrainer.files.point_list import pair
+from rastrainer.files.point_list import pair, read_point_numbers, read_points
 from rastrainer.registration.fits import KINDS, RIGID
 from rastrainer.registration.localization_error import (
     LocalizationError,

@@ -12,9 +12,9 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.procedure.plan import Procedure, read_procedure
 from rastrainer.scenario.library import user_library
+from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE
 from rastrainer.scenario.setup import SetUp, read_setup
-from rastrainer.scenario.tasks import PlannedTarget, PlannedTrajectory
 from rastrainer.scenario.writer import scenario_name
 
 if TYPE_CHECKING:

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import read_points
-from rastrainer.files.point_list import pair
+from rastrainer.files.point_list import pair, read_points
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.registration.registration import register
 from rastrainer.registration.surface_error import knowledge_of, surface_target_error

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.registration.trace_guidance import nearest_traced_mm
+from rastrainer.registration.surface_error import nearest_traced_mm
 from rastrainer.transforms import MM_PER_M
 
 FULL_SHARE = 0.5

@@ -8,8 +8,7 @@ import numpy as np
 
 from rastrainer import transforms
 from rastrainer.export.tidy_csv import csv_text
-from rastrainer.files.markups import write_line, write_markups
-from rastrainer.files.point_list import PointList, write_point_cloud
+from rastrainer.files.point_list import PointList, write_line, write_markups, write_point_cloud
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.values import StoredTrial

@@ -21,7 +21,7 @@ from rastrainer.json_checks import text
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.platform_links import LinkedAssignment
 from rastrainer.trial.scoring import score_version
-from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.lti.platform_client import KeySets
 from rastrainer_simulator.lti.settings import ALGORITHM, LearningPlatform
 

@@ -21,8 +21,8 @@ from trimesh.visual.material import PBRMaterial
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.robot.meshes import load_meshes

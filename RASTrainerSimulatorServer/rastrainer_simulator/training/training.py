@@ -46,8 +46,8 @@ from rastrainer_simulator.training.true_error import PlacedHead, Truth
 from rastrainer_simulator.vectors import Vector
 
 if TYPE_CHECKING:
+    from rastrainer.scenario.points import Task
     from rastrainer.scenario.scenario import Scenario
-    from rastrainer.scenario.tasks import Task
 
 
 class Training:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.head.skin_shift import SkinShift
+from rastrainer.head.trial_head import SkinShift
 from rastrainer.protocol import TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer_simulator.ops.texts.texts import Texts
@@ -24,8 +24,8 @@ from rastrainer_simulator.training.rules import TrainingSettings
 from rastrainer_simulator.training.true_error import PlacedHead
 
 if TYPE_CHECKING:
+    from rastrainer.scenario.points import Task
     from rastrainer.scenario.scenario import Scenario
-    from rastrainer.scenario.tasks import Task
 
 
 from dataclasses import replace

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.head.skin_shift import UNMOVED, SkinShift
+from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.registration.target_error import true_errors
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.vectors import Vector, in_meters
 
 if TYPE_CHECKING:
+    from rastrainer.scenario.points import Task
     from rastrainer.scenario.scenario import Scenario
-    from rastrainer.scenario.tasks import Task
 
 
 @dataclass(frozen=True)

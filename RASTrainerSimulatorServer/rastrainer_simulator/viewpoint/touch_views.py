@@ -11,8 +11,8 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.collision.touch_planner import TouchPlanner

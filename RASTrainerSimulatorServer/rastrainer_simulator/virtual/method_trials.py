@@ -15,11 +15,15 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
-from rastrainer.head.skin_shift import SkinShift
+from rastrainer.head.trial_head import SkinShift
 from rastrainer.protocol import COARSE_LANDMARKS, TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.localization_error import error_along_surface, isotropic_error
 from rastrainer.registration.registration import register
-from rastrainer.registration.surface_error import knowledge_of, surface_target_error
+from rastrainer.registration.surface_error import (
+    guided_vertices,
+    knowledge_of,
+    surface_target_error,
+)
 from rastrainer.registration.surface_match import STARTS, match_surface
 from rastrainer.registration.target_error import (
     COMMON_BIAS_SD_MM,
@@ -27,7 +31,6 @@ from rastrainer.registration.target_error import (
     target_error,
     true_errors,
 )
-from rastrainer.registration.trace_guidance import guided_vertices
 from rastrainer.registration.warnings import RegistrationWarning
 from rastrainer.scenario.scenario import Scenario, task_by_method
 from rastrainer.trial.score_reference import region_of

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import read_points, write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, read_points, write_markups
 from rastrainer.trial.ctps import read_trials
 
 HEADER = "mode,subject,task,ct,rmse\n"

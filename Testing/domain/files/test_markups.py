@@ -8,8 +8,7 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import SCHEMA, read_markups, write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import SCHEMA, PointList, read_markups, write_markups
 
 POINTS = np.array([[1.5, -2.0, 3.25], [80.0, 0.125, -7.0], [-3.0, 40.0, 99.0]])
 

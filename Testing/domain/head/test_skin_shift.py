@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.head.skin_shift import SkinShift
+from rastrainer.head.trial_head import SkinShift
 from Testing.domain.registration.traces import colin27
 
 

@@ -15,7 +15,7 @@ from rastrainer.procedure.plan import (
     procedure_json,
     read_procedure_meshes,
 )
-from rastrainer.scenario.package import pack, unpack
+from rastrainer.scenario.library import pack, unpack
 from rastrainer.scenario.scenario import load_scenario
 from Testing.domain.procedure.made_up_procedure import (
     made_up_procedure,

@@ -5,8 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.registration.surface_error import DAB, PoseKnowledge, knowledge_so_far
-from rastrainer.registration.trace_guidance import TraceGuide, guided_targets
+from rastrainer.registration.surface_error import (
+    DAB,
+    PoseKnowledge,
+    TraceGuide,
+    guided_targets,
+    knowledge_so_far,
+)
 
 TARGET = np.array([0.7815, -16.9395, 1.432])
 EYE = np.array([0.8, 583.1, 221.4])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import MAX_TRACE_POINTS
-from rastrainer.registration.surface_error import DAB
-from rastrainer.registration.trace_guidance import (
+from rastrainer.registration.surface_error import (
     COVERED_MM,
+    DAB,
     TraceGuide,
     guided_vertices,
     nearest_traced_mm,

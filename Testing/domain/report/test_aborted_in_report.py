@@ -14,7 +14,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.trainee_progress import competence_of
+from rastrainer.trial.trial_feedback import competence_of
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.xapi import statements
 from Testing.domain.report.test_report import words_of

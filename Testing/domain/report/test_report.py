@@ -27,7 +27,7 @@ from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
 from rastrainer.trial.scoring import LONG_PAUSE_S, SCORE_VERSION
-from rastrainer.trial.trainee_progress import competence_of
+from rastrainer.trial.trial_feedback import competence_of
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel
 from Testing.domain.study.played_study import STUDIES, study_with_trials

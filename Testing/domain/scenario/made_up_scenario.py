@@ -8,9 +8,9 @@ import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.volume import HeadVolume
+from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory, Task
 from rastrainer.scenario.scenario import Provenance, Scenario
 from rastrainer.scenario.setup import SetUp
-from rastrainer.scenario.tasks import LABELS, PlannedTarget, PlannedTrajectory, Task
 from Testing.domain.head.spheres import RADIUS_MM, sphere_mesh
 
 

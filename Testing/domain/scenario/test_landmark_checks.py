@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.scenario.landmark_checks import check_landmarks, on_skin, spread_first
+from rastrainer.scenario.points import Landmark, check_landmarks, on_skin, spread_first
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import Landmark
 from rastrainer_simulator.assets import asset_path
 
 

@@ -5,10 +5,9 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS
 
 POINTS = np.random.default_rng(4).uniform(-90, 90, (15, 3)).round(4)
 CAMERA = {

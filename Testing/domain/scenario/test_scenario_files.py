@@ -9,8 +9,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.pose import Perturbation
-from rastrainer.head.skin_shift import UNMOVED, SkinShift
+from rastrainer.head.trial_head import UNMOVED, Perturbation, SkinShift
 from rastrainer.head.volume import read_head_volume
 from rastrainer.scenario.library import list_scenarios
 from rastrainer.scenario.scenario import load_scenario

@@ -12,8 +12,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.nrrd import write_nrrd
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
-from rastrainer.scenario import package as scenario_package
-from rastrainer.scenario.package import pack, unpack
+from rastrainer.scenario.library import pack, unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import write_scenario
 from Testing.domain.scenario.made_up_scenario import ball_head, ball_volume, made_up_scenario
@@ -116,7 +115,7 @@ def test_a_link_is_refused(folder, library):
 
 
 def test_a_zip_bomb_is_stopped_by_its_unpacked_size(folder, library, monkeypatch):
-    monkeypatch.setattr(scenario_package, "MAX_BYTES", 3_000_000)
+    monkeypatch.setattr("rastrainer.scenario.library.MAX_BYTES", 3_000_000)
     bomb = zip_of(folder.parent / "bad.zip", {**members(folder), "bomb.bin": bytes(20_000_000)})
     refused(bomb, library, "holds more than 3 MB")
 
@@ -135,7 +134,7 @@ def test_a_huge_or_open_mesh_is_refused(folder, library, monkeypatch):
     write_head_mesh(folder / "open.ply", HeadMesh(head.vertices, head.triangles[:-1]))
     opened = {**files, "head.ply": (folder / "open.ply").read_bytes()}
     refused(zip_of(folder.parent / "bad.zip", opened), library, "head.ply is not closed")
-    monkeypatch.setattr(scenario_package, "MAX_TRIANGLES", 100)
+    monkeypatch.setattr("rastrainer.scenario.library.MAX_TRIANGLES", 100)
     refused(zip_of(folder.parent / "bad.zip", files), library, "triangles; a scenario's may have")
 
 

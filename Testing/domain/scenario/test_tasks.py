@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.json_checks import is_identifier
-from rastrainer.scenario.tasks import LABELS, read_task, touch_order
+from rastrainer.scenario.points import LABELS, read_task, touch_order
 
 POINTS = np.random.default_rng(2).uniform(-90, 90, (15, 3)).round(4)
 

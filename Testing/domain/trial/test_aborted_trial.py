@@ -13,7 +13,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
-from rastrainer.trial.trainee_progress import competence_of, progress_of
+from rastrainer.trial.trial_feedback import competence_of, progress_of
 from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record
 

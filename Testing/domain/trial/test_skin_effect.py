@@ -9,7 +9,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.skin_shift import UNMOVED, SkinShift
+from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.report.sections.method_comparison import shifted_skin
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.scenario.points import LABELS, Task
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.scenario.tasks import LABELS, Task
 from rastrainer.scenario.writer import HeadDraft, write_scenario
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

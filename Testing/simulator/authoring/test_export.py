@@ -11,7 +11,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.head.mesh import nearest_on_mesh, read_head_mesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume, read_head_volume
-from rastrainer.scenario.package import unpack
+from rastrainer.scenario.library import unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import write_scenario
 from rastrainer.slicer.head.extraction import findHead

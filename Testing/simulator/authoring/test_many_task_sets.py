@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from rastrainer import transforms
 from rastrainer.head.mesh import nearest_on_mesh, outward_normal
-from rastrainer.scenario.tasks import LABELS
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks

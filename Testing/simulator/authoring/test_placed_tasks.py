@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.head.mesh import nearest_on_mesh, outward_normals
-from rastrainer.scenario.tasks import LABELS
+from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

@@ -11,9 +11,9 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh, write_head_mesh
 from rastrainer.procedure.checks import distances_to_no_go
 from rastrainer.procedure.plan import ProcedureKind, read_procedure, read_procedure_meshes
-from rastrainer.scenario.package import checked_scenario
+from rastrainer.scenario.library import checked_scenario
+from rastrainer.scenario.points import PlannedTarget
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import PlannedTarget
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.make import copy_with_plan
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup

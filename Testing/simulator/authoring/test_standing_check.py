@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rastrainer import transforms
-from rastrainer.head.pose import Perturbation
+from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import HeadDraft

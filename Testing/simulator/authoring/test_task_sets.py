@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, read_head_mesh
+from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory, read_task
 from rastrainer.scenario.setup import SetUp
-from rastrainer.scenario.tasks import LABELS, PlannedTarget, PlannedTrajectory, read_task
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.make import ScenarioOptions, make_scenario, without_tasks

@@ -15,8 +15,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.registration.registration import register
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study

@@ -8,8 +8,13 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.markups import read_points, write_markups
-from rastrainer.files.point_list import PointList, read_point_cloud, write_point_cloud
+from rastrainer.files.point_list import (
+    PointList,
+    read_point_cloud,
+    read_points,
+    write_markups,
+    write_point_cloud,
+)
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import load_scenario

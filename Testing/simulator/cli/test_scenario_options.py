@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from rastrainer.head.pose import Perturbation
+from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli import scenario as scenario_command

@@ -3,8 +3,7 @@
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.files.markups import read_markups
-from rastrainer.files.point_list import read_point_cloud
+from rastrainer.files.point_list import read_markups, read_point_cloud
 from rastrainer.registration.registration import register
 from rastrainer.study.database.values import StoredRegistration, StoredTrial
 from rastrainer.trial.record import TrialRecord

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase
-from rastrainer.registration.trace_guidance import COVERED_MM
+from rastrainer.registration.surface_error import COVERED_MM
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.pages.match import MatchPage, MatchReport
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task

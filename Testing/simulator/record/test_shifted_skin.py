@@ -8,7 +8,7 @@ import pytest
 from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.head.skin_shift import UNMOVED, SkinShift
+from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial.record import TrialRecord

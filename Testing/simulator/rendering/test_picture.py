@@ -5,8 +5,8 @@ import trimesh
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import Proximity
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Camera, Furniture
-from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows
 from rastrainer_simulator.rendering.offscreen import write_png

@@ -7,8 +7,8 @@ import pytest
 
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import CommandName, TouchRule
+from rastrainer.scenario.points import LABELS, Task
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.scenario.tasks import LABELS, Task
 from rastrainer.scenario.writer import HeadDraft, write_scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh, outward_normals, read_head_mesh
-from rastrainer.scenario.tasks import Task
+from rastrainer.scenario.points import Task
 from rastrainer.transforms import MM_PER_M, apply
 from rastrainer_simulator.collision.collision import head_collision
 from rastrainer_simulator.collision.head_clearance import LineOfSight

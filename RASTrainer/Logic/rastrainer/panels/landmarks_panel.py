@@ -16,9 +16,8 @@ from rastrainer.panels.widgets import (
     setSentence,
     setUsable,
 )
-from rastrainer.scenario.landmark_checks import FACE_LANDMARKS
+from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.scenario.tasks import Landmark
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
 

@@ -7,7 +7,7 @@ from typing import Any
 import qt
 import slicer
 
-from rastrainer.head.pose import MAX_PERTURBATION, Perturbation
+from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
 from rastrainer.panels.application import fitThreeDViews
 from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.sample_data import downloadSample

@@ -14,7 +14,7 @@ import slicer
 from rastrainer import transforms
 from rastrainer.panels.application import callSoon, findPlaces
 from rastrainer.panels.panel_stack import PanelStack
-from rastrainer.scenario.tasks import LABELS
+from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.link.connection import desktopKit
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.control_points import setPoints

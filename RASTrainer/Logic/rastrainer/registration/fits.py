@@ -56,6 +56,24 @@ def leave_one_out(
     return distances
 
 
+def motions(kind: str, points: np.ndarray) -> np.ndarray:
+    """Return how points move with the parameters of a fit of a kind, (n, 3, parameters) float.
+
+    `points` (n, 3) float are taken from the fiducials' centroid, mm. The parameters are, to first
+    order, a translation, a rotation, and the scale of a similarity; those of an affine fit are a
+    translation and nine coefficients.
+    """
+    translation = np.broadcast_to(np.eye(3), (len(points), 3, 3))
+    if kind == AFFINE:
+        linear = np.einsum("ij,nk->nijk", np.eye(3), points).reshape(-1, 3, 9)
+        return np.concatenate([translation, linear], axis=2)
+    rotation = np.swapaxes(np.cross(points[:, None, :], np.eye(3)), 1, 2)
+    columns = [translation, -rotation]
+    if kind == SIMILARITY:
+        columns.append(points[:, :, None])
+    return np.concatenate(columns, axis=2)
+
+
 def rigid_sums_of_squares(
     moving: np.ndarray, fixed: np.ndarray, weights: np.ndarray, handedness: int = 1
 ) -> np.ndarray:

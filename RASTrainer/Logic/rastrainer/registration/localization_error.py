@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.registration.fits import AFFINE, PARAMETERS, SIMILARITY
+from rastrainer.registration.fits import PARAMETERS, motions
 from rastrainer.registration.registration import Registration
 
 
@@ -147,24 +147,6 @@ def error_along_surface(registration: Registration, normals: np.ndarray) -> Loca
     scale = residuals @ residuals / np.trace(both)
     covariances = scale * (variances[0] * parts[0] + variances[1] * parts[1])
     return LocalizationError(covariances, np.trace(both) ** 2 / np.sum(both * both.T))
-
-
-def motions(kind: str, points: np.ndarray) -> np.ndarray:
-    """Return how points move with the parameters of a fit of a kind, (n, 3, parameters) float.
-
-    `points` (n, 3) float are taken from the fiducials' centroid, mm. The parameters are, to first
-    order, a translation, a rotation, and the scale of a similarity; those of an affine fit are a
-    translation and nine coefficients.
-    """
-    translation = np.broadcast_to(np.eye(3), (len(points), 3, 3))
-    if kind == AFFINE:
-        linear = np.einsum("ij,nk->nijk", np.eye(3), points).reshape(-1, 3, 9)
-        return np.concatenate([translation, linear], axis=2)
-    rotation = np.swapaxes(np.cross(points[:, None, :], np.eye(3)), 1, 2)
-    columns = [translation, -rotation]
-    if kind == SIMILARITY:
-        columns.append(points[:, :, None])
-    return np.concatenate(columns, axis=2)
 
 
 def fit_of_errors(registration: Registration) -> np.ndarray:

@@ -10,7 +10,7 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import COORDINATE_LIMIT_MM
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.registration.fits import extents
+from rastrainer.registration.fits import RIGID, extents, motions
 from rastrainer.registration.warnings import RegistrationWarning
 
 LEAST_POINTS, MOST_USED, MOST_POINTS = 30, 500, 100_000
@@ -301,12 +301,6 @@ def _shares_of_cubes(places: np.ndarray) -> np.ndarray:
 
 def _largest_move(covariance: np.ndarray, arm: np.ndarray) -> tuple[float, np.ndarray]:
     """Return the largest variance, mm², and its direction, at an arm (3,) from the center."""
-    moves = np.concatenate([np.eye(3), -_cross(arm)], axis=1)
+    moves = motions(RIGID, arm[None])[0]
     values, vectors = np.linalg.eigh(moves @ covariance @ moves.T)
     return float(values[-1]), vectors[:, -1]
-
-
-def _cross(vector: np.ndarray) -> np.ndarray:
-    """Return the matrix (3, 3) of the cross product with a vector."""
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -1,9 +1,9 @@
-"""The target error to expect of a surface match, and where on the skin a point would help most.
+"""The target error to expect of a surface match, and where on the skin more points would help most.
 
 The curvature of the cost at its minimum is H = Σ JᵢᵀJᵢ with Jᵢ = (nᵢ, (pᵢ − c) × nᵢ): what each
 point reveals about the pose. With the variance σ² of the points across the skin, σ²H⁻¹ is the
 covariance of the pose. Both are to first order, and for errors that are independent: a shift of the
-skin is not.
+skin is not. By it, a trainee is guided while the skin is traced.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh
+from rastrainer.head.mesh import POINTS_AT_ONCE, HeadMesh, nearest_vertices
+from rastrainer.protocol import MAX_TRACE_POINTS
+from rastrainer.registration.fits import RIGID, motions
 from rastrainer.registration.surface_match import SurfaceMatch
 from rastrainer.registration.target_error import (
     COMMON_BIAS_SD_MM,
@@ -53,7 +55,7 @@ class PoseKnowledge:
 
     def at_targets(self, targets: np.ndarray) -> np.ndarray:
         """Return the covariances (m, 3, 3), mm², of the error at targets (m, 3), RAS mm."""
-        moved = _moves(targets - self.center)
+        moved = motions(RIGID, targets - self.center)
         return moved @ self.covariance @ np.swapaxes(moved, 1, 2)
 
 
@@ -152,7 +154,7 @@ def next_best_place(
     rows = np.flatnonzero(allowed)
     if not len(rows):
         raise InputError("No place on the skin can be reached.")
-    moved = _moves(np.asarray(targets, dtype=float) - knowledge.center)
+    moved = motions(RIGID, np.asarray(targets, dtype=float) - knowledge.center)
     weight = np.einsum("tij,tik->jk", moved, moved) / len(moved)
     inverse = np.linalg.inv(knowledge.curvature)
     directions, _ = _rows(mesh.vertices[rows], mesh.vertex_normals[rows], knowledge.center)
@@ -171,7 +173,187 @@ def _rows(
     return np.concatenate([normals, np.cross(places - middle, normals)], axis=1), middle
 
 
-def _moves(arms: np.ndarray) -> np.ndarray:
-    """Return how points (m, 3), from the center, move with the pose, (m, 3, 6) float."""
-    turned = np.swapaxes(np.cross(np.eye(3), arms[:, None, :]), 1, 2)
-    return np.concatenate([np.broadcast_to(np.eye(3), (len(arms), 3, 3)), turned], axis=2)
+COVERED_MM = 10.0
+"""So far from a traced point the skin counts as covered: no next place is there."""
+SPACING_MM = 8.0
+"""Between places that are compared; of more, the best one would hardly be another."""
+ABOVE_BASE_MM = 10.0
+LEAST_UPWARD = -0.3
+"""Least height of a unit normal: the tool does not reach skin that faces the table."""
+LEAST_FACING = 0.5
+"""Least cosine between a normal and the way to the eye: of other skin, little is seen."""
+LEAST_OUTWARD = 0.5
+"""Least cosine between a normal and the way from the head's middle: of ears, which give way, and of
+nostrils, it is less."""
+LEAST_FLATNESS = 0.95
+"""Least length of the mean of unit normals around a place: lids, lips and folds bend more."""
+BEHIND_MM = 30.0
+"""A place that is so much farther from the eye than others beside it is hidden by them."""
+_ROUNDS = 4
+_BESIDE_MM = 6.0
+_AROUND_TARGET_MM = 30.0
+
+
+def guided_targets(target: np.ndarray) -> np.ndarray:
+    """Return where the expected error is to become small, (7, 3) float, RAS mm.
+
+    These are the target (3,) and places 30 mm around it: at the target alone, a head that turns
+    about it would seem well known.
+    """
+    around = _AROUND_TARGET_MM * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
+    return np.asarray(target, dtype=float) + around
+
+
+def guided_vertices(mesh: HeadMesh, eye: np.ndarray) -> np.ndarray:
+    """Return the vertices among which the next place is chosen, (c,) int, 8 mm apart.
+
+    They are seen by the eye, do not face the table, and are off the base and the ears, where the
+    skin is smooth.
+
+    Args:
+        mesh: the head, upright.
+        eye: (3,) float, RAS mm, from where the trainee looks.
+    """
+    normals, vertices = mesh.vertex_normals, mesh.vertices
+    toward, outward = _directions(vertices, eye), -_directions(vertices, mesh.middle)
+    usable = (
+        (vertices[:, 2] > vertices[:, 2].min() + ABOVE_BASE_MM)
+        & (normals[:, 2] > LEAST_UPWARD)
+        & (np.einsum("ij,ij->i", normals, toward) > LEAST_FACING)
+        & (np.einsum("ij,ij->i", normals, outward) > LEAST_OUTWARD)
+        & (_flatness(mesh) > LEAST_FLATNESS)
+        & _is_seen(vertices, eye)
+    )
+    rows = np.flatnonzero(usable)
+    cells = np.floor(vertices[rows] / SPACING_MM).astype(int)
+    return rows[np.sort(np.unique(cells, axis=0, return_index=True)[1])]
+
+
+def nearest_traced_mm(
+    vertices: np.ndarray, places: np.ndarray, known_mm: np.ndarray | None = None
+) -> np.ndarray:
+    """Return how far vertices (v, 3) are from the nearest point of a trace (n, 3), (v,) float.
+
+    `known_mm` has the distances to the points before these, (v,) float; infinite without any.
+    """
+    found = np.full(len(vertices), np.inf) if known_mm is None else known_mm
+    # From a middle, so that little is lost where squares are subtracted.
+    middle = vertices.mean(axis=0)
+    from_middle, places = vertices - middle, places - middle
+    squares = np.einsum("ij,ij->i", from_middle, from_middle)
+    for start in range(0, len(places), POINTS_AT_ONCE):
+        some = places[start : start + POINTS_AT_ONCE]
+        # |v − p|² = |v|² + (|p|² − 2 v·p): one product of matrices for all.
+        rest = np.einsum("ij,ij->i", some, some) - 2.0 * from_middle @ some.T
+        away = np.sqrt(np.maximum(squares + rest.min(axis=1), 0.0))
+        found = np.minimum(found, away)
+    return found
+
+
+class TraceGuide:
+    """Follows a trace, and finds where its next points would help most.
+
+    A place stays until a centimeter has been drawn within `COVERED_MM` of it, or until a stroke
+    that was drawn elsewhere has ended: one that jumped about could not be followed.
+    """
+
+    def __init__(self, mesh: HeadMesh, target: np.ndarray, eye: np.ndarray) -> None:
+        """Prepare guidance on a head, for a target and an eye, (3,) float, RAS mm."""
+        self._mesh = mesh
+        self._targets = guided_targets(target)
+        self._vertices = guided_vertices(mesh, eye)
+        self._places = np.zeros((0, 3))
+        self._rows = np.zeros(0, dtype=int)
+        self._away = np.full(len(self._vertices), np.inf)
+        self._told: NextPlace | None = None
+        self._told_at = -1
+
+    def next_place(self, places: np.ndarray, is_drawing: bool) -> NextPlace | None:
+        """Return where to draw next; None where the trace is full or covers all that is reached.
+
+        Args:
+            places: (n, 3) float, RAS mm, all points so far by the pose that is known.
+            is_drawing: whether a stroke is being drawn.
+        """
+        self._follow(places)
+        if not self._is_kept(is_drawing):
+            self._told, self._told_at = self._best(), len(places)
+        return self._told
+
+    def normal_at(self, place: NextPlace) -> np.ndarray:
+        """Return the outward unit normal (3,) of the skin at a place."""
+        return self._mesh.vertex_normals[place.vertex]
+
+    def _follow(self, places: np.ndarray) -> None:
+        """Take in the points that are new; after an undone stroke, all that are left."""
+        known = len(self._places)
+        if len(places) < known or not np.array_equal(places[:known], self._places):
+            known, self._told_at = 0, -1
+            self._rows, self._away = self._rows[:0], np.full(len(self._vertices), np.inf)
+        new = places[known:]
+        self._rows = np.concatenate([self._rows, nearest_vertices(self._mesh, new)[1]])
+        self._away = nearest_traced_mm(self._mesh.vertices[self._vertices], new, self._away)
+        self._places = places
+
+    def _is_kept(self, is_drawing: bool) -> bool:
+        """Return whether the last place found is still to be drawn at."""
+        if self._told_at == len(self._places):
+            return True
+        if self._told is None or self._told_at < 0 or not is_drawing:
+            return False
+        drawn = self._places[self._told_at :] - self._told.position
+        return int(np.sum(np.linalg.norm(drawn, axis=1) <= COVERED_MM)) < DAB
+
+    def _best(self) -> NextPlace | None:
+        open_ = self._vertices[self._away > COVERED_MM]
+        if len(self._places) >= MAX_TRACE_POINTS or not len(open_):
+            return None
+        allowed = np.zeros(len(self._mesh.vertices), dtype=bool)
+        allowed[open_] = True
+        normals = self._mesh.vertex_normals[self._rows]
+        knowledge = knowledge_so_far(self._places, normals, self._mesh)
+        return next_best_place(knowledge, self._mesh, self._targets, allowed)
+
+
+def _directions(places: np.ndarray, goal: np.ndarray) -> np.ndarray:
+    """Return unit vectors (n, 3) from places (n, 3) to a goal (3,)."""
+    ways = goal - places
+    lengths = np.linalg.norm(ways, axis=1, keepdims=True)
+    return np.asarray(ways / np.where(lengths > 0.0, lengths, 1.0))
+
+
+def _is_seen(vertices: np.ndarray, eye: np.ndarray) -> np.ndarray:
+    """Return which vertices, (v,) bool, no others hide from an eye (3,), with a margin.
+
+    Each is compared with those in its and the neighboring cells of a picture.
+    """
+    ways = vertices - eye
+    ahead = vertices.mean(axis=0) - eye
+    ahead = ahead / np.linalg.norm(ahead)
+    across = np.cross(ahead, np.eye(3)[np.abs(ahead).argmin()])
+    across /= np.linalg.norm(across)
+    depth = ways @ ahead
+    scale = depth.mean() / (_BESIDE_MM * depth)
+    flat = scale[:, None] * (ways @ np.stack([across, np.cross(ahead, across)], axis=1))
+    cells = np.floor(flat).astype(int)
+    cells -= cells.min(axis=0) - 1
+    nearest = np.full(cells.max(axis=0) + 2, np.inf)
+    np.minimum.at(nearest, tuple(cells.T), depth)
+    steps = [(right, up) for right in (-1, 0, 1) for up in (-1, 0, 1)]
+    around = np.min([np.roll(nearest, step, axis=(0, 1)) for step in steps], axis=0)
+    return depth - around[tuple(cells.T)] < BEHIND_MM
+
+
+def _flatness(mesh: HeadMesh) -> np.ndarray:
+    """Return the length of the mean normal around each vertex, (v,) float, 1 where it is flat."""
+    first, second = mesh.edges.T
+    count = len(mesh.vertices)
+    neighbors = 1.0 + np.bincount(mesh.edges.ravel(), minlength=count)
+    mean = mesh.vertex_normals
+    for _ in range(_ROUNDS):
+        sums = [
+            of + np.bincount(first, of[second], count) + np.bincount(second, of[first], count)
+            for of in mean.T
+        ]
+        mean = np.stack(sums, axis=1) / neighbors[:, None]
+    return np.linalg.norm(mean, axis=1)

@@ -23,11 +23,11 @@ from rastrainer.registration.distributions import (
     widened_probability,
     widened_quantile,
 )
+from rastrainer.registration.fits import motions
 from rastrainer.registration.localization_error import (
     LocalizationError,
     fit_of_errors,
     isotropic_error,
-    motions,
 )
 from rastrainer.registration.registration import Registration
 

@@ -1,14 +1,30 @@
-"""The available scenarios: those of RASTrainer and those in the user's folder."""
+"""The available scenarios, of RASTrainer and in the user's folder: listed, packed and unpacked.
+
+A package is a zip file; one that is unpacked is untrusted.
+"""
 
 from __future__ import annotations
 
+import re
+import shutil
+import stat
 import struct
+import tempfile
+import uuid
+import zipfile
+import zlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.scenario.scenario import FILE_NAME, load_scenario
+from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.volume import check_place, read_head_volume
+from rastrainer.procedure.checks import unusable_lines
+from rastrainer.procedure.plan import read_all_no_go, read_procedure_meshes
+from rastrainer.progress import Progress, no_progress
+from rastrainer.scenario.scenario import FILE_NAME, PREVIEW_NAME, Scenario, load_scenario
+from rastrainer.scenario.writer import new_folder, write_scenario
 
 MAX_SCENARIOS = 200
 MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS = 4_000_000, 2048
@@ -96,3 +112,197 @@ def _is_picture(path: Path) -> bool:
     signature, chunk, width, height = _PNG_START.unpack(start)
     is_png = signature == b"\x89PNG\r\n\x1a\n" and chunk == b"IHDR"
     return is_png and 0 < width <= MAX_PICTURE_PIXELS and 0 < height <= MAX_PICTURE_PIXELS
+
+
+MAX_PACKED_BYTES = 64_000_000
+MAX_BYTES = 100_000_000
+MAX_FILES = 64
+MAX_TRIANGLES = 100_000
+"""More than in our own meshes (60,000); the limit of views and collision checks."""
+
+UNPACKING, CHECKING = "Unpacking the scenario", "Checking the scenario"
+UNPACKED_SHARE = 0.5
+
+_TIME = (2000, 1, 1, 0, 0, 0)
+_CHUNK = 1 << 20
+_NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}(/[A-Za-z0-9_-][A-Za-z0-9._-]{0,79}){0,3}")
+_DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+
+
+def pack(folder: Path, package: Path) -> Path:
+    """Write a scenario as a zip file; the same scenario gives the same bytes.
+
+    Other files in the folder are left out.
+
+    Raises:
+        InputError: the scenario is unusable, or the file exists or cannot be written.
+    """
+    scenario, package = checked_scenario(folder), Path(package)
+    if package.exists():
+        raise InputError(f"{package} is there already; name a file that is new.")
+    head = read_head_mesh(scenario.head_mesh)
+    skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
+    volume = read_head_volume(scenario.volume) if scenario.volume else None
+    no_go = read_all_no_go(scenario.procedures)
+    partial = package.parent / f".{uuid.uuid4().hex}.partial"
+    try:
+        with tempfile.TemporaryDirectory() as temporary:
+            clean = Path(temporary)
+            write_scenario(clean, scenario, head, skull, volume, no_go)
+            if scenario.preview:
+                shutil.copyfile(scenario.preview, clean / PREVIEW_NAME)
+            _write_archive(partial, clean)
+        partial.replace(package)
+    except OSError as error:
+        raise InputError(f"{package} cannot be written: {error.strerror}.") from None
+    finally:
+        partial.unlink(missing_ok=True)
+    return package
+
+
+def unpack(package: Path, library: Path, progress: Progress = no_progress) -> Path:
+    """Unpack a scenario into a new folder of `library` named like it, and return the folder.
+
+    If that fails, nothing is left behind.
+
+    Args:
+        package: the zip file.
+        library: folder of folders.
+        progress: receives the step's name and the share of work done; may raise to cancel.
+
+    Raises:
+        InputError: the file is not a valid package, is too large, or the scenario exists already.
+    """
+    package, library = Path(package), Path(library).absolute()
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
+        folder = Path(temporary) / "scenario"
+        folder.mkdir()
+        _read_archive(package, folder, progress)
+        progress(CHECKING, UNPACKED_SHARE)
+        scenario = _checked(package, folder)
+        goal = library / scenario.name
+        if goal.exists():
+            raise InputError(f"The scenario {scenario.name} is in {library} already.")
+        progress(CHECKING, 1.0)
+        with new_folder(goal) as made:
+            shutil.copytree(folder, made, dirs_exist_ok=True)
+    return goal
+
+
+def checked_scenario(folder: Path) -> Scenario:
+    """Load a scenario and check its meshes, its volume and the lines of its procedures.
+
+    Raises:
+        InputError: it is unusable.
+    """
+    scenario = load_scenario(folder)
+    for path in filter(None, (scenario.head_mesh, scenario.skull_mesh)):
+        mesh = read_head_mesh(path)
+        if len(mesh.triangles) > MAX_TRIANGLES:
+            raise InputError(
+                f"The mesh {path} has {len(mesh.triangles)} triangles; a scenario's may have "
+                f"{MAX_TRIANGLES}."
+            )
+        if path == scenario.head_mesh and not mesh.is_closed:
+            raise InputError(f"The head mesh {path} is not closed: it has a hole.")
+    if scenario.volume is not None:
+        volume, head = read_head_volume(scenario.volume), read_head_mesh(scenario.head_mesh)
+        check_place(volume, head, scenario.volume.path)
+    require_usable_lines(scenario)
+    return scenario
+
+
+def require_usable_lines(scenario: Scenario) -> None:
+    """Check that instruments can be placed along all trajectories of a scenario's procedures.
+
+    Raises:
+        InputError: a mesh is unusable, or a trajectory leads out of the head or past the skull.
+    """
+    if scenario.skull_mesh is None or not scenario.procedures:
+        return
+    head = read_head_mesh(scenario.head_mesh)
+    wrong = []
+    for procedure in scenario.procedures:
+        meshes = read_procedure_meshes(procedure, scenario.skull_mesh)
+        wrong += unusable_lines(procedure, head, meshes.skull)
+    if wrong:
+        raise InputError(" ".join(wrong))
+
+
+def _write_archive(path: Path, folder: Path) -> None:
+    with zipfile.ZipFile(path, "x", zipfile.ZIP_DEFLATED) as archive:
+        for file in sorted(entry for entry in folder.rglob("*") if entry.is_file()):
+            info = zipfile.ZipInfo(file.relative_to(folder).as_posix(), _TIME)
+            info.compress_type = zipfile.ZIP_DEFLATED
+            info.external_attr = (stat.S_IFREG | 0o644) << 16
+            archive.writestr(info, file.read_bytes())
+
+
+def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
+    try:
+        if package.stat().st_size > MAX_PACKED_BYTES:
+            raise _refused(package, f"is larger than {MAX_PACKED_BYTES // 10**6} MB")
+        with zipfile.ZipFile(package) as archive:
+            _extract(package, archive, folder, progress)
+    except FileNotFoundError:
+        raise InputError(f"There is no file {package}.") from None
+    except OSError as error:
+        raise InputError(f"{package} cannot be unpacked: {error.strerror or error}.") from None
+    except InputError:
+        raise
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError):
+        raise _refused(package, "is no zip file, or a damaged one") from None
+
+
+def _extract(package: Path, archive: zipfile.ZipFile, folder: Path, progress: Progress) -> None:
+    members = [info for info in archive.infolist() if not info.is_dir()]
+    if not 1 <= len(members) <= MAX_FILES:
+        raise _refused(package, f"holds {len(members)} files; a scenario has 1 to {MAX_FILES}")
+    for info in members:
+        _check_member(package, info)
+    if len({info.filename.lower() for info in members}) != len(members):
+        raise _refused(package, "holds a file twice")
+    left = MAX_BYTES
+    for number, info in enumerate(members):
+        progress(UNPACKING, UNPACKED_SHARE * number / len(members))
+        left = _extract_member(package, archive, info, folder / info.filename, left)
+
+
+def _check_member(package: Path, info: zipfile.ZipInfo) -> None:
+    parts = info.filename.split("/")
+    if not _NAME.fullmatch(info.filename) or any(
+        _DEVICES.fullmatch(part) or part.endswith(".") for part in parts
+    ):
+        raise _refused(package, f"holds a file with the path {info.filename[:80]!a}")
+    kind = stat.S_IFMT(info.external_attr >> 16)
+    if kind not in (0, stat.S_IFREG):
+        raise _refused(package, f"holds a link or a device, {info.filename}")
+    if info.flag_bits & 0x1:
+        raise _refused(package, "is encrypted")
+
+
+def _extract_member(
+    package: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo, path: Path, left: int
+) -> int:
+    """Write one member and return the remaining bytes allowed; its declared size is ignored."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with archive.open(info) as packed, path.open("xb") as file:
+        while chunk := packed.read(_CHUNK):
+            left -= len(chunk)
+            if left < 0:
+                raise _refused(package, f"holds more than {MAX_BYTES // 10**6} MB")
+            file.write(chunk)
+    return left
+
+
+def _checked(package: Path, folder: Path) -> Scenario:
+    try:
+        return checked_scenario(folder)
+    except InputError as error:
+        # Remove the temporary folder from the message.
+        sentence = str(error).replace(f"{folder.resolve()}/", "").replace(f"{folder}/", "")
+        raise InputError(f"{package} cannot be used: {sentence}") from None
+
+
+def _refused(package: Path, reason: str) -> InputError:
+    return InputError(f"{package} {reason}: it is no package of a scenario.")

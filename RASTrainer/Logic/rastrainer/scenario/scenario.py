@@ -19,8 +19,14 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.head.mesh import RAS_LIMIT_MM
-from rastrainer.head.pose import MAX_PERTURBATION, Perturbation, perturbed_pose
-from rastrainer.head.skin_shift import UNMOVED, SkinShift, read_skin
+from rastrainer.head.trial_head import (
+    MAX_PERTURBATION,
+    UNMOVED,
+    Perturbation,
+    SkinShift,
+    perturbed_pose,
+    read_skin,
+)
 from rastrainer.head.volume import VolumeFile, read_volume_file
 from rastrainer.json_checks import IDENTIFIER_WORDS, is_identifier
 from rastrainer.procedure.plan import Procedure, read_procedures
@@ -30,7 +36,7 @@ from rastrainer.protocol import (
     WORLD_LIMIT_MM,
     RegistrationMethod,
 )
-from rastrainer.scenario.tasks import (
+from rastrainer.scenario.points import (
     Landmark,
     PlannedTarget,
     PlannedTrajectory,

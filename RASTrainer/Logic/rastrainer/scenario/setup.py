@@ -10,7 +10,7 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, read_fields
 from rastrainer.files.writing import write_json
-from rastrainer.head.pose import MAX_PERTURBATION, Perturbation
+from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Camera, Furniture
 

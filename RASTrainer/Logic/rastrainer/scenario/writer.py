@@ -18,15 +18,14 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import read_fields
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.files.writing import make_private_folder, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
 from rastrainer.head.volume import HeadVolume, read_head_volume, read_volume_file, write_head_volume
 from rastrainer.json_checks import identifier_of
 from rastrainer.procedure.plan import NO_GO_FOLDER, procedure_json
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import FILE_NAME, FORMAT_VERSION, SKULL_KINDS, Camera, Scenario
-from rastrainer.scenario.tasks import Task
 
 HEAD_NAME, SKULL_NAME, VOLUME_NAME = "head.ply", "skull.ply", "volume.nrrd"
 _DECIMALS = 4

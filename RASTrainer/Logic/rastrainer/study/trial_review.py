@@ -19,7 +19,7 @@ from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
-from rastrainer.trial.trainee_progress import PastTrial, progress_of
+from rastrainer.trial.trial_feedback import PastTrial, progress_of
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.head.skin_shift import UNMOVED, SkinShift
+from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID

@@ -14,7 +14,7 @@ import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
-from rastrainer.head.skin_shift import UNMOVED, SkinShift
+from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.json_checks import Argument, checked_keys
 from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.protocol import (

@@ -25,11 +25,10 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, nearest_vertices, outward_normals, read_head_mesh
 from rastrainer.protocol import FIDUCIAL_COUNT, TRACED_METHODS, RegistrationMethod
-from rastrainer.registration.fits import RIGID
-from rastrainer.registration.localization_error import motions
+from rastrainer.registration.fits import RIGID, motions
 from rastrainer.registration.target_error import true_errors
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, task_by_method
-from rastrainer.scenario.tasks import Task
 from rastrainer.trial.scoring import ScoreReference
 
 MAX_RESULTS = 64

@@ -22,7 +22,7 @@ from rastrainer import json_checks, transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
-from rastrainer.head.skin_shift import SkinShift
+from rastrainer.head.trial_head import SkinShift
 from rastrainer.json_checks import Argument, accepted, checked_keys
 from rastrainer.protocol import (
     COARSE_LANDMARKS,
@@ -39,10 +39,14 @@ from rastrainer.registration.localization_error import (
     isotropic_error,
 )
 from rastrainer.registration.registration import Registration, register, register_all_kinds
-from rastrainer.registration.surface_error import knowledge_of, surface_target_error
+from rastrainer.registration.surface_error import (
+    TraceGuide,
+    knowledge_of,
+    nearest_traced_mm,
+    surface_target_error,
+)
 from rastrainer.registration.surface_match import SurfaceMatch, match_surface
 from rastrainer.registration.target_error import TargetError, target_error, true_errors
-from rastrainer.registration.trace_guidance import TraceGuide, nearest_traced_mm
 from rastrainer.scenario.scenario import Scenario, method_of, task_by_method
 from rastrainer.trial.record import TrialRecord, trace_points
 from rastrainer.trial.score_reference import point_normals

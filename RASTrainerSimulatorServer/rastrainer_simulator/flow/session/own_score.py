@@ -31,7 +31,7 @@ from rastrainer.trial.ctps import PUBLISHED_STUDY, read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
-from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.state import Answer, TrainingState
 

@@ -10,7 +10,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
-from rastrainer.registration.trace_guidance import COVERED_MM, TraceGuide
+from rastrainer.registration.surface_error import COVERED_MM, TraceGuide
 from rastrainer.scenario.scenario import Camera
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.touch_registration import trace_guide

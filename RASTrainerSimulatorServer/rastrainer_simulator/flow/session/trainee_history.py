@@ -27,7 +27,7 @@ from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION
-from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.ops.stamps import file_stamp, iso
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome

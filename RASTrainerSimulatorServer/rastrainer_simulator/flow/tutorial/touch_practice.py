@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from rastrainer.head.pose import Perturbation
+from rastrainer.head.trial_head import Perturbation
 from rastrainer.protocol import TRIAL_RUN, CommandName
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.scenario.tasks import Task
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.operator_input import OperatorCommand

@@ -34,7 +34,7 @@ from rastrainer.trial.scoring import (
     SCORE_VERSION,
     passes,
 )
-from rastrainer.trial.trainee_progress import (
+from rastrainer.trial.trial_feedback import (
     ADEQUATE_FAILURES,
     INADEQUATE_FAILURES,
     TRAINING_TRIALS,

@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import read_markups, write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, read_markups, write_markups
 from rastrainer.progress import Progress, no_progress
+from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.scenario.tasks import Landmark
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
 from rastrainer.slicer.scene.landmark_nodes import LandmarkPoints
 from rastrainer.slicer.translation import _

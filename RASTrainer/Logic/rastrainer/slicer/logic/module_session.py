@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.protocol import Phase, RegistrationMethod
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, playable_methods
-from rastrainer.scenario.tasks import Task
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon

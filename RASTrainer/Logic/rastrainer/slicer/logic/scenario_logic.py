@@ -7,8 +7,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.progress import Progress, no_progress
-from rastrainer.scenario.library import ListedScenario
-from rastrainer.scenario.package import unpack
+from rastrainer.scenario.library import ListedScenario, unpack
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.head_preview import findSkin

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
-from rastrainer.files.markups import write_markups
-from rastrainer.files.point_list import PointList
+from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
 from rastrainer.scenario.setup import SetUp, write_setup

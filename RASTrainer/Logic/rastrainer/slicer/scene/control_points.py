@@ -10,7 +10,7 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.scenario.tasks import touch_order
+from rastrainer.scenario.points import touch_order
 from rastrainer.slicer.scene.link_nodes import shownText
 from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, nodesOfClass
 from rastrainer.slicer.translation import _

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.scenario.landmark_checks import FACE_LANDMARKS
-from rastrainer.scenario.tasks import Landmark
+from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
 from rastrainer.slicer.scene.control_points import labelOf, setPoints, worldPoints
 from rastrainer.slicer.scene.plan_points import LIST, placedRows, startPlacing, stopPlacing
 from rastrainer.slicer.scene.scene import Role, findNode, findOrAddNode

@@ -12,8 +12,8 @@ from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import RegistrationMethod
+from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, task_by_method
-from rastrainer.scenario.tasks import Task
 from rastrainer.slicer.scene.control_points import setPoints
 from rastrainer.slicer.scene.scenario_volume import requestVolume
 from rastrainer.slicer.scene.scene import (

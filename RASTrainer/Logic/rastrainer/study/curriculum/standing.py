@@ -19,7 +19,7 @@ from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.steps import trial_title
 from rastrainer.trial.scoring import passes, score_version
-from rastrainer.trial.trainee_progress import competence_of
+from rastrainer.trial.trial_feedback import competence_of
 
 PassMarkOf = Callable[[str], "float | None"]
 """From a version of the score to the mark that passes; None where there is none."""

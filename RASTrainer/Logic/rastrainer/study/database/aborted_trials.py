@@ -15,7 +15,7 @@ from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_delet
 from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES, decoded, json_text
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.trial.aborted_trial import AbortedTrial
-from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer.trial.trial_feedback import PastTrial
 
 
 @dataclass(frozen=True)

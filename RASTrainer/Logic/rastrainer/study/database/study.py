@@ -23,7 +23,7 @@ from rastrainer.trial.ctps import Trial
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
-from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer.trial.trial_feedback import PastTrial
 
 STUDY_FILE = "study.db"
 """The usual name."""

@@ -28,7 +28,7 @@ from rastrainer.trial.ctps import Trial
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
-from rastrainer.trial.trainee_progress import PastTrial
+from rastrainer.trial.trial_feedback import PastTrial
 
 RECORD_LIMIT_BYTES = 2**20
 TRUTH_LIMIT = 1e6

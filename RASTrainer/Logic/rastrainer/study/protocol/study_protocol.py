@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields, fields_of, read_fields
-from rastrainer.head.skin_shift import read_skin
+from rastrainer.head.trial_head import read_skin
 from rastrainer.json_checks import is_identifier
 from rastrainer.protocol import PLAYED_METHODS, TRIAL_RUN, GhostRule, Guidance, Mode, TutorialRule
 from rastrainer.study.protocol.questionnaires import find_questionnaire

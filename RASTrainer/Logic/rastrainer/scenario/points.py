@@ -1,0 +1,321 @@
+"""The points of a scenario: tasks of fifteen fiducials, targets, a trajectory, landmarks.
+
+Of landmarks it is checked whether they can be used: how many, on the skin, on the right side,
+spread.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+
+from rastrainer.errors import InputError
+from rastrainer.files.json_fields import Fields
+from rastrainer.files.point_list import read_markups
+from rastrainer.head.mesh import RAS_LIMIT_MM, HeadMesh, nearest_on_mesh
+from rastrainer.protocol import COARSE_LANDMARKS, FIDUCIAL_COUNT
+
+LABELS = tuple(str(number) for number in range(1, FIDUCIAL_COUNT + 1))
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task for trainees.
+
+    Attributes:
+        name: such as "trial-run" or "task-1", for commands and records.
+        title: for people.
+        labels: "1" to "15", in touch order.
+        fiducials: (15, 3) float, RAS mm, in touch order.
+        complexity: index from `rastrainer_simulator.authoring.touch_order`.
+        shortest_path_mm: from `rastrainer_simulator.authoring.surface_path`, or None.
+    """
+
+    name: str
+    title: str
+    labels: tuple[str, ...]
+    fiducials: np.ndarray
+    complexity: float
+    shortest_path_mm: float | None = None
+
+
+def read_task(
+    path: Path, name: str, title: str, complexity: float, shortest_path_mm: float | None = None
+) -> Task:
+    """Read a task's fiducials from a `.mrk.json` file.
+
+    Raises:
+        InputError: the file is unusable, or does not have fifteen different points labeled "1" to
+            "15" in this order.
+    """
+    points = read_markups(path)
+    if tuple(points.labels) != LABELS:
+        raise InputError(
+            f'{path} must hold {FIDUCIAL_COUNT} points labeled "1" to "{FIDUCIAL_COUNT}", in the '
+            "order to touch."
+        )
+    fiducials = np.array(points.points, dtype=float)
+    if not np.all(np.abs(fiducials) <= RAS_LIMIT_MM):
+        raise InputError(f"{path} has a point that is not within ±{RAS_LIMIT_MM:g} mm.")
+    if len(np.unique(fiducials, axis=0)) != FIDUCIAL_COUNT:
+        raise InputError(f"{path} has two points at the same place.")
+    fiducials.setflags(write=False)
+    return Task(name, title, LABELS, fiducials, complexity, shortest_path_mm)
+
+
+_NUMBER = re.compile(r"(\d{1,6})\s*$")
+
+
+def touch_order(labels: Sequence[str]) -> list[int]:
+    """Return the rows of a list of fifteen fiducials in touch order.
+
+    The order follows the numbers at the ends of the labels, such as "7" or Slicer's "F-7", or the
+    list if there are none.
+
+    Raises:
+        InputError: the number of fiducials is wrong, or their numbers are ambiguous.
+    """
+    if len(labels) != FIDUCIAL_COUNT:
+        raise InputError(f"it has {len(labels)} fiducials; a task has {FIDUCIAL_COUNT}.")
+    found = [_NUMBER.search(label) for label in labels]
+    if not any(found):
+        return list(range(FIDUCIAL_COUNT))
+    numbers = [int(match.group(1)) for match in found if match]
+    if len(set(numbers)) != FIDUCIAL_COUNT:
+        raise InputError(
+            "some of its labels have no number, or two the same one; number the fiducials from 1 "
+            f"to {FIDUCIAL_COUNT} in the order to touch, or none of them."
+        )
+    return sorted(range(FIDUCIAL_COUNT), key=numbers.__getitem__)
+
+
+MAX_TARGETS = 20
+MIN_TRAJECTORY_MM = 1.0
+
+
+@dataclass(frozen=True)
+class PlannedTarget:
+    """A target point, such as a tumor's center.
+
+    Attributes:
+        name: for people.
+        position: (3,) float, RAS mm.
+    """
+
+    name: str
+    position: np.ndarray
+
+
+@dataclass(frozen=True)
+class PlannedTrajectory:
+    """A straight path into the head.
+
+    Attributes:
+        name: for people.
+        entry: (3,) float, RAS mm.
+        target: (3,) float, RAS mm.
+    """
+
+    name: str
+    entry: np.ndarray
+    target: np.ndarray
+
+
+def read_targets(fields: Fields) -> tuple[PlannedTarget, ...]:
+    """Return the optional field `targets`.
+
+    Raises:
+        InputError: it is invalid.
+    """
+    if "targets" not in fields.names():
+        return ()
+    entries = fields.list_of_fields("targets", 0, MAX_TARGETS)
+    return tuple(
+        PlannedTarget(entry.text("name", 60), entry.point("positionRas", RAS_LIMIT_MM))
+        for entry in entries
+    )
+
+
+def read_trajectory(fields: Fields) -> PlannedTrajectory | None:
+    """Return the optional field `trajectory`.
+
+    Raises:
+        InputError: it is invalid.
+    """
+    if "trajectory" not in fields.names():
+        return None
+    own = fields.fields("trajectory")
+    entry, target = (own.point(end, RAS_LIMIT_MM) for end in ("entryRas", "targetRas"))
+    if np.linalg.norm(target - entry) < MIN_TRAJECTORY_MM:
+        raise own.error("entryRas", f"at least {MIN_TRAJECTORY_MM:g} mm from targetRas")
+    return PlannedTrajectory(own.text("name", 60), entry, target)
+
+
+MAX_LANDMARKS = 15
+
+
+@dataclass(frozen=True)
+class Landmark:
+    """A landmark.
+
+    Attributes:
+        name: such as "Nasion", by which it is asked for.
+        position: (3,) float, RAS mm.
+    """
+
+    name: str
+    position: np.ndarray
+
+
+def read_landmarks(fields: Fields) -> tuple[Landmark, ...]:
+    """Return the optional field `landmarks` of a scenario, in the order of touching.
+
+    Raises:
+        InputError: it is invalid.
+    """
+    if "landmarks" not in fields.names():
+        return ()
+    landmarks: dict[str, Landmark] = {}
+    for entry in fields.list_of_fields("landmarks", 0, MAX_LANDMARKS):
+        name = entry.text("name", 40)
+        if name in landmarks:
+            raise entry.error("name", "another name than that of each landmark before")
+        landmarks[name] = Landmark(name, entry.point("positionRas", RAS_LIMIT_MM))
+    return tuple(landmarks.values())
+
+
+NASION, NOSE_TIP = "Nasion", "Tip of the nose"
+FACE_LANDMARKS = (
+    NASION,
+    "Right outer canthus",
+    "Left outer canthus",
+    "Right inner canthus",
+    "Left inner canthus",
+    "Right tragus",
+    "Left tragus",
+    NOSE_TIP,
+)
+"""The usual ones; right and left are the patient's."""
+SNAP_MM = 5.0
+"""A landmark nearer to the skin than this is moved onto it; one farther off is wrong."""
+APART_MM = 10.0
+"""Least distance of two landmarks."""
+LEAST_SPREAD_MM = 15.0
+"""Least distance of the first three landmarks from the line that fits them best, RMS times √3."""
+ASIDE_MM = 3.0
+"""How far a landmark of one side may be beyond the middle of the head."""
+_SIDES = {"right": 1.0, "left": -1.0}
+
+
+def on_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
+    """Return landmarks with those near the skin moved onto it; others stay where they are."""
+    moved = []
+    for landmark in landmarks:
+        nearest = nearest_on_mesh(mesh, landmark.position)
+        is_near = nearest.distance <= SNAP_MM
+        place = nearest.position.round(2) if is_near else landmark.position
+        moved.append(Landmark(landmark.name, place))
+    return tuple(moved)
+
+
+def check_landmarks(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
+    """Return a sentence for each thing that is wrong with the landmarks of a head."""
+    if not COARSE_LANDMARKS <= len(landmarks) <= MAX_LANDMARKS:
+        return [
+            f"The head has {len(landmarks)} landmarks; place {COARSE_LANDMARKS} to "
+            f"{MAX_LANDMARKS} of them."
+        ]
+    return [
+        *_named_twice(landmarks),
+        *_off_skin(mesh, landmarks),
+        *_on_other_side(mesh, landmarks),
+        *_close(landmarks),
+        *_in_line(landmarks[:COARSE_LANDMARKS]),
+    ]
+
+
+def spread_first(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
+    """Return landmarks in an order whose first three enclose the largest triangle.
+
+    They are the coarse start of a trace. The others follow as they were.
+    """
+    if len(landmarks) <= COARSE_LANDMARKS:
+        return tuple(landmarks)
+    first = max(combinations(landmarks, COARSE_LANDMARKS), key=_area)
+    names = {landmark.name for landmark in first}
+    return (*first, *(each for each in landmarks if each.name not in names))
+
+
+def _area(three: Sequence[Landmark]) -> float:
+    a, b, c = (landmark.position for landmark in three)
+    return float(np.linalg.norm(np.cross(b - a, c - a)))
+
+
+def _named_twice(landmarks: Sequence[Landmark]) -> list[str]:
+    names = [landmark.name for landmark in landmarks]
+    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
+    return [f"{name} is placed {names.count(name)} times; keep one." for name in twice]
+
+
+def _off_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
+    wrong = []
+    for landmark in landmarks:
+        away = nearest_on_mesh(mesh, landmark.position).distance
+        if away > SNAP_MM:
+            wrong.append(
+                f"{landmark.name} is {away:.0f} mm off the skin; place it within {SNAP_MM:g} mm."
+            )
+    return wrong
+
+
+def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
+    """Return which landmarks are on the other side than their names say; +R is the right."""
+    places = {landmark.name: landmark.position for landmark in landmarks}
+    middle = float((mesh.vertices[:, 0].max() + mesh.vertices[:, 0].min()) / 2.0)
+    swapped, wrong = [], []
+    for name, place in places.items():
+        side, _, rest = name.partition(" ")
+        sign = _SIDES.get(side.lower())
+        if sign is None or sign * (place[0] - middle) > -ASIDE_MM:
+            continue
+        other = next((n for n in places if n.lower() == f"{_OTHER[side.lower()]} {rest}"), None)
+        if other is None or -sign * (places[other][0] - middle) > -ASIDE_MM:
+            wrong.append(
+                f"{name} is on the patient's {_OTHER[side.lower()]}; R is positive on the right."
+            )
+        elif other not in swapped:
+            swapped.append(name)
+            wrong.append(f"{name} and {other} are swapped; R is positive on the patient's right.")
+    return wrong
+
+
+_OTHER = {"right": "left", "left": "right"}
+
+
+def _close(landmarks: Sequence[Landmark]) -> list[str]:
+    wrong = []
+    for one, other in combinations(landmarks, 2):
+        apart = float(np.linalg.norm(one.position - other.position))
+        if apart < APART_MM and one.name != other.name:
+            wrong.append(
+                f"{one.name} and {other.name} are {apart:.1f} mm apart; landmarks must be "
+                f"{APART_MM:g} mm apart."
+            )
+    return wrong
+
+
+def _in_line(three: Sequence[Landmark]) -> list[str]:
+    places = np.array([landmark.position for landmark in three], dtype=float)
+    spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1]
+    if spread >= LEAST_SPREAD_MM:
+        return []
+    names = ", ".join(landmark.name for landmark in three)
+    return [
+        f"The first three landmarks ({names}) are almost in a line, which leaves the head free to "
+        "turn about it; let three that are spread come first."
+    ]
