@@ -157,7 +157,7 @@ def test_the_error_of_a_checkpoint_is_by_the_trainee_s_own_registration(scenario
     expected = math.hypot(shift_mm, 3.0)
     assert reply.data["checkpoint"] == "Vertex"
     assert reply.data["errorMm"] == pytest.approx(expected, abs=1e-9)
-    assert f"Vertex is {expected:.1f} mm off by your registration" in trial.state.instruction
+    assert f"Vertex is {expected:.1f} mm off with your registration" in trial.state.instruction
     (point,) = trial.procedure.checkpoints
     assert MM_PER_M * point.error == pytest.approx(expected, abs=1e-9)
     assert [event.kind for event in reply.events] == [EventKind.CHECKPOINT]

@@ -120,7 +120,7 @@ def test_from_thirty_points_on_the_trial_is_registered(landmarked):
     assert "end it with Trace" in trial.do(CommandName.REGISTER).message
     trial.must(CommandName.TRACE, on=False)
     assert trial.state.phase is Phase.COMPLETE
-    assert "30 points are traced. Register them, or trace on." in trial.state.instruction
+    assert "30 points are traced. Register them, or keep tracing." in trial.state.instruction
     told = trial.must(CommandName.GET_TRIAL).data
     assert len(told["trace"]) == MIN_TRACE_POINTS
     last = trial.state.trace.points[-1]

@@ -196,7 +196,7 @@ def test_undo_takes_back_the_last_touch_also_after_the_fifteenth(scenario):
 def test_undo_without_a_touch_says_what_comes_first(scenario):
     trial = Trial(scenario)
     trial.start()
-    assert "Capture point 1 first" in trial.do(CommandName.UNDO).message
+    assert "touch point 1 first" in trial.do(CommandName.UNDO).message
 
 
 def test_completion_time_runs_from_the_start_to_the_last_kept_touch_without_pauses(scenario):

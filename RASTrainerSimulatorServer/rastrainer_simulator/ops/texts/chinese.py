@@ -204,7 +204,7 @@ _TABLE: Mapping[str, str] = {
     "already paused": "试验已经暂停：请 Resume 或 Abort。",
     "all touched": "{count} 个点已全部触碰：请 Register，或用 Undo 撤销最后一点。",
     "is registered": "试验已配准并保存：请用 StartTask 开始下一次。",
-    "nothing to undo": "尚未触碰任何点：请先用 Capture 记录点 {point}。",
+    "nothing to undo": "尚未触碰任何点：请先触碰点 {point}。",
     "not registered": "试验尚未配准：请先用 Capture 记录 {count} 个点，再 Register。",
     "no registration": "试验尚无配准：TrialScored 之前须先 SubmitRegistration。",
     "registration is final": "此配准已最终确定：真实误差已公布，不再接受其他配准。",

@@ -36,8 +36,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "trace": "{trainee}, the landmarks are touched. Now draw the tip over the skin: {least} "
         "points or more, one a millimeter.",
         "tracing": "{trainee}, draw the tip over the skin, to parts that face different ways.",
-        "traced": "{trainee}, {traced} points are traced. Trace on: {least} are needed.",
-        "traced enough": "{trainee}, {traced} points are traced. Register them, or trace on.",
+        "traced": "{trainee}, {traced} points are traced. Keep tracing: {least} are needed.",
+        "traced enough": "{trainee}, {traced} points are traced. Register them, or keep tracing.",
         "traced all": "{trainee}, {traced} points are traced, the most that a trial takes. "
         "Register them now.",
         "paused": "{trainee}, the trial is paused. Resume when you are ready.",
@@ -50,7 +50,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "verifying": "{trainee}, your points are being registered.",
         "verify": "{trainee}, your points are registered: FRE {fre:.2f} mm. Touch checkpoints, "
         "then accept the registration or register again.",
-        "checked": "{trainee}, {name} is {error:.1f} mm off by your registration. Check another "
+        "checked": "{trainee}, {name} is {error:.1f} mm off with your registration. Check another "
         "point, accept the registration, or register again.",
         "register again": "{trainee}, touch all points again. Begin with point {point}.",
         "align": "{trainee}, bring the guide onto the planned line of {name}, then lock it.",
@@ -83,7 +83,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "it onto the line by hand.",
         "line out of reach": "The robot cannot hold the guide on this line with a stand-off of "
         "{stand_off:g} mm: choose another stand-off, or move it by hand.",
-        "bone is cut": "The drill has cut bone: the hole stays where it is. Drill on, then "
+        "bone is cut": "The drill has cut bone: the hole stays where it is. Keep drilling, then "
         "insert the instrument.",
         "nothing drilled": "Nothing is drilled yet: drill before inserting the instrument.",
         "still in the guide": "The instrument is still in the guide: advance it before "
@@ -121,17 +121,17 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "last landmark.",
         "trace is full": "{traced} points are traced, the most that a trial takes: Register them, "
         "or Undo the last stroke.",
-        "all traced": "{traced} points are traced: Register them, Trace on, or Undo the last "
+        "all traced": "{traced} points are traced: Register them, keep tracing, or Undo the last "
         "stroke.",
         "still tracing": "A stroke is being drawn: end it with Trace before Register.",
-        "too few traced": "{traced} points are traced: Register needs {least}, so Trace on.",
+        "too few traced": "{traced} points are traced: Register needs {least}, so keep tracing.",
         "not paused trace": "The trial is not paused: Trace the skin, or Pause it first.",
         "not paused": "The trial is not paused: Capture point {point}, or Pause it first.",
         "is paused": "The trial is paused: Resume it first.",
         "already paused": "The trial is paused already: Resume or Abort it.",
         "all touched": "All {count} points are touched: Register them, or Undo the last one.",
         "is registered": "The trial is registered and stored: StartTask begins the next one.",
-        "nothing to undo": "No point is touched yet: Capture point {point} first.",
+        "nothing to undo": "No point has been touched yet: touch point {point} first.",
         "not registered": "The trial is not registered yet: Capture its {count} points and "
         "Register them first.",
         "no registration": "The trial has no registration yet: SubmitRegistration comes before "
@@ -150,7 +150,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "interrupted complete": "{trainee}, this trial was interrupted; all {count} points are "
         "kept. Register them now.",
         "interrupted trace": "{trainee}, this trial was interrupted; {traced} traced points are "
-        "kept. Trace on when you are ready, or abort it; {least} points can be registered.",
+        "kept. Keep tracing when you are ready, or abort it; {least} points can be registered.",
         # When nobody could see the trial, which pauses it.
         "unseen.left": "Paused: the view that showed the trial was closed or lost.",
         "unseen.unplugged": "Paused: the gamepad was unplugged.",

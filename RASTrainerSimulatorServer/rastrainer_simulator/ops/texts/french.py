@@ -243,7 +243,7 @@ _TABLE: Mapping[str, str] = {
     "already paused": "L'essai est déjà en pause : Resume ou Abort.",
     "all touched": "Les {count} points sont touchés : Register, ou Undo pour le dernier.",
     "is registered": "L'essai est recalé et conservé : StartTask commence le suivant.",
-    "nothing to undo": "Aucun point n'est encore touché : d'abord Capture pour le point {point}.",
+    "nothing to undo": "Aucun point n'est encore touché : touchez d'abord le point {point}.",
     "not registered": "L'essai n'est pas encore recalé : d'abord Capture pour ses {count} points "
     "et Register.",
     "no registration": "L'essai n'a pas encore de recalage : SubmitRegistration vient avant "

@@ -242,7 +242,7 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "all touched": "Alle {count} Punkte sind berührt: Register, oder Undo für den letzten.",
         "is registered": "Der Versuch ist registriert und aufbewahrt: StartTask beginnt den "
         "nächsten.",
-        "nothing to undo": "Noch ist kein Punkt berührt: erst Capture für Punkt {point}.",
+        "nothing to undo": "Noch ist kein Punkt berührt: erst Punkt {point} berühren.",
         "not registered": "Der Versuch ist noch nicht registriert: erst Capture für seine {count} "
         "Punkte und Register.",
         "no registration": "Der Versuch ist noch nicht registriert: Vor TrialScored kommt "

@@ -239,7 +239,7 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "already paused": "El ensayo ya está en pausa: Resume o Abort.",
         "all touched": "Los {count} puntos están tocados: Register, o Undo para el último.",
         "is registered": "El ensayo está registrado y guardado: StartTask empieza el siguiente.",
-        "nothing to undo": "Aún no hay ningún punto tocado: primero Capture para el punto {point}.",
+        "nothing to undo": "Aún no hay ningún punto tocado: toque primero el punto {point}.",
         "not registered": "El ensayo aún no está registrado: primero Capture para sus {count} "
         "puntos y Register.",
         "no registration": "El ensayo aún no tiene registro: SubmitRegistration viene antes de "
