@@ -14,7 +14,7 @@ import numpy as np
 from rastrainer.number_text import fixed
 from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
 from rastrainer.trial.scoring import PASS_MARK, ScoreMeasures, passes, score_trial
-from rastrainer_simulator.collision.capsules import sphere_directions
+from rastrainer_simulator.collision.robot_shape import sphere_directions
 from Testing.error_rates.cheats import MOST
 from Testing.error_rates.hands import HEADS, TASKS, USUAL, scenario_of, trials_of
 from Testing.error_rates.measured import share_of, share_text

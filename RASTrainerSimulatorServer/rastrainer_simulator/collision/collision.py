@@ -12,12 +12,16 @@ import numpy as np
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.scenario import Furniture
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.capsules import segment_distance
-from rastrainer_simulator.collision.clearance import SHAFT_NEAR, Clearance, DistanceBounds, Nearest
-from rastrainer_simulator.collision.head_clearance import HeadClearance, LineOfSight
-from rastrainer_simulator.collision.head_surface import HeadSurface
+from rastrainer_simulator.collision.clearance import (
+    SHAFT_NEAR,
+    Clearance,
+    DistanceBounds,
+    HeadClearance,
+    LineOfSight,
+)
+from rastrainer_simulator.collision.head_surface import HeadSurface, Nearest
 from rastrainer_simulator.collision.robot_shape import ArmCapsules, PosedArm, RobotShape
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.vectors import Vector, segment_distance
 
 
 @dataclass(frozen=True)

@@ -4,18 +4,33 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import fcl
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.collision.capsules import thin_segment
-from rastrainer_simulator.collision.clearance import Nearest
 from rastrainer_simulator.vectors import Vector, vector
 
 # Shares of a triangle: below them a point lies on an edge or corner, and a triangle has no area.
 _ON_FEATURE = 1e-6
 _FLAT = 1e-12
+
+
+class Nearest(NamedTuple):
+    """The point of the head's surface that is nearest to the tip or to the shaft.
+
+    Attributes:
+        distance_m: signed clearance, m; below zero inside the head.
+        point: on the surface, m.
+        normal: unit vector away from the head, along which the clearance grows.
+        triangle: of the head's surface, by its number.
+    """
+
+    distance_m: float
+    point: Vector
+    normal: Vector
+    triangle: int
 
 
 class ClosedSurface:
@@ -157,6 +172,15 @@ _ANY = fcl.CollisionRequest()
 # Nearer than this, the line to the nearest point has no direction of its own.
 _TOUCHING = 1e-9
 _BASE_THICKNESS = 0.001
+
+
+def thin_segment(start: np.ndarray, end: np.ndarray) -> fcl.CollisionObject:
+    """Return the segment between two points (3,) float of the frame whose pose is set later."""
+    mesh = fcl.BVHModel()
+    mesh.beginModel(1, 3)
+    mesh.addSubModel([start, end, (start + end) / 2.0], [[0, 1, 2]])
+    mesh.endModel()
+    return fcl.CollisionObject(mesh)
 
 
 class HeadSurface:

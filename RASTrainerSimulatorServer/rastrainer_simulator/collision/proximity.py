@@ -17,7 +17,7 @@ from rastrainer.motion.trajectory import FAR_MM, NEAR_MM, RELEASED_MM, TOUCHING_
 from rastrainer.protocol import Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.clearance import Clearance
-from rastrainer_simulator.collision.sliding import REST
+from rastrainer_simulator.collision.contact import REST
 from rastrainer_simulator.vectors import Vector, dot, subtract
 
 

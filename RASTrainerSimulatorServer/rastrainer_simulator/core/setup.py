@@ -20,18 +20,18 @@ from rastrainer.files.reading import read_json
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.scenario import FILE_NAME, Scenario, load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.collision.capsules import Capsule
-from rastrainer_simulator.collision.robot_shape import LinkShape, RobotShape, robot_shape
+from rastrainer_simulator.collision.robot_shape import Capsule, LinkShape, RobotShape, robot_shape
 from rastrainer_simulator.core.settings import SimulationSettings, settings_to_json
-from rastrainer_simulator.robot.mesh_files import MeshPart, mesh_inside
 from rastrainer_simulator.robot.model import (
     DEFAULT_URDF,
+    MeshPart,
     RobotLink,
     RobotModel,
     load_robot,
     make_model,
+    mesh_inside,
 )
-from rastrainer_simulator.robot.srs_geometry import Joint
+from rastrainer_simulator.robot.srs_arm import Joint
 
 PREPARED_NAME = "prepared.json"
 MAX_BYTES = 2**20

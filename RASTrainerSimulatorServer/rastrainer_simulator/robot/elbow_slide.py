@@ -9,17 +9,19 @@ from __future__ import annotations
 from itertools import islice
 from math import inf, sqrt
 
-from rastrainer_simulator.robot.branches import Roll, joint_angles, nearest_branch
-from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, chain, clear
-from rastrainer_simulator.robot.elbow_circle import (
+from rastrainer_simulator.robot.closure import (
     ElbowCircle,
+    Roll,
     elbow_circle,
     elbows_at_limits,
     elbows_that_keep_a_pan,
+    joint_angles,
+    nearest_branch,
     nearest_elbow,
     tilts_allow,
 )
 from rastrainer_simulator.robot.goal import Goal
+from rastrainer_simulator.robot.srs_arm import Angles, CanonicalArm, Chain, chain, clear
 from rastrainer_simulator.vectors import Vector, scale
 
 

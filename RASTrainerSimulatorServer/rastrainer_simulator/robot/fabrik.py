@@ -1,37 +1,48 @@
 """FABRIK for 7R S-R-S arms: tool position, position and direction, or full pose to joint angles.
 
-1. A goal close by continues a motion: a position is predicted by a step along the Jacobian
-   (`prediction`); with the tool held the elbow's path is predicted (`prediction` too), and close
-   to a singularity it is slid to where the joints move least (`elbow_slide`). A goal far away
-   starts from the last posture.
-2. FABRIK reaches backward from the target and forward from the base (`fabrik_passes`), and each
-   pass closes the elbow exactly (`closure`, `elbow_circle`): FABRIK alone converges slowly below a
-   micrometer (J. Intell. Robot. Syst. 2023, 10.1007/s10846-023-01895-2).
-3. The joint angles are read off the links, on the branch nearest to the last ones (`branches`).
+1. A goal close by continues a motion, whose warm start is about where the joints go by the least
+   motion of them: for a position a step along the Jacobian (`_predicted`); with the tool held the
+   elbow's path (`_followed`), and close to a singularity the elbow is slid to where the joints
+   move least (`elbow_slide`). A goal far away starts from the last posture.
+2. FABRIK reaches backward from the target and forward from the base, and each pass closes the elbow
+   exactly (`reaching`, `closure`): FABRIK alone converges slowly below a micrometer
+   (J. Intell. Robot. Syst. 2023, 10.1007/s10846-023-01895-2).
+3. The joint angles are read off the links, on the branch nearest to the last ones (`closure`).
 4. What is out of reach is replaced by the nearest that is not (`reaching`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf
+from math import cos, dist, inf, sin, sqrt
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.robot.arm_frame import ArmFrame, solve_rounded
-from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, chain
+from rastrainer_simulator.robot.closure import elbow_circle
+from rastrainer_simulator.robot.elbow_slide import LEAP, close_at, self_motion, squared_motion
 from rastrainer_simulator.robot.goal import (
     BLOCKED,
     OUT_OF_REACH,
     ROLL_BLOCKED,
+    ArmFrame,
     FabrikSettings,
     Goal,
     Solution,
+    solve_rounded,
 )
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.robot.prediction import follow, predict
 from rastrainer_simulator.robot.reaching import Reached, Start, reach_position, reach_wrist
-from rastrainer_simulator.vectors import Vector
+from rastrainer_simulator.robot.srs_arm import (
+    Angles,
+    CanonicalArm,
+    Chain,
+    chain,
+    clamped,
+    clear,
+    inside,
+    tip,
+)
+from rastrainer_simulator.vectors import ZERO, Vector, scale, subtract, unit
 
 # A warm start that would move a joint farther than this (rad) looks for an elbow that avoids it.
 _JUMP = 0.5
@@ -85,9 +96,9 @@ class Fabrik:
             reached = self._reach(goal, aim, start, links, inf)
         else:
             if aim.tool is None:
-                start, links = predict(self._arm, start, links, aim.position)
+                start, links = _predicted(self._arm, start, links, aim.position)
             else:
-                followed = follow(self._arm, start, links, aim)
+                followed = _followed(self._arm, start, links, aim)
                 if followed is not None:
                     return self._solution(goal, followed, 1)
             reached = self._reach(goal, aim, start, links, _JUMP)
@@ -139,3 +150,200 @@ class Fabrik:
             ey += lean * (nz * ux - nx * uz)
             ez += lean * (nx * uy - ny * ux)
         return wrist, (ex, ey, ez)
+
+
+_DAMPING = 1e-6
+_LONGEST_STEP = 0.3
+_MAX_STEPS = 4
+_MAX_STOPS = 3
+_EXACT = 1e-10
+
+Columns = Sequence[Vector]
+
+
+def _predicted(
+    arm: CanonicalArm, theta: Angles, links: Chain, target: Vector
+) -> tuple[Angles, Chain]:
+    """Return θ with the tip nearer to a `target` (m) close by, inside the limits, and its chain.
+
+    FABRIK alone spreads a small motion over the chain as the geometry happens to; the step of least
+    joint motion (damped pseudo-inverse, Nakamura & Hanafusa 1986, 10.1115/1.3143764) spreads it
+    evenly, and the exact closure has only its second-order error to remove.
+    """
+    for _ in range(_MAX_STEPS):
+        columns, error = _equations(arm, links, target)
+        theta, free = _step_inside_limits(arm, theta, columns, error)
+        links = chain(theta)
+        # What a step leaves over is the closure's to remove; close to a singularity or a limit
+        # that little would still turn a pan far or leave the limits, so there it is refined.
+        if (free and clear(theta)) or dist(tip(arm, links), target) < _EXACT:
+            break
+    return theta, links
+
+
+def _equations(arm: CanonicalArm, links: Chain, target: Vector) -> tuple[Columns, Vector]:
+    """Return the tip's Jacobian for joints 1 to 6 by columns, axis × arm, and what the tip misses.
+
+    Joint 7 does not move a tip on its axis.
+    """
+    (ux, uy, uz), (fx, fy, fz), (tx, ty, tz), (ax, ay, _), (bx, by, bz), (cx, cy, cz) = links
+    a, b, c = arm.upper, arm.fore, arm.tool
+    # The tip as seen from wrist, elbow and shoulder.
+    tx, ty, tz = c * tx, c * ty, c * tz
+    ex, ey, ez = tx + b * fx, ty + b * fy, tz + b * fz
+    px, py, pz = ex + a * ux, ey + a * uy, ez + a * uz
+    columns = (
+        (-py, px, 0.0),
+        (ay * pz, -ax * pz, ax * py - ay * px),
+        (uy * ez - uz * ey, uz * ex - ux * ez, ux * ey - uy * ex),
+        (by * ez - bz * ey, bz * ex - bx * ez, bx * ey - by * ex),
+        (fy * tz - fz * ty, fz * tx - fx * tz, fx * ty - fy * tx),
+        (cy * tz - cz * ty, cz * tx - cx * tz, cx * ty - cy * tx),
+    )
+    return columns, (target[0] - px, target[1] - py, target[2] - pz)
+
+
+def _step(theta: Angles, columns: Columns, error: Vector) -> Angles:
+    """Return θ + Jᵀ (J Jᵀ + damping)⁻¹ error, written out: it runs at every tick."""
+    (x1, y1, _), (x2, y2, z2), (x3, y3, z3), (x4, y4, z4), (x5, y5, z5), (x6, y6, z6) = columns
+    t1, t2, t3, t4, t5, t6, t7 = theta
+    # J Jᵀ is ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)); Cramer's rule solves it.
+    xx = x1 * x1 + x2 * x2 + x3 * x3 + x4 * x4 + x5 * x5 + x6 * x6 + _DAMPING
+    xy = x1 * y1 + x2 * y2 + x3 * y3 + x4 * y4 + x5 * y5 + x6 * y6
+    xz = x2 * z2 + x3 * z3 + x4 * z4 + x5 * z5 + x6 * z6
+    yy = y1 * y1 + y2 * y2 + y3 * y3 + y4 * y4 + y5 * y5 + y6 * y6 + _DAMPING
+    yz = y2 * z2 + y3 * z3 + y4 * z4 + y5 * z5 + y6 * z6
+    zz = z2 * z2 + z3 * z3 + z4 * z4 + z5 * z5 + z6 * z6 + _DAMPING
+    gx, gy, gz = error
+    ix, iy, iz = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
+    jy, jz, kz = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
+    part = 1.0 / (xx * ix + xy * iy + xz * iz)
+    x = part * (ix * gx + iy * gy + iz * gz)
+    y = part * (iy * gx + jy * gy + jz * gz)
+    z = part * (iz * gx + jz * gy + kz * gz)
+    # The squared length of the step, but for the damping; a long one is not to be trusted.
+    square = gx * x + gy * y + gz * z
+    if square > _LONGEST_STEP * _LONGEST_STEP:
+        part = _LONGEST_STEP / sqrt(square)
+        x, y, z = part * x, part * y, part * z
+    return (
+        t1 + x1 * x + y1 * y,
+        t2 + x2 * x + y2 * y + z2 * z,
+        t3 + x3 * x + y3 * y + z3 * z,
+        t4 + x4 * x + y4 * y + z4 * z,
+        t5 + x5 * x + y5 * y + z5 * z,
+        t6 + x6 * x + y6 * y + z6 * z,
+        t7,
+    )
+
+
+def _step_inside_limits(
+    arm: CanonicalArm, theta: Angles, columns: Columns, error: Vector
+) -> tuple[Angles, bool]:
+    """Return θ after the step, and whether no limit was met.
+
+    A joint that would pass its limit stops there, and the others make up for it.
+    """
+    moved = _step(theta, columns, error)
+    if inside(moved, arm.limits):
+        return moved, True
+    for _ in range(_MAX_STOPS):
+        held = clamped(moved, arm.limits)
+        stopped = [joint for joint in range(6) if held[joint] != moved[joint]]
+        for joint in stopped:
+            error = subtract(error, scale(columns[joint], held[joint] - theta[joint]))
+        columns = [ZERO if j in stopped else column for j, column in enumerate(columns)]
+        theta = [held[j] if j in stopped else angle for j, angle in enumerate(theta)]
+        moved = _step(theta, columns, error)
+        if inside(moved, arm.limits):
+            return moved, False
+    return clamped(moved, arm.limits), False
+
+
+_FLAT = 1e-6
+# A tilt (rad) below this has no first order to speak of.
+_LINED_UP = 1e-3
+
+
+def _followed(arm: CanonicalArm, theta: Angles, links: Chain, goal: Goal) -> Angles | None:
+    """Return joint angles at a goal close to θ, whose chain is `links`, by the least motion.
+
+    Joints 1, 2 and 4 bring the wrist to its place and 5 to 7 turn the tool, each by a closed form
+    of first order. Then as much of the arm's self-motion is added as makes the joints move least
+    (Gauss–Newton).
+
+    None at a singularity or a limit, and where a joint would leap: there the elbow has to be looked
+    for.
+    """
+    if not clear(theta, _LINED_UP):
+        return None
+    wrist = goal.wrist(arm)
+    guess = _elbow(arm, theta, links, wrist, goal)
+    if guess is None:
+        return None
+    (cx, cy, cz), (sx, sy, sz), _ = elbow_circle(arm, wrist, guess)
+    elbow = (cx + sx, cy + sy, cz + sz)
+    found = close_at(arm, elbow, wrist, goal.held_tool, goal.roll, theta)
+    if found is None or not clear(found, _LINED_UP) or squared_motion(found, theta) > LEAP:
+        return None
+    return found
+
+
+def _elbow(
+    arm: CanonicalArm, theta: Angles, links: Chain, wrist: Vector, goal: Goal
+) -> Vector | None:
+    """Return about where the elbow goes, m, or None where joints line up.
+
+    `wrist` is the goal's, m.
+    """
+    upper, (fx, fy, fz), _, axis2, (ex, ey, ez), _ = links
+    a, b = arm.upper, arm.fore
+    fx, fy, fz = b * fx, b * fy, b * fz
+    x, y, z = a * upper[0] + fx, a * upper[1] + fy, a * upper[2] + fz
+    # The wrist's Jacobian for joints 1, 2 and 4: axis × arm. Cramer's rule solves it.
+    ax, ay = axis2[0], axis2[1]
+    px, py, pz = ay * z, -ax * z, ax * y - ay * x
+    qx, qy, qz = ey * fz - ez * fy, ez * fx - ex * fz, ex * fy - ey * fx
+    nx, ny, nz = py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx
+    determinant = x * ny - y * nx
+    if -_FLAT < determinant < _FLAT:
+        return None
+    dx, dy, dz = wrist[0] - x, wrist[1] - y, wrist[2] - z
+    d1 = (dx * nx + dy * ny + dz * nz) / determinant
+    d2 = ((x * qx + y * qy) * dz - qz * (x * dx + y * dy)) / determinant
+    d4 = (pz * (x * dx + y * dy) - (x * px + y * py) * dz) / determinant
+    # How the forearm turns by that, and what joints 5 to 7 have to add for the tool.
+    turned = (d2 * ax + d4 * ex, d2 * ay + d4 * ey, d1 + d4 * ez)
+    d5, d6, d7 = _wrist_turns(theta, links, turned, goal)
+    motion = self_motion(unit((x, y, z)), links, goal.roll is not None)
+    if motion is None:
+        return None
+    r1, r2, r3, r5, r6, r7 = motion
+    along = r1 * d1 + r2 * d2 + r5 * d5 + r6 * d6 + r7 * d7
+    square = r1 * r1 + r2 * r2 + r3 * r3 + r5 * r5 + r6 * r6 + r7 * r7
+    part = along / square
+    t1, t2 = theta[0] + d1 - part * r1, theta[1] + d2 - part * r2
+    out = a * sin(t2)
+    return (out * cos(t1), out * sin(t1), a * cos(t2))
+
+
+def _wrist_turns(theta: Angles, links: Chain, turned: Vector, goal: Goal) -> Vector:
+    """Return the turns of joints 5 to 7 (rad) that the tool's goal needs with a turned forearm."""
+    _, (fx, fy, fz), (tx, ty, tz), _, _, (wx, wy, wz) = links
+    ox, oy, oz = turned
+    gx, gy, gz = goal.held_tool
+    # What the tool's tip, a unit vector, still has to move: along joint 6's axis and across it.
+    mx = gx - tx - (oy * tz - oz * ty)
+    my = gy - ty - (oz * tx - ox * tz)
+    mz = gz - tz - (ox * ty - oy * tx)
+    d5 = (mx * wx + my * wy + mz * wz) / sin(theta[5])
+    ax, ay, az = wy * tz - wz * ty, wz * tx - wx * tz, wx * ty - wy * tx
+    d6 = mx * ax + my * ay + mz * az
+    if goal.roll is None:
+        return d5, d6, 0.0
+    # The goal's x axis along the tool's y axis, which is joint 6's axis turned about the tool.
+    ux, uy, uz = goal.roll[0]
+    c, s = cos(theta[6]), sin(theta[6])
+    needed = c * (ux * wx + uy * wy + uz * wz) - s * (ux * ax + uy * ay + uz * az)
+    made = ox * tx + oy * ty + oz * tz + d5 * (fx * tx + fy * ty + fz * tz)
+    return d5, d6, needed - made

@@ -1,14 +1,26 @@
-"""Goals for FABRIK in the arm's frame, and its settings and solutions."""
+"""What FABRIK is asked and answers: goals and θ in the arm's frame, from World and q and back."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import atan2, cos, dist, sin, sqrt
+from math import atan2, cos, dist, isfinite, sin, sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from rastrainer.errors import InputError
-from rastrainer_simulator.robot.branches import Roll
-from rastrainer_simulator.robot.canonical_arm import Angles, CanonicalArm, Chain, tip
+from rastrainer_simulator.robot.closure import Roll
+from rastrainer_simulator.robot.kinematics import Kinematics
+from rastrainer_simulator.robot.srs_arm import (
+    Angles,
+    CanonicalArm,
+    Chain,
+    SrsGeometry,
+    clamped,
+    inside,
+    tip,
+)
 from rastrainer_simulator.vectors import Vector, add, dot, length, scale
 
 OUT_OF_REACH = "The target is out of reach; the tool is as near to it as the arm gets."
@@ -133,3 +145,183 @@ def tool_axes(theta: Angles, links: Chain) -> tuple[Vector, Vector]:
         (c * ax + s * wx, c * ay + s * wy, c * az + s * wz),
         (c * wx - s * ax, c * wy - s * ay, c * wz - s * az),
     )
+
+
+_ROUNDS = 8
+
+
+def solve_rounded(
+    solve: Callable[..., Solution],
+    kinematics: Kinematics,
+    settings: FabrikSettings,
+    position: Sequence[float],
+    direction: Sequence[float] | None,
+    rotation: Sequence[Sequence[float]] | None,
+    q_start: Sequence[float],
+) -> Solution:
+    """Repeat `solve` until the true `kinematics` meets the target, and return its true errors.
+
+    The target is `position` (3,) m and `direction` (3,) or `rotation` (3, 3) or neither, in World.
+    """
+    solution = solve(position, direction, rotation, q_start)
+    # The tool's axis in the tip's frame.
+    axis = kinematics.model.geometry.tip_rotation[2]
+    goal = np.asarray(position, dtype=float)
+    along = None if direction is None else np.asarray(direction) / np.linalg.norm(direction)
+    turn = None if rotation is None else np.asarray(rotation, dtype=float)
+    aim, pointed, turned = goal, along, turn
+    for _ in range(_ROUNDS):
+        tip = kinematics.tip(solution.q)
+        miss = goal - tip[:3, 3]
+        angle = 0.0
+        if along is not None:
+            angle = _angle_between(tip[:3, :3] @ axis, along)
+        if turn is not None:
+            angle = _angle_of(turn @ tip[:3, :3].T)
+        met = solution.converged
+        off = float(np.linalg.norm(miss))
+        solution = solution._replace(position_error_m=off, direction_error_rad=angle)
+        if not met or settings.met(off, angle):
+            return solution
+        aim = aim + miss
+        if pointed is not None and along is not None:
+            pointed = pointed + along - tip[:3, :3] @ axis
+        if turned is not None and turn is not None:
+            turned = turn @ tip[:3, :3].T @ turned
+        solution = solve(aim, pointed, turned, solution.q)
+    return solution._replace(converged=False)
+
+
+def _angle_between(a: np.ndarray, b: np.ndarray) -> float:
+    return atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
+
+
+def _angle_of(rotation: np.ndarray) -> float:
+    skew = (rotation - rotation.T) / 2.0
+    sine = float(np.linalg.norm((skew[2, 1], skew[0, 2], skew[1, 0])))
+    return atan2(sine, (float(np.trace(rotation)) - 1.0) / 2.0)
+
+
+# A rotation whose columns are not perpendicular unit vectors to this is no rotation.
+_SKEW = 1e-6
+
+
+class ArmFrame:
+    """Converts targets and joint angles to plain floats."""
+
+    def __init__(self, geometry: SrsGeometry) -> None:
+        self._base = tuple(map(tuple, geometry.base.tolist()))
+        self._shoulder = tuple(geometry.shoulder.tolist())
+        # The canonical tool's x and z axes in the tip's frame.
+        self._tip = tuple(map(tuple, geometry.tip_rotation[[0, 2]].tolist()))
+        self._signs, self._offsets = tuple(geometry.signs), tuple(geometry.offsets)
+        self._limits = geometry.canonical_limits
+        self._q_limits = tuple(zip(geometry.q_lower, geometry.q_upper, strict=True))
+
+    def theta(self, q: Sequence[float]) -> tuple[float, ...]:
+        """Return θ of q (rad), clamped to the limits."""
+        if len(q) != 7:
+            raise InputError(f"A posture has seven joint angles, not {len(q)}.")
+        q1, q2, q3, q4, q5, q6, q7 = map(float, q)
+        s1, s2, s3, s4, s5, s6, s7 = self._signs
+        o1, o2, o3, o4, o5, o6, o7 = self._offsets
+        theta = (
+            s1 * q1 + o1,
+            s2 * q2 + o2,
+            s3 * q3 + o3,
+            s4 * q4 + o4,
+            s5 * q5 + o5,
+            s6 * q6 + o6,
+            s7 * q7 + o7,
+        )
+        if inside(theta, self._limits):
+            return theta
+        if not isfinite(sum(theta)):
+            raise InputError("The joint angles to start from must be finite.")
+        return clamped(theta, self._limits)
+
+    def q(self, theta: Sequence[float]) -> tuple[float, ...]:
+        """Return q (rad) of θ, inside the limits to the last bit."""
+        t1, t2, t3, t4, t5, t6, t7 = theta
+        s1, s2, s3, s4, s5, s6, s7 = self._signs
+        o1, o2, o3, o4, o5, o6, o7 = self._offsets
+        q = (
+            s1 * (t1 - o1),
+            s2 * (t2 - o2),
+            s3 * (t3 - o3),
+            s4 * (t4 - o4),
+            s5 * (t5 - o5),
+            s6 * (t6 - o6),
+            s7 * (t7 - o7),
+        )
+        return q if inside(q, self._q_limits) else clamped(q, self._q_limits)
+
+    def position(self, world: Sequence[float]) -> Vector:
+        """Return a point of World (m) as seen from the shoulder."""
+        x, y, z = _three(world, "target position")
+        sx, sy, sz = self._shoulder
+        return self._turned((x - sx, y - sy, z - sz))
+
+    def direction(self, world: Sequence[float]) -> Vector:
+        """Return a direction of World as a unit vector of the arm's frame."""
+        x, y, z = _three(world, "tool direction")
+        size = sqrt(x * x + y * y + z * z)
+        if size < 1e-9:
+            raise InputError("The tool direction has no length.")
+        return self._turned((x / size, y / size, z / size))
+
+    def rotation(self, world: Sequence[Sequence[float]]) -> tuple[Vector, Vector, Vector]:
+        """Return the tool's x, y and z axes in the arm's frame for a rotation (3, 3) of the tip."""
+        try:
+            (ax, bx, cx), (ay, by, cy), (az, bz, cz) = world
+            ax, bx, cx = float(ax), float(bx), float(cx)
+            ay, by, cy = float(ay), float(by), float(cy)
+            az, bz, cz = float(az), float(bz), float(cz)
+        except (TypeError, ValueError) as error:
+            raise InputError("The tool rotation must be three rows of three numbers.") from error
+        if not isfinite(ax + bx + cx + ay + by + cy + az + bz + cz):
+            raise InputError("The rows of the tool rotation must be three finite numbers.")
+        skew = (
+            abs(ax * ax + ay * ay + az * az - 1.0)
+            + abs(bx * bx + by * by + bz * bz - 1.0)
+            + abs(ax * bx + ay * by + az * bz)
+            + abs(ay * bz - az * by - cx)
+            + abs(az * bx - ax * bz - cy)
+            + abs(ax * by - ay * bx - cz)
+        )
+        if skew > _SKEW:
+            raise InputError(
+                "The tool rotation is invalid: its columns must be perpendicular unit vectors, "
+                "the third being the first cross the second."
+            )
+        (fx, fy, fz), (gx, gy, gz) = self._tip
+        x, y, z = self._turned(
+            (gx * ax + gy * bx + gz * cx, gx * ay + gy * by + gz * cy, gx * az + gy * bz + gz * cz)
+        )
+        size = sqrt(x * x + y * y + z * z)
+        tx, ty, tz = x / size, y / size, z / size
+        x, y, z = self._turned(
+            (fx * ax + fy * bx + fz * cx, fx * ay + fy * by + fz * cy, fx * az + fy * bz + fz * cz)
+        )
+        # Perpendicular and of unit length to the last bit: the rows are so to `_SKEW` only.
+        part = x * tx + y * ty + z * tz
+        x, y, z = x - part * tx, y - part * ty, z - part * tz
+        size = sqrt(x * x + y * y + z * z)
+        x, y, z = x / size, y / size, z / size
+        return (x, y, z), (ty * z - tz * y, tz * x - tx * z, tx * y - ty * x), (tx, ty, tz)
+
+    def _turned(self, vector: Vector) -> Vector:
+        x, y, z = vector
+        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = self._base
+        return (ax * x + ay * y + az * z, bx * x + by * y + bz * z, cx * x + cy * y + cz * z)
+
+
+def _three(values: Sequence[float], name: str) -> Vector:
+    try:
+        x, y, z = values
+        x, y, z = float(x), float(y), float(z)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"The {name} must be three numbers.") from error
+    if not isfinite(x + y + z):
+        raise InputError(f"The {name} must be three finite numbers.")
+    return x, y, z

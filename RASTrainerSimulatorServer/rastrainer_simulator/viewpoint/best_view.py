@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from rastrainer_simulator.collision.head_clearance import LineOfSight
+from rastrainer_simulator.collision.clearance import LineOfSight
 from rastrainer_simulator.vectors import (
     Vector,
     add,

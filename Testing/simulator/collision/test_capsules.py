@@ -7,10 +7,15 @@ import trimesh
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.collision.capsules import covering_capsules, surface_points
 from rastrainer_simulator.collision.clearance import FAR
 from rastrainer_simulator.collision.collision import Collision
-from rastrainer_simulator.collision.robot_shape import SHAFT_START, capsules_along, robot_shape
+from rastrainer_simulator.collision.robot_shape import (
+    SHAFT_START,
+    capsules_along,
+    covering_capsules,
+    robot_shape,
+    surface_points,
+)
 from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import load_robot
 from Testing.simulator.collision.heads_and_arms import KINEMATICS, ROBOT, SHAPE, ball

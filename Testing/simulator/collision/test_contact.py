@@ -9,7 +9,7 @@ from rastrainer import transforms
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.collision import Collision, Surroundings
-from rastrainer_simulator.collision.sliding import REST
+from rastrainer_simulator.collision.contact import REST
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from Testing.simulator.collision.brute_force import vtk_distance
 from Testing.simulator.collision.heads_and_arms import (

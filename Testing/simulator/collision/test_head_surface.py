@@ -4,8 +4,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.capsules import thin_segment
-from rastrainer_simulator.collision.head_surface import HeadSurface
+from rastrainer_simulator.collision.head_surface import HeadSurface, thin_segment
 from Testing.simulator.collision.brute_force import (
     point_to_triangles,
     segment_to_triangles,

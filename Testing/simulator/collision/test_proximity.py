@@ -5,14 +5,15 @@ import pytest
 
 from rastrainer.protocol import Proximity
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.collision.clearance import FAR, Clearance, Nearest
+from rastrainer_simulator.collision.clearance import FAR, Clearance
+from rastrainer_simulator.collision.contact import REST
+from rastrainer_simulator.collision.head_surface import Nearest
 from rastrainer_simulator.collision.proximity import (
     DEEPEST,
     Pressing,
     ProximitySettings,
     next_proximity,
 )
-from rastrainer_simulator.collision.sliding import REST
 from rastrainer_simulator.vectors import ZERO
 
 FREE, PROXIMITY, CONTACT = Proximity.FREE, Proximity.PROXIMITY, Proximity.CONTACT

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from rastrainer_simulator.collision.clearance import Nearest
-from rastrainer_simulator.collision.sliding import (
+from rastrainer_simulator.collision.contact import (
     LONGEST_STEP,
     REST,
     HalfSpace,
     nearest_inside,
     slide,
 )
+from rastrainer_simulator.collision.head_surface import Nearest
 from rastrainer_simulator.vectors import add
 
 

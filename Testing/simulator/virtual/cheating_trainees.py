@@ -18,7 +18,7 @@ from rastrainer.protocol import CommandName, Proximity, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import fiducial_normals
-from rastrainer_simulator.collision.capsules import sphere_directions
+from rastrainer_simulator.collision.robot_shape import sphere_directions
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
