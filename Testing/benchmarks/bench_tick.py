@@ -19,8 +19,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
-from rastrainer_simulator.state import Motion
+from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorCommand, OperatorInput
 from Testing.benchmarks.loop_health import Punctuality
 from Testing.benchmarks.procedure_ticks import procedure_rows
 from Testing.benchmarks.row import resident_mb, row, row_of_figures

@@ -11,8 +11,7 @@ from rastrainer.command_arguments import check_arguments
 from rastrainer.protocol import CommandName, Phase, TouchRule
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
-from rastrainer_simulator.state import Motion
+from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorCommand, OperatorInput
 from Testing.benchmarks.row import row
 
 DT = 0.004

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import ControlName
 from Testing.end_to_end.virtual_display import VirtualKeyboard
 from Testing.end_to_end.virtual_gamepad import SimulatorWithGamepad
 

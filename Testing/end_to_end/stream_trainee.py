@@ -14,7 +14,7 @@ from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.screen_reader import screen_from_json
 from rastrainer_simulator.desktop.shown_scene import pose_matrix
 from rastrainer_simulator.net.views.screen import Menu, Screen
-from rastrainer_simulator.teleoperation.axes import camera_axes
+from rastrainer_simulator.teleoperation.steering import camera_axes
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ViewClient
 

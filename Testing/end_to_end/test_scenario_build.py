@@ -13,7 +13,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
 from rastrainer.slicer.head.scenario_build import HEAD_SHARE, buildScenario
-from rastrainer_simulator.authoring.head_process import head_process
+from rastrainer_simulator.authoring.make import head_process
 from rastrainer_simulator.cli.main import main
 from Testing.domain.head.spheres import sphere_mesh
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario

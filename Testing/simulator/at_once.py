@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from unittest import mock
 
-from rastrainer_simulator.viewpoint import touch_views
+from rastrainer_simulator.viewpoint import best_view
 
 
 @contextmanager
@@ -18,8 +18,8 @@ def at_once() -> Iterator[None]:
 
     def look(views, setup, task, head_to_world):
         views._found = {}
-        with mock.patch.object(touch_views, "raise_thread_priority"):
+        with mock.patch.object(best_view, "raise_thread_priority"):
             views._look(setup, task, head_to_world, views._found)
 
-    with mock.patch.object(touch_views.BestViews, "look", look), mock.patch("os.fsync"):
+    with mock.patch.object(best_view.BestViews, "look", look), mock.patch("os.fsync"):
         yield

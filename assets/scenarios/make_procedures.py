@@ -39,7 +39,7 @@ from rastrainer.procedure.plan import (
 )
 from rastrainer.scenario.scenario import FILE_NAME, load_scenario
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
-from rastrainer_simulator.authoring.procedure_check import GuideReach
+from rastrainer_simulator.authoring.procedure_plan import GuideReach
 from rastrainer_simulator.authoring.task_set import smooth_places
 
 FOLDER = Path(__file__).parent / "colin27"

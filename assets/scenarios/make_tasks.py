@@ -23,7 +23,6 @@ from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import FILE_NAME
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import touchable
-from rastrainer_simulator.authoring.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer_simulator.authoring.task_proposal import (
     PLANS,
     Proposal,
@@ -32,6 +31,7 @@ from rastrainer_simulator.authoring.task_proposal import (
     target_spread,
 )
 from rastrainer_simulator.authoring.task_set import smooth_places
+from rastrainer_simulator.authoring.touch_order import SurfaceGraph, shortest_path_mm
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner

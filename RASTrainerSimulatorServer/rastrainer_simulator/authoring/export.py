@@ -29,7 +29,7 @@ from rastrainer_simulator.authoring.face_removal import (
     nose_tip,
     without_face,
 )
-from rastrainer_simulator.authoring.task_check import ON_SKIN_MM
+from rastrainer_simulator.authoring.scenario_check import ON_SKIN_MM
 from rastrainer_simulator.rendering.picture import draw_preview
 from rastrainer_simulator.scene.surfaces import surface
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
@@ -12,17 +16,28 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
 from rastrainer.procedure.plan import Procedure, read_all_no_go
-from rastrainer.progress import Progress, Warn, no_progress
+from rastrainer.progress import HEAD_MADE, Progress, Warn, no_progress, report_line
+from rastrainer.python_environment import python_words
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.points import Landmark, PlannedTarget, PlannedTrajectory, Task, on_skin
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
 from rastrainer.scenario.setup import SetUp
-from rastrainer.scenario.writer import HeadDraft, new_folder, scenario_name, write_scenario
-from rastrainer_simulator.authoring.landmark_plan import check_on_planned_head
+from rastrainer.scenario.writer import (
+    HeadDraft,
+    new_folder,
+    read_draft,
+    scenario_name,
+    write_scenario,
+)
+from rastrainer_simulator.authoring.landmarks import check_on_planned_head
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_plan import measure_procedures, with_procedure
-from rastrainer_simulator.authoring.scenario_check import check_plan, start_clearance_mm
-from rastrainer_simulator.authoring.task_check import check_tasks, read_placed_tasks
+from rastrainer_simulator.authoring.scenario_check import (
+    check_plan,
+    check_tasks,
+    read_placed_tasks,
+    start_clearance_mm,
+)
 from rastrainer_simulator.authoring.task_set import TaskSetProposer
 from rastrainer_simulator.rendering.picture import draw_preview
 
@@ -236,3 +251,72 @@ def copy_with_plan(
         # The picture needs the meshes where they were written.
         draw_preview(made / PREVIEW_NAME, load_scenario(made), head)
     return load_scenario(copy)
+
+
+MAKE_HEAD = "rastrainer_headless.make_head"
+
+
+class HeadProcess:
+    """A process that makes the head, and then its skull while the head is already used."""
+
+    def __init__(self, process: subprocess.Popen[str], errors: TextIO, folder: Path) -> None:
+        """Keep the process, the file of its standard error and the folder of its draft."""
+        self._process = process
+        self._errors = errors
+        self._folder = folder
+
+    def head(self, progress: Progress, warn: Warn) -> HeadDraft:
+        """Wait for the head and return its draft without a skull.
+
+        Args:
+            progress: called with each step's name and the share done; may raise to cancel.
+            warn: called with each warning.
+
+        Raises:
+            InputError: there is no head in the volume.
+        """
+        assert self._process.stdout is not None  # It is a pipe.
+        for line in self._process.stdout:
+            if line.rstrip() == HEAD_MADE:
+                return read_draft(self._folder)
+            report_line(line.rstrip(), progress, warn)
+        raise self._failure()
+
+    def whole(self) -> HeadDraft:
+        """Wait for the skull too, where one is wanted, and return the whole draft.
+
+        Raises:
+            InputError: there is no skull in the volume.
+        """
+        assert self._process.stdout is not None  # It is a pipe.
+        self._process.stdout.read()
+        if self._process.wait() != 0:
+            raise self._failure()
+        return read_draft(self._folder)
+
+    def _failure(self) -> InputError:
+        status = self._process.wait()
+        self._errors.seek(0)
+        lines = self._errors.read().strip().splitlines()
+        return InputError(lines[-1] if lines else f"The head's process ended with {status}.")
+
+
+@contextmanager
+def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
+    """Yield a process that makes the head in a volume; it ends with the context.
+
+    Args:
+        volume: NRRD, NIfTI, or a folder of DICOM files.
+        options: further arguments of `python -m rastrainer_headless.make_head`.
+    """
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary) / "draft"
+        words = python_words(MAKE_HEAD, str(volume), "-o", str(folder), *options)
+        with (
+            tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors,
+            subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True) as process,
+        ):
+            try:
+                yield HeadProcess(process, errors, folder)
+            finally:
+                process.kill()

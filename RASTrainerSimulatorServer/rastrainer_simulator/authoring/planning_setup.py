@@ -13,12 +13,12 @@ from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.trial_head import Perturbation, perturbed_pose
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.authoring.surface_path import SurfaceGraph
+from rastrainer_simulator.authoring.touch_order import SurfaceGraph
 from rastrainer_simulator.collision.collision import Collision, head_collision
 from rastrainer_simulator.collision.touch_planner import TouchPlanner
 from rastrainer_simulator.core.setup import SimulationSetup, load_setup
 from rastrainer_simulator.robot.kinematics import make_kinematics
-from rastrainer_simulator.viewpoint.touch_views import TouchViews
+from rastrainer_simulator.viewpoint.best_view import TouchViews
 
 
 def touchable(

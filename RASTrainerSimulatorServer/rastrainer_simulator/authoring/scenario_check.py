@@ -1,24 +1,34 @@
-"""Check a scenario: its set-up, its plan and its tasks."""
+"""Check a scenario: its set-up, its plan and its tasks; and read tasks that were placed by hand."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
+from itertools import combinations, pairwise
 from pathlib import Path
 
 import numpy as np
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.files.point_list import read_markups
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normal, read_head_mesh
 from rastrainer.procedure.checks import ENTRY_OFF_SKIN_MM
+from rastrainer.progress import Progress, Warn
 from rastrainer.scenario.library import checked_scenario
+from rastrainer.scenario.points import LABELS, Task, touch_order
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.procedure_check import check_procedures
-from rastrainer_simulator.authoring.task_check import check_tasks
+from rastrainer_simulator.authoring.procedure_plan import check_procedures
+from rastrainer_simulator.authoring.task_proposal import PLANS, TaskPlan, target_spread
+from rastrainer_simulator.authoring.touch_order import complexity, shortest_path_mm
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import start_joints
 from rastrainer_simulator.core.settings import SimulationSettings
+from rastrainer_simulator.scene.skin import Skin
+from rastrainer_simulator.scene.skin_marks import place_marks
+from rastrainer_simulator.viewpoint.best_view import WIDEST_DEG
 
 ROBOT_FOOT_MM = 110.0
 """From the middle of the robot's base to its outermost screws, rounded up."""
@@ -148,3 +158,191 @@ def check_scenario(folder: Path) -> list[str]:
     planning = PlanningSetup(scenario, mesh)
     wrong += check_plan(planning) + check_procedures(planning)
     return wrong + check_tasks(planning, scenario.tasks)
+
+
+ON_SKIN_MM = 1.0
+APART_MM = 20.0
+WORST_SPREAD = 1.0
+"""Largest ratio of the expected TRE at the target to the FLE."""
+
+POSES_TRIED = 12
+COMPLEXITY_TOLERANCE = 0.02
+SHORTEST_PATH_TOLERANCE = 0.01
+"""As a share of the path."""
+
+
+def measured(planning: PlanningSetup, task: Task) -> Task:
+    """Return a task with its complexity index and its shortest path."""
+    index = complexity(task.fiducials, planning.mesh, planning.graph, planning.eye).index
+    shortest = shortest_path_mm(task.fiducials, planning.mesh, planning.graph)
+    return replace(task, complexity=round(index, 2), shortest_path_mm=round(shortest, 1))
+
+
+def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int = 0) -> list[str]:
+    """Return a sentence for each error in tasks.
+
+    Reach is checked in the nominal pose of the head and in those of some seeds from `first_seed`.
+    """
+    tasks, skin = list(tasks), Skin(planning.mesh)
+    wrong = []
+    for task in tasks:
+        wrong += _wrong_places(planning, task) or [
+            *(_untouchable(planning, task, first_seed) or _unseen(planning, task)),
+            *_unreadable(skin, task),
+            *_wrong_measures(task, measured(planning, task)),
+        ]
+    for easier, harder in pairwise(tasks):
+        if harder.complexity <= easier.complexity:
+            wrong.append(
+                f"{harder.title}: its complexity, {harder.complexity:.2f}, must be above "
+                f"that of {easier.title}, {easier.complexity:.2f}."
+            )
+    return wrong
+
+
+def _wrong_places(planning: PlanningSetup, task: Task) -> list[str]:
+    wrong = []
+    for label, point in zip(task.labels, task.fiducials, strict=True):
+        away = nearest_on_mesh(planning.mesh, point).distance
+        if away > ON_SKIN_MM:
+            wrong.append(
+                f"{task.title}: fiducial {label} is {away:.1f} mm off the skin; it must be within "
+                f"{ON_SKIN_MM:g} mm."
+            )
+    for (one, a), (other, b) in combinations(zip(task.labels, task.fiducials, strict=True), 2):
+        apart = float(np.linalg.norm(a - b))
+        if apart < APART_MM - 1e-3:
+            wrong.append(
+                f"{task.title}: fiducials {one} and {other} are {apart:.1f} mm apart; their "
+                f"numbers need {APART_MM:g} mm."
+            )
+    try:
+        ratio = target_spread(task.fiducials, planning.scenario.target_position) ** 0.5
+    except np.linalg.LinAlgError:
+        ratio = np.inf
+    if not ratio <= WORST_SPREAD:
+        wrong.append(
+            f"{task.title}: its fiducials locate {planning.scenario.target_name} badly "
+            f"(expected TRE {ratio:.1f} times FLE, at most {WORST_SPREAD:g}); "
+            "spread them around it."
+        )
+    return wrong
+
+
+def _untouchable(planning: PlanningSetup, task: Task, first_seed: int) -> list[str]:
+    normals = np.array([outward_normal(planning.mesh, point) for point in task.fiducials])
+    poses = planning.poses(range(first_seed, first_seed + POSES_TRIED))
+    nominal = planning.touchable(task.fiducials, normals, poses[:1])
+    always = nominal & planning.touchable(task.fiducials, normals, poses[1:])
+    sentences = []
+    for can_be, where in ((nominal, "where the head is"), (always | ~nominal, "in every trial")):
+        missed = [label for label, can in zip(task.labels, can_be, strict=True) if not can]
+        if missed:
+            sentences.append(
+                f"{task.title}: the robot cannot touch {_listed(missed)} {where} with 5 mm "
+                "clearance; move them, or the head."
+            )
+    return sentences
+
+
+def _unseen(planning: PlanningSetup, task: Task) -> list[str]:
+    """Return which fiducials no view shows together with their number and the tip."""
+    views = planning.views.of(task, planning.scenario.head_to_world)
+    missed = [label for label, view in views if view is None]
+    return missed and [
+        f"{task.title}: {_listed(missed)} cannot be seen within {WIDEST_DEG:.0f}° of the skin's "
+        "normal while the robot touches; move them, or the head."
+    ]
+
+
+def _unreadable(skin: Skin, task: Task) -> list[str]:
+    if place_marks(skin, task.fiducials, task.labels).has_room:
+        return []
+    return [
+        f"{task.title}: there is no room for all numbers beside the arrows; spread the fiducials, "
+        "or touch them in another order."
+    ]
+
+
+def _wrong_measures(task: Task, right: Task) -> list[str]:
+    wrong = []
+    if abs(right.complexity - task.complexity) > COMPLEXITY_TOLERANCE:
+        wrong.append(
+            f"{task.title}: its complexity is {right.complexity:.2f}, not {task.complexity:.2f}."
+        )
+    stated, shortest = task.shortest_path_mm, right.shortest_path_mm
+    assert shortest is not None  # It was measured.
+    if stated is None or abs(shortest - stated) > SHORTEST_PATH_TOLERANCE * shortest:
+        instead = "none" if stated is None else f"{stated:.1f} mm"
+        wrong.append(
+            f"{task.title}: its shortest path is {shortest:.1f} mm; shortestPathMm says {instead}."
+        )
+    return wrong
+
+
+def _listed(labels: list[str]) -> str:
+    return f"fiducial {labels[0]}" if len(labels) == 1 else f"fiducials {', '.join(labels)}"
+
+
+SNAP_MM = 5.0
+"""Clicks on slices or on a rendered volume are off the skin by a voxel or two."""
+
+MOVED_MM = 0.1
+"""Fiducials nearer to the skin than this are not moved."""
+
+_DECIMALS = 4
+
+
+def read_placed_tasks(
+    planning: PlanningSetup, files: tuple[Path, ...], progress: Progress, warn: Warn
+) -> tuple[tuple[Task, ...], list[str]]:
+    """Return the tasks of markups files, and what is wrong with them, one sentence each.
+
+    Fiducials within 5 mm of the skin are moved onto it.
+
+    Args:
+        planning: with the head.
+        files: the trial run's, Task 1's and so on.
+        progress: called with each step's name and the share done; may raise to cancel.
+        warn: called for each task whose fiducials are moved.
+    """
+    if len(files) > len(PLANS):
+        return (), [f"A scenario has at most {len(PLANS)} tasks; {len(files)} are given."]
+    tasks, wrong = [], []
+    for index, (path, plan) in enumerate(zip(files, PLANS, strict=False)):
+        progress(f"Checking {plan.title}", index / len(files))
+        try:
+            task = _read(planning.mesh, path, plan, warn)
+        except InputError as error:
+            wrong.append(f"{plan.title}: {error}")
+        else:
+            tasks.append(measured(planning, task))
+    return tuple(tasks), [*wrong, *check_tasks(planning, tasks)]
+
+
+def _read(mesh: HeadMesh, path: Path, plan: TaskPlan, warn: Warn) -> Task:
+    """Return a task on the skin.
+
+    Raises:
+        InputError: the file cannot be used, or a fiducial is far from the skin or on another one.
+    """
+    placed = read_markups(path)
+    labels = placed.labels or [""] * len(placed.points)
+    points = np.array(placed.points, dtype=float)[touch_order(labels)]
+    nearest = [nearest_on_mesh(mesh, point) for point in points]
+    away = np.array([place.distance for place in nearest])
+    far = np.flatnonzero(away > SNAP_MM)
+    if len(far):
+        listed = ", ".join(f"{LABELS[row]} ({away[row]:.0f} mm)" for row in far)
+        raise InputError(f"off the skin by more than {SNAP_MM:g} mm: {listed}; place them on it.")
+    moved = np.flatnonzero(away > MOVED_MM)
+    for row in moved:
+        points[row] = nearest[row].position.round(_DECIMALS)
+    if len(moved):
+        warn(
+            f"{plan.title}: {len(moved)} fiducials were moved onto the skin, by at most "
+            f"{away.max():.1f} mm."
+        )
+    if len(np.unique(points, axis=0)) != len(LABELS):
+        raise InputError("two fiducials are at the same place.")
+    return Task(plan.name, plan.title, LABELS, points, 0.0)

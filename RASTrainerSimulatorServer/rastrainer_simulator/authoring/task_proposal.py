@@ -10,9 +10,9 @@ import numpy as np
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer_simulator.authoring.surface_path import SurfaceGraph
 from rastrainer_simulator.authoring.touch_order import (
     Complexity,
+    SurfaceGraph,
     Transitions,
     arc_lengths,
     complexity,

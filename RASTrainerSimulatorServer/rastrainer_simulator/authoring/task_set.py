@@ -13,7 +13,6 @@ from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.points import LABELS, Task
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
-from rastrainer_simulator.authoring.surface_path import shortest_path_mm
 from rastrainer_simulator.authoring.task_proposal import (
     PLANS,
     CandidatePlaces,
@@ -22,6 +21,7 @@ from rastrainer_simulator.authoring.task_proposal import (
     TaskProposer,
     places_seen_from,
 )
+from rastrainer_simulator.authoring.touch_order import shortest_path_mm
 from rastrainer_simulator.scene.skin import Skin
 from rastrainer_simulator.scene.skin_marks import place_marks
 

@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.replays < 1:
         raise InputError("--replays must be at least 1.")
     # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.server.rating_server import serve_rating, trials_to_show
+    from rastrainer_simulator.server.replay_server import serve_rating, trials_to_show
 
     tell = partial(announce, "rating")
     forms = [find_form(name) for name in dict.fromkeys(arguments.form or FORMS)]

@@ -102,8 +102,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def _build(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.head_process import head_process
-    from rastrainer_simulator.authoring.make import check_options, make_scenario
+    from rastrainer_simulator.authoring.make import check_options, head_process, make_scenario
 
     _clear_away_when_terminated()
     options = options_of(arguments, arguments.volume.name)
@@ -148,8 +147,7 @@ def _tasks(arguments: argparse.Namespace) -> int:
 
 
 def _preview(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.head_process import head_process
-    from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
+    from rastrainer_simulator.authoring.make import ScenarioOptions, head_process, without_tasks
     from rastrainer_simulator.rendering.picture import draw_preview
 
     options = [*head_words(arguments), "--no-skull", "--no-volume"]
@@ -180,7 +178,7 @@ def _lines(arguments: argparse.Namespace) -> int:
 
 
 def _plan(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.landmark_plan import read_placed_landmarks
+    from rastrainer_simulator.authoring.landmarks import read_placed_landmarks
     from rastrainer_simulator.authoring.make import copy_with_plan
 
     scenario = copy_with_plan(
@@ -198,7 +196,7 @@ def _plan(arguments: argparse.Namespace) -> int:
 
 
 def _landmarks(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.landmark_plan import (
+    from rastrainer_simulator.authoring.landmarks import (
         check_placed_landmarks,
         read_placed_landmarks,
         write_proposal,

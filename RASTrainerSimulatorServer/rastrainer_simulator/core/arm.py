@@ -16,9 +16,8 @@ from rastrainer_simulator.collision.contact import Moved
 from rastrainer_simulator.robot.fabrik import Fabrik
 from rastrainer_simulator.robot.goal import FabrikSettings
 from rastrainer_simulator.robot.model import RobotModel
-from rastrainer_simulator.teleoperation.axes import Axes
+from rastrainer_simulator.teleoperation.steering import Axes, NearestSurface
 from rastrainer_simulator.teleoperation.teleoperation import Tip
-from rastrainer_simulator.teleoperation.tool_steering import NearestSurface
 from rastrainer_simulator.vectors import Vector, add, cross, length, scale
 
 Joints = tuple[float, ...]

@@ -21,8 +21,7 @@ from rastrainer.journal.journal_file import Integrity, JournalReading, read_jour
 from rastrainer.protocol import CommandName, Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.procedure_motion import FED
-from rastrainer_simulator.operator_input import OperatorCommand
-from rastrainer_simulator.state import StartingPoint
+from rastrainer_simulator.state import OperatorCommand, StartingPoint
 from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE
 from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TRACED, TouchMoment

@@ -11,7 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
 from rastrainer_simulator.collision.proximity import ProximitySettings
 from rastrainer_simulator.robot.goal import FabrikSettings
-from rastrainer_simulator.teleoperation.axes import AxesChoice
+from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
 from rastrainer_simulator.training.feed import ProcedureSettings
 from rastrainer_simulator.training.rules import TrainingSettings

@@ -19,31 +19,32 @@ from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
 from rastrainer_simulator.core.procedure_motion import FED, PlannedBone, ProcedureMotion
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.procedure_state import GuideAxis
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Answer,
     Event,
     EventKind,
     Motion,
+    OperatorCommand,
+    OperatorInput,
     PlanInWorld,
     SimulationState,
     StartingPoint,
     StepResult,
 )
-from rastrainer_simulator.teleoperation.axes import ChosenAxes
 from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
     MotionOutcome,
     commanded_motion,
 )
+from rastrainer_simulator.teleoperation.steering import ChosenAxes
 from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
 from rastrainer_simulator.training.replies import TrainingReply
 from rastrainer_simulator.training.rules import TouchMoment, refusal, touch_stage
 from rastrainer_simulator.training.training import Training
 from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.trial_state import GuideAxis
 from rastrainer_simulator.vectors import Vector, in_meters, subtract
 
 if TYPE_CHECKING:

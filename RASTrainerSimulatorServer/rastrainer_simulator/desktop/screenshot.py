@@ -28,7 +28,7 @@ from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.screen import Screen
-from rastrainer_simulator.rendering.offscreen import write_png
+from rastrainer_simulator.rendering.picture import write_png
 
 MODULE = "rastrainer_simulator.desktop.screenshot"
 INPUT_ERROR_STATUS = 2

@@ -10,10 +10,10 @@ from rastrainer.protocol import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, slow_hint
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
-from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, Axes, AxesChoice, camera_axes
+from rastrainer_simulator.teleoperation.steering import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import (
     Vector,
     cross,
@@ -23,7 +23,7 @@ from rastrainer_simulator.vectors import (
     subtract,
     unit,
 )
-from rastrainer_simulator.viewpoint.orbit import FRONT
+from rastrainer_simulator.viewpoint.view_control import FRONT
 
 STEP_MM = 5.0
 """The distance to the target is shown in such steps: a running figure cannot be read."""

@@ -24,7 +24,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
-from rastrainer_simulator.input.control_name import ControlContext, ControlName
+from rastrainer_simulator.input.inputs import ControlContext, ControlName
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import feedback_event, touch_feedback
 from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone

@@ -15,9 +15,10 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import Bindings
-from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.input.controls import IDLE_S, Controls
 from rastrainer_simulator.input.inputs import (
+    ControlContext,
+    ControlName,
     InputDevice,
     Source,
     SourceKind,
@@ -40,10 +41,9 @@ from rastrainer_simulator.net.views.presenter import (
     ViewUpdate,
 )
 from rastrainer_simulator.net.views.screen import PRESS, Screen, Tone
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
 from rastrainer_simulator.record.beside_the_trial import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
-from rastrainer_simulator.state import Answer, SimulationState, StepResult
+from rastrainer_simulator.state import HANDS_OFF, Answer, OperatorInput, SimulationState, StepResult
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
 REFRESH_S = 0.1

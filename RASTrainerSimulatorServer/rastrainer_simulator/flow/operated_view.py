@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.control_name import ControlContext
 from rastrainer_simulator.input.controls import Controls
-from rastrainer_simulator.input.inputs import Source
+from rastrainer_simulator.input.inputs import ControlContext, Source
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.beside_the_trial import ViewReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch

@@ -13,12 +13,11 @@ from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.session.plan_marks import checkpoint_marks, depth_ruler, plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
-from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Hint, ScreenMessage, Tone
-from rastrainer_simulator.procedure_state import ProcedureState
 from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.training.feed import FeedLayer
+from rastrainer_simulator.trial_state import ProcedureState
 
 FED = (Phase.DRILLING, Phase.INSERTING)
 _FELT: Mapping[str, Tone] = {

@@ -22,13 +22,12 @@ from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.input.inputs import SourceKind
+from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, TouchStage
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, distance, in_meters
-from rastrainer_simulator.viewpoint.orbit import orbit_to
+from rastrainer_simulator.viewpoint.view_control import orbit_to
 
 TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""

@@ -12,7 +12,7 @@ from rastrainer_simulator.flow.pages.tutorial import TutorialPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.tutorial.steps import TutorialObservation, TutorialStep
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
-from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent, feedback_event
 from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, ScreenMessage, Tone
 from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES

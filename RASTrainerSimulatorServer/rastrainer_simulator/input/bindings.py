@@ -13,8 +13,15 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import keep_others_out, make_folder, write_text
-from rastrainer_simulator.input.control_name import OF_VIEW, SITUATIONS, ControlContext, ControlName
-from rastrainer_simulator.input.inputs import BUTTONS, InputDevice, is_input
+from rastrainer_simulator.input.inputs import (
+    BUTTONS,
+    OF_VIEW,
+    SITUATIONS,
+    ControlContext,
+    ControlName,
+    InputDevice,
+    is_input,
+)
 
 Table = Mapping[ControlName, tuple[str, ...]]
 BINDINGS_FILE = "controls.json"

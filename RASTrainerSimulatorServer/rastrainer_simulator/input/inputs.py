@@ -1,7 +1,8 @@
-"""What can be pressed or pushed, and by whom: SDL's names for gamepads, the W3C's for keys.
+"""What can be pressed or pushed, by whom, and the controls that it works, and when each counts.
 
-A button is named as in SDL's GameController mappings ("a", "dpup"); an axis is two inputs, one for
-each way it can be pushed ("-leftx", "+leftx"). A key is named by its `KeyboardEvent.code`.
+Inputs have SDL's names for gamepads, the W3C's for keys: a button is named as in SDL's
+GameController mappings ("a", "dpup"); an axis is two inputs, one for each way it can be pushed
+("-leftx", "+leftx"). A key is named by its `KeyboardEvent.code`.
 """
 
 from __future__ import annotations
@@ -118,3 +119,85 @@ class Source:
     seat: str = SIMULATOR_SEAT
     view: int | None = None
     number: int = 0
+
+
+class ControlName(str, Enum):
+    """What the trainee can do. A stick is two controls, one for each way it can be pushed."""
+
+    TOUCH = "touch"
+    UNDO = "undo"
+    CAMERA = "camera"
+    FINE = "fine"
+    PAUSE = "pause"
+    MENU = "menu"
+    MOVE_LEFT = "move_left"
+    MOVE_RIGHT = "move_right"
+    MOVE_BACK = "move_back"
+    MOVE_FORWARD = "move_forward"
+    MOVE_DOWN = "move_down"
+    MOVE_UP = "move_up"
+    TURN_LEFT = "turn_left"
+    TURN_RIGHT = "turn_right"
+    TURN_DOWN = "turn_down"
+    TURN_UP = "turn_up"
+    BEST_VIEW = "best_view"
+    VIEW_LEFT = "view_left"
+    VIEW_RIGHT = "view_right"
+    VIEW_LOWER = "view_lower"
+    VIEW_HIGHER = "view_higher"
+    VIEW_FARTHER = "view_farther"
+    VIEW_NEARER = "view_nearer"
+    ACCEPT = "accept"
+    BACK = "back"
+    UP = "up"
+    DOWN = "down"
+    LEFT = "left"
+    RIGHT = "right"
+
+
+class ControlContext(str, Enum):
+    """Whether the trainee drives the arm or is in a menu: an input may do one thing in each."""
+
+    WORK = "work"
+    MENU = "menu"
+
+
+TRANSLATION = (
+    (ControlName.MOVE_LEFT, ControlName.MOVE_RIGHT),
+    (ControlName.MOVE_BACK, ControlName.MOVE_FORWARD),
+    (ControlName.MOVE_DOWN, ControlName.MOVE_UP),
+)
+"""Right, forward and up, each with the control that pushes it below and above zero."""
+
+ROTATION = (
+    (ControlName.TURN_LEFT, ControlName.TURN_RIGHT),
+    (ControlName.TURN_DOWN, ControlName.TURN_UP),
+)
+
+VIEW = (
+    (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT),
+    (ControlName.VIEW_LOWER, ControlName.VIEW_HIGHER),
+    (ControlName.VIEW_FARTHER, ControlName.VIEW_NEARER),
+)
+"""Around to the right, higher and nearer: what moves the view while it is held."""
+
+OF_VIEW = frozenset({ControlName.BEST_VIEW, *(name for pair in VIEW for name in pair)})
+
+STICKS = frozenset(name for pair in (*TRANSLATION, *ROTATION) for name in pair)
+
+IN_MENUS = (
+    ControlName.ACCEPT,
+    ControlName.BACK,
+    ControlName.UP,
+    ControlName.DOWN,
+    ControlName.LEFT,
+    ControlName.RIGHT,
+)
+
+SITUATIONS = {
+    name: {ControlContext.WORK, ControlContext.MENU}
+    if name in (ControlName.PAUSE, ControlName.MENU)
+    else {ControlContext.MENU if name in IN_MENUS else ControlContext.WORK}
+    for name in ControlName
+}
+"""Where each control counts; two that count in the same situation cannot share an input."""

@@ -12,8 +12,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, Table
-from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.inputs import ControlName, InputDevice
 
 TWO_HANDS, LEFT_HANDED = "two hands", "left-handed"
 RIGHT_ALONE, LEFT_ALONE = "right alone", "left alone"

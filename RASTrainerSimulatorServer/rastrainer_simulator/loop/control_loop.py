@@ -30,12 +30,19 @@ from rastrainer_simulator.loop.precise_clock import (
 )
 from rastrainer_simulator.loop.rates import RateLimit, TrialLimits
 from rastrainer_simulator.loop.results import DurableResults, PendingAnswers, Subscribers
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.beside_the_trial import NotedReport
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
-from rastrainer_simulator.state import Answer, SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.state import (
+    HANDS_OFF,
+    Answer,
+    OperatorCommand,
+    OperatorInput,
+    SimulationState,
+    StartingPoint,
+    StepResult,
+)
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 from rastrainer_simulator.training.true_error import Truth
 

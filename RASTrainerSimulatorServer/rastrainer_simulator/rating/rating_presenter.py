@@ -9,8 +9,12 @@ from concurrent.futures import Future
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.control_name import ControlContext, ControlName
-from rastrainer_simulator.input.inputs import InputDevice, w3c_gamepad_inputs
+from rastrainer_simulator.input.inputs import (
+    ControlContext,
+    ControlName,
+    InputDevice,
+    w3c_gamepad_inputs,
+)
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent, feedback_of
 from rastrainer_simulator.net.views.presenter import (

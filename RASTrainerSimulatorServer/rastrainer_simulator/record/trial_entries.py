@@ -14,9 +14,7 @@ from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import stamp
-from rastrainer_simulator.procedure_state import Tool
 from rastrainer_simulator.record.beside_the_trial import (
     DisplayReport,
     GhostReport,
@@ -27,10 +25,13 @@ from rastrainer_simulator.record.trial_records import TrialRecords, UnmeasuredRe
 from rastrainer_simulator.state import (
     Event,
     EventKind,
+    OperatorCommand,
+    OperatorInput,
     SimulationState,
     StartingPoint,
     StepResult,
 )
+from rastrainer_simulator.trial_state import Tool
 
 if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation

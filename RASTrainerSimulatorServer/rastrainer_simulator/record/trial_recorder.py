@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rastrainer.journal.folder import newest_journal, number_of
 from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import AbortReason, CommandName, Phase
-from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.stamps import file_stamp, stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.beside_the_trial import NotedReport
@@ -19,7 +18,7 @@ from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord
-from rastrainer_simulator.state import SimulationState, StepResult
+from rastrainer_simulator.state import OperatorInput, SimulationState, StepResult
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 
 if TYPE_CHECKING:

@@ -1,21 +1,40 @@
-"""The records of a trial that is registered or aborted, made of its state and what was noted."""
+"""The records of a trial that is over, its procedure included, made of its state and journal."""
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer.procedure.record import ProcedureRecord
-from rastrainer.protocol import PROCEDURE_PHASES
+from rastrainer.procedure.plan import Procedure, ProcedureTrajectory
+from rastrainer.procedure.record import (
+    PlacedInstrument,
+    ProcedureRecord,
+    RecordedAttempt,
+    RegisteredTouch,
+    TouchedCheckpoint,
+    UsedRegistration,
+)
+from rastrainer.protocol import PROCEDURE_PHASES, Phase
+from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
 from rastrainer_simulator.record.beside_the_trial import DisplayUse
-from rastrainer_simulator.record.procedure_entries import FeedRecording, procedure_record
 from rastrainer_simulator.record.recorded_setup import versions
 from rastrainer_simulator.state import SimulationState, TrainingState
-from rastrainer_simulator.vectors import in_millimeters
+from rastrainer_simulator.training.registered_plan import RegisteredPlan
+from rastrainer_simulator.trial_state import (
+    CheckedPoint,
+    FinalRegistration,
+    GuideAxis,
+    ProcedureState,
+    RegistrationAttempt,
+    TrajectoryState,
+)
+from rastrainer_simulator.vectors import in_meters, in_millimeters, vector
 
 if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
@@ -137,3 +156,212 @@ class UnmeasuredRecord:
         record = replace(self._record, motion=trial_motion(self._trajectory))
         self._entry["record"] = record.to_json()
         return record
+
+
+MEANINGFUL_MM = 0.05
+"""The way back after which a feed counts as reversed."""
+_NAMES = {Phase.DRILLING.value: "drill", Phase.INSERTING.value: "instrument"}
+
+
+@dataclass
+class _Feeding:
+    """What one instrument did along one trajectory, over all alignments."""
+
+    path_mm: float = 0.0
+    moving_s: float = 0.0
+    fastest_mm_s: float = 0.0
+    reversals: int = 0
+    # Since the last reversal: which way, and the farthest on it.
+    way: float = 0.0
+    farthest_mm: float = 0.0
+
+    def move(self, depth_mm: float, step_mm: float, time_s: float) -> None:
+        if step_mm == 0.0:
+            return
+        self.path_mm += abs(step_mm)
+        self.moving_s += time_s
+        self.fastest_mm_s = max(self.fastest_mm_s, abs(step_mm) / time_s)
+        direction = 1.0 if step_mm > 0.0 else -1.0
+        if self.way == 0.0:
+            self.way, self.farthest_mm = direction, depth_mm
+        elif self.way * (depth_mm - self.farthest_mm) >= 0.0:
+            self.farthest_mm = depth_mm
+        elif abs(depth_mm - self.farthest_mm) > MEANINGFUL_MM:
+            self.reversals += 1
+            self.way, self.farthest_mm = -self.way, depth_mm
+
+
+class FeedRecording:
+    """Collects the samples of drill and instrument; `metrics` are those of a trajectory so far."""
+
+    def __init__(self) -> None:
+        self._trajectory = 0
+        self._tool = ""
+        self._last: tuple[float, float] | None = None
+        self._feedings: dict[tuple[int, str], _Feeding] = defaultdict(_Feeding)
+
+    def add(self, entry: Mapping[str, Any]) -> None:
+        """Add one entry."""
+        if entry["kind"] == "sample" and "feedMm" in entry:
+            self._add_sample(entry["simTime"], entry["feedMm"])
+        elif entry["kind"] == "phase" and "procedure" in entry:
+            self._trajectory = entry["procedure"]["trajectory"]
+            self._tool = _NAMES.get(entry["procedure"]["stage"], "")
+            self._last = None
+        elif entry["kind"] == "continued":
+            self._last = None
+
+    def metrics(self, trajectory: int) -> dict[str, float]:
+        """Return the metrics of a trajectory, counted from 0: names with numbers of mm, s, mm/s."""
+        found: dict[str, float] = {}
+        for tool in _NAMES.values():
+            feeding = self._feedings[trajectory, tool]
+            found[f"{tool}_path_mm"] = feeding.path_mm
+            found[f"{tool}_moving_s"] = feeding.moving_s
+            found[f"{tool}_fastest_mm_s"] = feeding.fastest_mm_s
+            found[f"{tool}_reversals"] = feeding.reversals
+        return found
+
+    def _add_sample(self, sim_time: float, depth_mm: float) -> None:
+        feeding = self._feedings[self._trajectory, self._tool]
+        if self._last is None:
+            # Another hole begins, or the same one after a pause: no way is reversed by that.
+            feeding.way = 0.0
+        else:
+            time, depth = self._last
+            feeding.move(depth_mm, depth_mm - depth, sim_time - time)
+        self._last = sim_time, depth_mm
+
+
+def procedure_record(
+    state: ProcedureState, plan: Procedure, sha256: str, feeds: FeedRecording
+) -> ProcedureRecord:
+    """Return the record of a procedure whose last instrument was released.
+
+    Args:
+        state: of the procedure.
+        plan: as the scenario has it.
+        sha256: of its content.
+        feeds: the samples of drill and instrument.
+    """
+    assert state.ended_s is not None, "it is finished"
+    pairs = enumerate(zip(state.trajectories, plan.trajectories, strict=True))
+    return ProcedureRecord(
+        procedure=plan.name,
+        kind=plan.kind,
+        sha256=sha256,
+        duration_s=state.ended_s,
+        attempts=tuple(map(_attempt, state.attempts)),
+        instruments=tuple(
+            _instrument(done, planned, feeds.metrics(number)) for number, (done, planned) in pairs
+        ),
+        phase_times_s=_times([state.times_s, *(each.times_s for each in state.trajectories)]),
+    )
+
+
+def _attempt(attempt: RegistrationAttempt) -> RecordedAttempt:
+    return RecordedAttempt(
+        touches=tuple(
+            RegisteredTouch(t.label, in_millimeters(t.position)) for t in attempt.touches
+        ),
+        registration=None if attempt.registration is None else _used(attempt.registration),
+        checkpoints=tuple(
+            TouchedCheckpoint(
+                point.name, in_millimeters(point.position), MM_PER_M * point.error, point.sim_time
+            )
+            for point in attempt.checkpoints
+        ),
+    )
+
+
+def _used(registration: FinalRegistration) -> UsedRegistration:
+    return UsedRegistration(registration.matrix, registration.fre_mm, registration.expected_tre_mm)
+
+
+def _instrument(
+    done: TrajectoryState, planned: ProcedureTrajectory, feed: Mapping[str, float]
+) -> PlacedInstrument:
+    assert done.guide is not None, "it was locked"
+    assert done.instrument_depth is not None, "it was released"
+    return PlacedInstrument(
+        trajectory=planned.name,
+        entry_ras=vector(planned.entry.tolist()),
+        target_ras=vector(planned.target.tolist()),
+        diameter_mm=planned.diameter_mm,
+        guide_tip_mm=in_millimeters(done.guide.tip),
+        guide_direction=done.guide.direction,
+        alignments=done.alignments,
+        drill_depth_mm=MM_PER_M * done.drill_depth,
+        instrument_depth_mm=MM_PER_M * done.instrument_depth,
+        self_aligned=done.is_self_aligned,
+        times_s=_times([done.times_s]),
+        feed=feed,
+    )
+
+
+def _times(parts: Iterable[Mapping[Phase, float]]) -> dict[str, float]:
+    total: dict[str, float] = {}
+    for part in parts:
+        for phase, seconds in part.items():
+            total[phase.value] = total.get(phase.value, 0.0) + seconds
+    return total
+
+
+def procedure_after(
+    before: ProcedureState, entry: Mapping[str, Any], time_s: float, plan: Procedure
+) -> ProcedureState:
+    """Return how far a procedure is after an event of its trial.
+
+    Args:
+        before: the event.
+        entry: of the journal.
+        time_s: of the event, the trial's.
+        plan: as the scenario has it.
+
+    Raises:
+        KeyError, TypeError, ValueError: the entry is not as it should be.
+    """
+    if entry["kind"] == "checkpoint":
+        touched = CheckedPoint(
+            entry["checkpoint"],
+            in_meters(entry["positionMm"]),
+            entry["errorMm"] / MM_PER_M,
+            entry["simTime"],
+            time_s,
+        )
+        return replace(before, checkpoints=(*before.checkpoints, touched))
+    if "procedure" not in entry:
+        return before
+    if "registration" in entry:
+        before = _registered(before, entry["registration"], plan)
+    stage, number = Phase(entry["procedure"]["stage"]), entry["procedure"]["trajectory"]
+    if before.stage is Phase.INSERTING and stage is not Phase.INSERTING:
+        before = _released(before, entry)
+    after = replace(before, stage=stage, trajectory=number)
+    if stage is Phase.RUNNING:
+        return replace(after, registration=None, checkpoints=(), trajectories=())
+    return _locked(after, entry) if "ahead" in entry else after
+
+
+def _registered(
+    before: ProcedureState, arguments: Mapping[str, Any], plan: Procedure
+) -> ProcedureState:
+    registration = FinalRegistration.from_arguments(arguments)
+    registered = RegisteredPlan.of(registration.matrix)
+    if registered is None:
+        raise ValueError("its registration is not rigid")
+    lines = tuple(TrajectoryState(registered.line(each)) for each in plan.trajectories)
+    return replace(before, registration=registration, trajectories=lines)
+
+
+def _locked(before: ProcedureState, entry: Mapping[str, Any]) -> ProcedureState:
+    tip = in_meters(entry["positionMm"])
+    here = before.trajectories[before.trajectory]
+    guide = GuideAxis(tip, vector(entry["direction"]))
+    return before.with_present(replace(here, alignments=here.alignments + 1, guide=guide))
+
+
+def _released(before: ProcedureState, entry: Mapping[str, Any]) -> ProcedureState:
+    here = before.trajectories[before.trajectory]
+    depth = entry.get("feedMm", 0.0) / MM_PER_M
+    return before.with_present(replace(here, instrument_depth=depth))

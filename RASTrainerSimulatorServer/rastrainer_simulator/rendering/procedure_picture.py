@@ -19,10 +19,14 @@ from rastrainer.procedure.record import ProcedureRecord
 from rastrainer.scenario.scenario import Camera
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
-from rastrainer_simulator.rendering.offscreen import OffscreenWindow, write_png
-from rastrainer_simulator.rendering.picture import lay_in_corner, node_actors
+from rastrainer_simulator.rendering.picture import (
+    OffscreenWindow,
+    lay_in_corner,
+    node_actors,
+    write_png,
+)
 from rastrainer_simulator.scene.nodes import NO_GO, SKIN, Material, Node
-from rastrainer_simulator.scene.procedure_nodes import plan_node
+from rastrainer_simulator.scene.scene_glb import plan_node
 from rastrainer_simulator.scene.surfaces import shaded, turned
 from rastrainer_simulator.vectors import any_perpendicular, vector
 

@@ -20,9 +20,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.collision.collision import stand_pose
 from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.procedure_state import ProcedureState, Tool
-from rastrainer_simulator.record.procedure_entries import procedure_after
-from rastrainer_simulator.registration_state import TouchState, TracedPoint, TraceState
+from rastrainer_simulator.record.trial_records import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Event,
@@ -33,6 +31,13 @@ from rastrainer_simulator.state import (
     TrainingState,
 )
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
+from rastrainer_simulator.trial_state import (
+    ProcedureState,
+    Tool,
+    TouchState,
+    TracedPoint,
+    TraceState,
+)
 from rastrainer_simulator.vectors import in_meters
 
 AFTER_S = 0.25

@@ -14,9 +14,14 @@ from rastrainer.protocol import FINISHED_PHASES
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, recorded_command
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.state import StartingPoint, StepResult
+from rastrainer_simulator.state import (
+    HANDS_OFF,
+    OperatorCommand,
+    OperatorInput,
+    StartingPoint,
+    StepResult,
+)
 
 LONGEST_TRIAL_TICKS = 10_000_000
 """A journal that claims more (11 hours at 250 Hz) is not replayed."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import plain_xml, read_bytes
-from rastrainer.finite_json import decode_finite_json
+from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.robot.model import MeshPart, RobotModel
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ import json
 import os
 import sys
 import uuid
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from trimesh.visual.material import PBRMaterial
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
+from rastrainer.procedure.plan import Procedure, read_no_go_mesh
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
@@ -29,7 +31,12 @@ from rastrainer_simulator.robot.meshes import load_meshes
 from rastrainer_simulator.robot.model import RobotLink, RobotModel
 from rastrainer_simulator.scene.nodes import (
     ARROW,
+    AXIS,
+    DRILL,
+    ELECTRODE,
+    GUIDE,
     MARK_RIM,
+    NO_GO,
     NUMBER,
     SKIN,
     TIP_FREE,
@@ -38,13 +45,13 @@ from rastrainer_simulator.scene.nodes import (
     Node,
     Surface,
     merged,
+    no_go_name,
     painted,
 )
-from rastrainer_simulator.scene.procedure_nodes import instrument_nodes, plan_node
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
 from rastrainer_simulator.scene.skin import Shape
 from rastrainer_simulator.scene.skin_marks import SkinMark, skin_marks
-from rastrainer_simulator.scene.surfaces import shaded
+from rastrainer_simulator.scene.surfaces import shaded, turned
 
 TOOL = "tool"
 TIP_MARKER = "tip_marker"
@@ -92,6 +99,56 @@ def _first_links(robot: RobotModel) -> dict[int, RobotLink]:
     for link in robot.links:
         first.setdefault(link.joint, link)
     return first
+
+
+PLAN = "plan"
+SLEEVE_LENGTH, SLEEVE_RADIUS, MOUTH_RADIUS = 0.075, 0.0065, 0.0035
+AXIS_LENGTH, AXIS_RADIUS = 0.2, 0.00035
+DRILL_RADIUS, ELECTRODE_RADIUS = 0.0016, 0.0011
+"""As they are drawn; an electrode is mostly thinner, and would hardly be seen."""
+
+
+def instrument_nodes() -> tuple[Node, ...]:
+    """Return what the tool holds in a procedure; its frame's origin is the tip, z is the axis.
+
+    `drill` and `electrode` are 1 m long: a view scales them along z by how far they are fed.
+    """
+    sleeve = [
+        (SLEEVE_RADIUS, -SLEEVE_LENGTH),
+        (SLEEVE_RADIUS, -0.2 * SLEEVE_LENGTH),
+        (MOUTH_RADIUS, 0.0),
+    ]
+    axis = [(AXIS_RADIUS, 0.0), (AXIS_RADIUS, AXIS_LENGTH)]
+    drill = [(DRILL_RADIUS, 0.0), (DRILL_RADIUS, 1.0)]
+    electrode = [(ELECTRODE_RADIUS, 0.0), (ELECTRODE_RADIUS, 1.0)]
+    made = (
+        ("guide", sleeve, GUIDE),
+        ("axis", axis, AXIS),
+        ("drill", drill, DRILL),
+        ("electrode", electrode, ELECTRODE),
+    )
+    return tuple(
+        Node(name, (turned(0.0, 0.0, profile, material),), is_hidden=True)
+        for name, profile, material in made
+    )
+
+
+def plan_node(procedures: Sequence[Procedure]) -> Node:
+    """Return the node that the stream puts where a registration has the MRI: RAS, but in m.
+
+    Its children are the no-go structures of all procedures, one for each file.
+
+    Raises:
+        InputError: a mesh cannot be used.
+    """
+    files = sorted({each.mesh for procedure in procedures for each in procedure.no_go})
+    return Node(PLAN, children=tuple(_no_go_node(path) for path in files))
+
+
+def _no_go_node(path: Path) -> Node:
+    mesh = read_no_go_mesh(path)
+    surface = shaded(mesh.vertices / MM_PER_M, mesh.triangles, NO_GO)
+    return Node(no_go_name(path), (surface,), is_hidden=True)
 
 
 ROOT = "scene"

@@ -8,8 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.head.mesh import HeadMesh
-from rastrainer_simulator.scene.arrows import LENGTHS, Arrow, arrow_shape, arrows
-from rastrainer_simulator.scene.skin import RIM_RADIUS, Flat, Shape, Skin, dot, number, rim
+from rastrainer_simulator.scene.skin import (
+    LENGTHS,
+    RIM_RADIUS,
+    Arrow,
+    Flat,
+    Shape,
+    Skin,
+    arrow_shape,
+    arrows,
+    dot,
+    number,
+    rim,
+)
 
 DISTANCES = (11.5, 13.0, 15.0, 17.5, 20.5, 24.0)
 ANGLES = np.radians(np.arange(0, 360, 20))

@@ -1,16 +1,21 @@
-"""Serves a recorded trial to the simulator's views until a user ends it."""
+"""Serve recorded trials to the simulator's views: one, or those that a rater judges."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Callable, Coroutine
+import json
+from collections.abc import Callable, Coroutine, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.journal.recording import read_track
-from rastrainer.protocol import DEFAULT_HOST
+from rastrainer.journal.folder import journals_of
+from rastrainer.journal.recording import find_track, read_track
+from rastrainer.protocol import DEFAULT_HOST, TRIAL_RUN
+from rastrainer.study.database.study import Study
+from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     Preferences,
@@ -22,6 +27,8 @@ from rastrainer_simulator.net.views.presenter import Presenter
 from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
+from rastrainer_simulator.rating.rating_pages import RatingWork
+from rastrainer_simulator.rating.rating_presenter import RatingPresenter
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
@@ -46,11 +53,11 @@ async def _serve(
     playback: Playback, port: int | None, has_window: bool, announce: Callable
 ) -> None:
     stop = asyncio.Event()
-    presenter = ReplayPresenter(playback, preferred_language(), stop.set)
-    await show_until(stop, playback, presenter, playback.run, port, has_window, announce)
+    presenter = ReplayPresenter(playback, _preferred_language(), stop.set)
+    await _show_until(stop, playback, presenter, playback.run, port, has_window, announce)
 
 
-async def show_until(
+async def _show_until(
     stop: asyncio.Event,
     source: StateSource,
     presenter: Presenter,
@@ -93,10 +100,112 @@ async def show_until(
             await views.close()
 
 
-def preferred_language() -> str:
+def _preferred_language() -> str:
     """Return the language of the user's settings, a BCP 47 tag, if a window can show it here."""
     with contextlib.suppress(InputError):
         language = read_preferences(config_folder() / PREFERENCES_FILE).language
         if has_letters(language):
             return language
     return Preferences().language
+
+
+_OF_SETUP = ("scenario", "robot", "settings", "procedure", "method")
+"""What a journal's header says about the set-up."""
+
+
+def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
+    """Return the finished trials of consenting trainees whose journals are in a folder.
+
+    Trial runs are practice, and are left out.
+
+    Raises:
+        InputError: there are none.
+    """
+    everyone = (*study.trainees(), *study.trainees(archived=True))
+    found = tuple(
+        stored.record.trial_id
+        for trainee in everyone
+        if trainee.consent
+        for stored in study.history(trainee.pseudonym)
+        if stored.record.task != TRIAL_RUN and journals_of(records, stored.record.trial_id)
+    )
+    if not found:
+        raise InputError(
+            f"There is nothing to rate: {records} has no journal of a finished trial of a trainee "
+            "who agreed to research."
+        )
+    return found
+
+
+class ReplayLoader:
+    """Loads the replays of trials; those of one set-up share it, and views load its scene once."""
+
+    def __init__(self, records: Path, scenario: Path | None) -> None:
+        """Load from a folder of journals; `scenario` is a folder, None the usual one."""
+        self._records = records
+        self._scenario = scenario
+        self._setups: dict[str, SimulationSetup] = {}
+
+    def load(self, trial_id: str) -> Playback:
+        """Return the playback of a trial; takes seconds. Never in two threads at once.
+
+        Raises:
+            InputError: it cannot be shown.
+        """
+        try:
+            track = find_track(self._records, trial_id)
+            setup = self._setup_of(track.header)
+            return Playback(RecordedTrial(track, setup), setup)
+        except InputError as error:
+            # Its own sentences may name the journal, and with it the trial.
+            raise InputError(
+                "This replay cannot be shown: its journal is damaged, or was recorded with another "
+                "scenario, whose folder is given with --scenario."
+            ) from error
+
+    def _setup_of(self, header: Mapping[str, Any]) -> SimulationSetup:
+        key = json.dumps([header.get(name) for name in _OF_SETUP], sort_keys=True)
+        if key not in self._setups:
+            self._setups[key] = setup_of(header, self._scenario)
+        return self._setups[key]
+
+
+def serve_rating(
+    work: RatingWork,
+    records: Path,
+    scenario: Path | None,
+    port: int | None,
+    has_window: bool,
+    announce: Callable[[str], None],
+) -> None:
+    """Show the replays of a rater to views, and take the marks, until the rater leaves.
+
+    Raises:
+        InputError: the first replay cannot be shown, or the port cannot be listened on.
+    """
+    loader = ReplayLoader(records, scenario)
+    with ThreadPoolExecutor(1, "replay") as worker:
+
+        def load(trial_id: str) -> Future[Playback]:
+            return worker.submit(loader.load, trial_id)
+
+        first = load(work.trial_id).result()
+        asyncio.run(_serve_rating(work, first, load, port, has_window, announce))
+
+
+async def _serve_rating(
+    work: RatingWork,
+    first: Playback,
+    load: Callable[[str], Future[Playback]],
+    port: int | None,
+    has_window: bool,
+    announce: Callable[[str], None],
+) -> None:
+    stop = asyncio.Event()
+    presenter = RatingPresenter(work, first, load, _preferred_language(), stop.set)
+    shown = presenter.shown
+
+    async def run() -> None:
+        await shown.run(presenter.advance)
+
+    await _show_until(stop, shown, presenter, run, port, has_window, announce)

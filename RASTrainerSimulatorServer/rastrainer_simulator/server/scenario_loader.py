@@ -86,7 +86,7 @@ class ScenarioLoader:
             simulation = self._make_simulation(folder)
             if is_checked and simulation.setup.scenario.procedures:
                 # Here, since the import takes half a second that few need.
-                from rastrainer_simulator.authoring.procedure_check import require_usable_procedures
+                from rastrainer_simulator.authoring.procedure_plan import require_usable_procedures
 
                 require_usable_procedures(simulation.setup)
         except InputError as error:

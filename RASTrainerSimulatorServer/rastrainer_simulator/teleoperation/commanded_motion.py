@@ -8,9 +8,8 @@ from enum import Enum
 
 from rastrainer.protocol import CommandName
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.operator_input import OperatorCommand
-from rastrainer_simulator.state import Motion
-from rastrainer_simulator.teleoperation.axes import Axes
+from rastrainer_simulator.state import Motion, OperatorCommand
+from rastrainer_simulator.teleoperation.steering import Axes
 from rastrainer_simulator.vectors import (
     Vector,
     accelerated,

@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from rastrainer_simulator.operator_input import OperatorInput
-from rastrainer_simulator.state import Motion
-from rastrainer_simulator.teleoperation.axes import Axes
+from rastrainer_simulator.state import Motion, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import (
     CommandedMotion,
     MotionOutcome,
     Running,
     started,
 )
-from rastrainer_simulator.teleoperation.tool_steering import (
+from rastrainer_simulator.teleoperation.steering import (
+    Axes,
     NearestSurface,
     SteeringSettings,
     ToolDirection,

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from rastrainer.protocol import Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.state import OperatorInput
 from rastrainer_simulator.teleoperation.teleoperation import StickResponse
 
 LONGEST_FEED_M = 0.25

@@ -13,25 +13,22 @@ from typing import TYPE_CHECKING, Any
 from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS
 from rastrainer.protocol import STAND_OFF_LIMIT_MM, CommandName, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.procedure_state import (
-    GuideAlignment,
-    GuideAxis,
-    ProcedureState,
-    TrajectoryState,
-)
-from rastrainer_simulator.registration_state import (
-    CheckedPoint,
-    FinalRegistration,
-    RegistrationAttempt,
-    TraceState,
-)
-from rastrainer_simulator.state import EventKind, TrainingState
+from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
 from rastrainer_simulator.training.replies import RefusedStep, TrialStep
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
+from rastrainer_simulator.trial_state import (
+    CheckedPoint,
+    FinalRegistration,
+    GuideAlignment,
+    GuideAxis,
+    ProcedureState,
+    RegistrationAttempt,
+    TraceState,
+    TrajectoryState,
+)
 
 if TYPE_CHECKING:
     from rastrainer.procedure.plan import Procedure

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.procedure_state import PlannedLine
+from rastrainer_simulator.trial_state import PlannedLine
 from rastrainer_simulator.vectors import Vector, dot, scale, subtract, vector
 
 if TYPE_CHECKING:

@@ -20,9 +20,8 @@ from rastrainer.protocol import (
     TouchRule,
 )
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.state import TouchStage, TrainingState
+from rastrainer_simulator.state import OperatorCommand, TouchStage, TrainingState
 from rastrainer_simulator.training.feed import NO_FEED, Feed
 from rastrainer_simulator.vectors import ZERO, Vector, distance
 

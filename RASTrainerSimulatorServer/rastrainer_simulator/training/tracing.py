@@ -11,10 +11,10 @@ from typing import Any
 
 from rastrainer.protocol import MIN_TRACE_POINTS, TRACE_SPACING_MM, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.registration_state import TracedPoint, TraceState
 from rastrainer_simulator.state import Event, EventKind, TrainingState
 from rastrainer_simulator.training.replies import TrialStep
 from rastrainer_simulator.training.rules import TOO_DEEP_MM, TouchMoment, TrainingSettings
+from rastrainer_simulator.trial_state import TracedPoint, TraceState
 from rastrainer_simulator.vectors import Vector, distance
 
 

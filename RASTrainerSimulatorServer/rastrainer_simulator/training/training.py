@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING
 from rastrainer.errors import InputError
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.registration_state import TouchState
-from rastrainer_simulator.state import Event, EventKind, TrainingState
+from rastrainer_simulator.state import Event, EventKind, OperatorCommand, TrainingState
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE, ProcedurePhases
@@ -43,6 +41,7 @@ from rastrainer_simulator.training.trial_start import (
     resumed,
 )
 from rastrainer_simulator.training.true_error import PlacedHead, Truth
+from rastrainer_simulator.trial_state import TouchState
 from rastrainer_simulator.vectors import Vector
 
 if TYPE_CHECKING:

@@ -15,13 +15,12 @@ from rastrainer.head.trial_head import SkinShift
 from rastrainer.protocol import TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.procedure_state import ProcedureState
-from rastrainer_simulator.registration_state import TraceState
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.feed import ProcedureSettings
 from rastrainer_simulator.training.procedure_phases import ProcedurePhases
 from rastrainer_simulator.training.rules import TrainingSettings
 from rastrainer_simulator.training.true_error import PlacedHead
+from rastrainer_simulator.trial_state import ProcedureState, TraceState
 
 if TYPE_CHECKING:
     from rastrainer.scenario.points import Task

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from rastrainer_simulator.procedure_state import GuideAxis, PlannedLine
+from rastrainer_simulator.trial_state import GuideAxis, PlannedLine
 from rastrainer_simulator.vectors import (
     Vector,
     add,
@@ -18,8 +18,7 @@ from rastrainer_simulator.vectors import (
     subtract,
     unit,
 )
-from rastrainer_simulator.viewpoint.orbit import CameraPose
-from rastrainer_simulator.viewpoint.view_control import Pictures
+from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures
 
 SIDEWAYS = 0.2
 """Sine of the angle between the guide and the picture's right, below which up decides."""

@@ -24,12 +24,18 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.stamps import file_stamp, iso
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord
-from rastrainer_simulator.state import SimulationState, StartingPoint, StepResult
+from rastrainer_simulator.state import (
+    HANDS_OFF,
+    OperatorCommand,
+    OperatorInput,
+    SimulationState,
+    StartingPoint,
+    StepResult,
+)
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.virtual.population import TrialJob
 from rastrainer_simulator.virtual.scripted_trainee import (

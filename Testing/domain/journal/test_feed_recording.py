@@ -2,7 +2,7 @@
 
 import pytest
 
-from rastrainer_simulator.record.procedure_entries import FeedRecording
+from rastrainer_simulator.record.trial_records import FeedRecording
 
 
 def phase(stage, trajectory=0):

@@ -12,7 +12,7 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer_simulator.authoring.surface_path import SurfaceGraph, shortest_path_mm
+from rastrainer_simulator.authoring.touch_order import SurfaceGraph, shortest_path_mm
 from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
 

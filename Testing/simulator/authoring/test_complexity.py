@@ -1,8 +1,12 @@
 import numpy as np
 import pytest
 
-from rastrainer_simulator.authoring.surface_path import SurfaceGraph
-from rastrainer_simulator.authoring.touch_order import Complexity, complexity, turns_deg
+from rastrainer_simulator.authoring.touch_order import (
+    Complexity,
+    SurfaceGraph,
+    complexity,
+    turns_deg,
+)
 from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
 FRONT = np.array([0.0, 700.0, 0.0])

@@ -15,9 +15,8 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.planning_setup import touchable
-from rastrainer_simulator.authoring.surface_path import SurfaceGraph, shortest_path_mm
 from rastrainer_simulator.authoring.task_proposal import target_spread
-from rastrainer_simulator.authoring.touch_order import complexity
+from rastrainer_simulator.authoring.touch_order import SurfaceGraph, complexity, shortest_path_mm
 from rastrainer_simulator.collision.collision import Collision
 from rastrainer_simulator.collision.robot_shape import robot_shape
 from rastrainer_simulator.collision.touch_planner import TouchPlanner

@@ -12,8 +12,7 @@ from rastrainer.files.point_list import PointList, read_markups, write_markups
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.authoring.landmark_plan import read_placed_landmarks
-from rastrainer_simulator.authoring.landmark_proposal import REFERENCE, landmarks_on
+from rastrainer_simulator.authoring.landmarks import REFERENCE, landmarks_on, read_placed_landmarks
 from rastrainer_simulator.cli.main import main
 from Testing.simulator.authoring.heads import colin27
 from Testing.simulator.landmarked import write_landmarked

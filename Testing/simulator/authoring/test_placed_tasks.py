@@ -11,7 +11,7 @@ from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.make import ScenarioOptions, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.task_check import read_placed_tasks
+from rastrainer_simulator.authoring.scenario_check import read_placed_tasks
 from Testing.simulator.authoring.heads import egg
 from Testing.slicer.head.placed import fiducials
 

@@ -17,11 +17,11 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.make import copy_with_plan
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.procedure_check import (
+from rastrainer_simulator.authoring.procedure_plan import (
     check_procedures,
     require_usable_procedures,
+    with_procedure,
 )
-from rastrainer_simulator.authoring.procedure_plan import with_procedure
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.setup import load_setup
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rastrainer_simulator.authoring.surface_path import SurfaceGraph
+from rastrainer_simulator.authoring.touch_order import SurfaceGraph
 from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
 

@@ -15,8 +15,7 @@ from rastrainer.scenario.writer import HeadDraft
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.make import ScenarioOptions, make_scenario, without_tasks
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.scenario_check import check_plan
-from rastrainer_simulator.authoring.task_check import check_tasks
+from rastrainer_simulator.authoring.scenario_check import check_plan, check_tasks
 from rastrainer_simulator.authoring.task_set import TaskSetProposer
 from Testing.simulator.authoring.heads import egg
 from Testing.simulator.authoring.test_many_task_sets import broken_promises

@@ -13,10 +13,9 @@ from rastrainer.protocol import CommandName, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.state import EventKind, Motion
+from rastrainer_simulator.state import HANDS_OFF, EventKind, Motion, OperatorCommand, OperatorInput
 from Testing.simulator.virtual.cheating_trainees import press
 
 DT = 0.004

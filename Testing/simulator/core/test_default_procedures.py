@@ -9,7 +9,7 @@ from rastrainer.procedure.score import ProcedureMeasures, reference_duration_s, 
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.procedure_entries import FeedRecording, procedure_record
+from rastrainer_simulator.record.trial_records import FeedRecording, procedure_record
 from Testing.simulator.core.test_procedure_simulation import IN, Surgeon
 
 SEED = 11

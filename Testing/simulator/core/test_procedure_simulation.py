@@ -12,9 +12,8 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
-from rastrainer_simulator.procedure_state import Tool
-from rastrainer_simulator.state import EventKind, Motion
+from rastrainer_simulator.state import EventKind, Motion, OperatorCommand, OperatorInput
+from rastrainer_simulator.trial_state import Tool
 from Testing.simulator.core.test_simulation import Driver
 from Testing.simulator.planned_procedures import INNER_MM, OUTER_MM
 

@@ -14,12 +14,22 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.score_reference import fiducial_normals
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.robot.goal import FabrikSettings
-from rastrainer_simulator.state import EventKind, Motion, StartingPoint
-from rastrainer_simulator.teleoperation.axes import AxesChoice, camera_axes
+from rastrainer_simulator.state import (
+    HANDS_OFF,
+    EventKind,
+    Motion,
+    OperatorCommand,
+    OperatorInput,
+    StartingPoint,
+)
+from rastrainer_simulator.teleoperation.steering import (
+    AxesChoice,
+    SteeringSettings,
+    ToolDirection,
+    camera_axes,
+)
 from rastrainer_simulator.teleoperation.teleoperation import TeleoperationSettings
-from rastrainer_simulator.teleoperation.tool_steering import SteeringSettings, ToolDirection
 
 DT = 0.004
 DOWN = OperatorInput(translation=(0.0, 0.0, -1.0))

@@ -15,11 +15,10 @@ from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.scene.scene_glb import scene_glb
 from rastrainer_simulator.state import EventKind
-from rastrainer_simulator.teleoperation.axes import AxesChoice
+from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.vectors import vector
-from rastrainer_simulator.viewpoint.orbit import camera_pose, orbit_to
-from rastrainer_simulator.viewpoint.touch_views import TouchViews
-from rastrainer_simulator.viewpoint.view_control import Pictures, along_skin
+from rastrainer_simulator.viewpoint.best_view import TouchViews
+from rastrainer_simulator.viewpoint.view_control import Pictures, along_skin, camera_pose, orbit_to
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.simulator.desktop.conftest import SIZE

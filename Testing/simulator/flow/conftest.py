@@ -14,10 +14,9 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.session import FlowServices
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
-from rastrainer_simulator.state import Answer, StartingPoint
-from rastrainer_simulator.viewpoint import touch_views
+from rastrainer_simulator.state import Answer, OperatorCommand, OperatorInput, StartingPoint
+from rastrainer_simulator.viewpoint.best_view import TouchViews
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Pad, Trainee
@@ -27,7 +26,7 @@ from Testing.without_tutorial import WITHOUT_TUTORIAL, leave_tutorial_out
 @pytest.fixture(scope="session", autouse=True)
 def _known_marks():
     """Look once for where the numbers of a task are on the skin, not for each presenter again."""
-    known, on_skin = {}, touch_views.TouchViews._on_skin
+    known, on_skin = {}, TouchViews._on_skin
 
     def kept(views, task):
         key = views._scenario.head_mesh, task.fiducials.tobytes()
@@ -35,7 +34,7 @@ def _known_marks():
             known[key] = on_skin(views, task)
         return known[key]
 
-    with mock.patch.object(touch_views.TouchViews, "_on_skin", kept):
+    with mock.patch.object(TouchViews, "_on_skin", kept):
         yield
 
 

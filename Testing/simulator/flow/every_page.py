@@ -31,13 +31,12 @@ from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
-from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.net.views.screen import Screen, without_secrets
-from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
+from rastrainer_simulator.trial_state import PlannedLine, ProcedureState, TrajectoryState
 
 QUESTIONNAIRE = StudyStep("P07", "questionnaire", 2, 19, questionnaire="nasa-tlx")
 SCORED = TrainingState(

@@ -13,8 +13,8 @@ from rastrainer_simulator.flow.pages.start import SettingsPage
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences, write_preferences
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
-from rastrainer_simulator.input.control_name import ControlName
 from rastrainer_simulator.input.controls import IDLE_S
+from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.net.views.presenter import Hello
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from Testing.simulator.flow.trainee import STEP_S, Keys

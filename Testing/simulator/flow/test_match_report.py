@@ -7,9 +7,9 @@ from rastrainer import transforms
 from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.flow.pages.match import match_report
-from rastrainer_simulator.registration_state import TouchState, TracedPoint, TraceState
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import given
+from rastrainer_simulator.trial_state import TouchState, TracedPoint, TraceState
 from Testing.domain.registration.traces import colin27, places, traced
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks
 

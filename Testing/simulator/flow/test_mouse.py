@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.session.trainee_history import DoneTasks
-from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import ControlName
 from Testing.simulator.flow.mouse import VIEW, Mouse
 from Testing.simulator.flow.trainee import Trainee
 

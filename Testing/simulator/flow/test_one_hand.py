@@ -6,8 +6,7 @@ import pytest
 
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import Phase
-from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.input.presets import LEFT_ALONE, RIGHT_ALONE, presets_of
 from Testing.simulator.flow.test_controls_screens import open_the_bindings
 from Testing.simulator.flow.trainee import Pad

@@ -17,7 +17,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.net.views.screen import Tone
 from rastrainer_simulator.ops.texts.german import GERMAN
-from rastrainer_simulator.procedure_state import Tool
+from rastrainer_simulator.trial_state import Tool
 
 OWN = "This score is the simulator's own and is not stored in a study."
 A_MICROMETRE = 1e-3

@@ -13,7 +13,7 @@ from rastrainer_simulator.flow.session.preferences import (
     read_preferences,
     write_preferences,
 )
-from rastrainer_simulator.teleoperation.tool_steering import ToolDirection
+from rastrainer_simulator.teleoperation.steering import ToolDirection
 
 
 @pytest.mark.parametrize("name", OPTIONS)

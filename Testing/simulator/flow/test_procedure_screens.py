@@ -20,7 +20,6 @@ from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.screen import Tone
-from rastrainer_simulator.procedure_state import Tool
 from rastrainer_simulator.rendering.procedure_picture import (
     PLACED,
     PLANNED,
@@ -28,6 +27,7 @@ from rastrainer_simulator.rendering.procedure_picture import (
     draw_procedure,
     procedure_lines,
 )
+from rastrainer_simulator.trial_state import Tool
 from Testing.read_png import read_png
 from Testing.simulator.flow.conftest import Outside
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee

@@ -8,10 +8,10 @@ from rastrainer.protocol import StepKind
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.session.trial_view import turned
 from rastrainer_simulator.net.views.presenter import Hello
-from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.viewpoint.orbit import FRONT
+from rastrainer_simulator.state import OperatorInput
+from rastrainer_simulator.viewpoint.view_control import FRONT
 
 LEFT = OperatorInput((-1.0, 0.0, 0.0), operator="keyboard")
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from rastrainer_simulator.flow.arm_screen import PathArc, direction_words
-from rastrainer_simulator.teleoperation.axes import ROBOT_AXES
+from rastrainer_simulator.teleoperation.steering import ROBOT_AXES
 
 WAY = PathArc(center=(0.5, 0.0, 0.2), start=(0.6, 0.0, 0.2), end=(0.5, 0.1, 0.2))
 

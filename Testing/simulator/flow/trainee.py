@@ -15,7 +15,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.state import TouchStage
-from rastrainer_simulator.teleoperation.axes import camera_axes
+from rastrainer_simulator.teleoperation.steering import camera_axes
 from rastrainer_simulator.vectors import dot, subtract
 
 PATIENCE_S = 120.0

@@ -15,11 +15,12 @@ from rastrainer_simulator.input.bindings import (
     read_bindings,
     write_bindings,
 )
-from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.input.inputs import (
     AXES,
     BUTTONS,
     GAMEPAD_INPUTS,
+    ControlContext,
+    ControlName,
     InputDevice,
     gamepad_inputs,
     w3c_gamepad_inputs,

@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.control_name import ControlContext, ControlName
 from rastrainer_simulator.input.controls import IDLE_S, Controls
-from rastrainer_simulator.input.inputs import Source, SourceKind
-from rastrainer_simulator.operator_input import HANDS_OFF
+from rastrainer_simulator.input.inputs import ControlContext, ControlName, Source, SourceKind
+from rastrainer_simulator.state import HANDS_OFF
 
 GAMEPAD = Source(SourceKind.GAMEPAD)
 KEYS = Source(SourceKind.KEYBOARD, view=1)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.input_state import RAMP_S, InputState
+from rastrainer_simulator.input.controls import RAMP_S, InputState
 from rastrainer_simulator.input.inputs import InputDevice
-from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.state import OperatorInput
 
 
 def right(hand):

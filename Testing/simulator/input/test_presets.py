@@ -12,8 +12,7 @@ from rastrainer_simulator.input.bindings import (
     read_bindings,
     write_bindings,
 )
-from rastrainer_simulator.input.control_name import OF_VIEW, ROTATION, ControlName
-from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.inputs import OF_VIEW, ROTATION, ControlName, InputDevice
 from rastrainer_simulator.input.presets import (
     LEFT_ALONE,
     RIGHT_ALONE,

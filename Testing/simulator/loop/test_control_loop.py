@@ -20,12 +20,11 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop import control_loop
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.rates import TrialLimits
-from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.record.trial_recorder import FLUSH_TICKS
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.state import StepResult
+from rastrainer_simulator.state import OperatorCommand, OperatorInput, StepResult
 
 TIMEOUT_S = 120.0
 

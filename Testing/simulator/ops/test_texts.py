@@ -9,8 +9,7 @@ import pytest
 
 from rastrainer_simulator.flow.session.preferences import OPTIONS
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.input.inputs import GAMEPAD_INPUTS, InputDevice, SourceKind
+from rastrainer_simulator.input.inputs import GAMEPAD_INPUTS, ControlName, InputDevice, SourceKind
 from rastrainer_simulator.ops.texts.english import ENGLISH
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
 

@@ -6,8 +6,8 @@ from rastrainer.protocol import CommandName
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.scoring import LONG_PAUSE_S
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.record.trial_entries import TrialEntries
+from rastrainer_simulator.state import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 

@@ -18,9 +18,9 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
+from rastrainer_simulator.state import OperatorInput
 
 TIMEOUT_S = 120.0
 

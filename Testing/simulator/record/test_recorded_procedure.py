@@ -18,12 +18,11 @@ from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, find_interrupted
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import OperatorInput
-from rastrainer_simulator.procedure_state import Tool
 from rastrainer_simulator.record.aborted_archive import interrupted_attempt
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.state import EventKind
+from rastrainer_simulator.state import EventKind, OperatorInput
+from rastrainer_simulator.trial_state import Tool
 from Testing.simulator.record.test_interrupted_trial import TIMEOUT_S, Server, cut
 
 IN = (0.0, 0.0, -1.0)

@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.record.records_folder import RecordsFolder
+from rastrainer_simulator.record.journal import RecordsFolder
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.server import server
 from Testing.forked_child import in_child

@@ -15,10 +15,10 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.setup import scenario_sha256
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.state import OperatorInput
 from Testing.domain.procedure.made_up_procedure import write_planned
 
 CHAIN = ("n", "previous", "sha256")

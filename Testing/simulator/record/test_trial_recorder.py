@@ -10,9 +10,8 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import CommandName
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import OperatorCommand, OperatorInput
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.state import Event, EventKind
+from rastrainer_simulator.state import Event, EventKind, OperatorCommand, OperatorInput
 
 PLAY_THE_FIRST_TRIAL = """
 import json, sys, tempfile

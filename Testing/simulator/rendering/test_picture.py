@@ -9,8 +9,7 @@ from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Camera, Furniture
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows
-from rastrainer_simulator.rendering.offscreen import write_png
-from rastrainer_simulator.rendering.picture import SceneMoment, render_picture
+from rastrainer_simulator.rendering.picture import SceneMoment, render_picture, write_png
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node

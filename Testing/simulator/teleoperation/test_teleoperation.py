@@ -4,25 +4,25 @@ import math
 
 import pytest
 
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
-from rastrainer_simulator.state import Motion
-from rastrainer_simulator.teleoperation.axes import ROBOT_AXES, camera_axes
+from rastrainer_simulator.state import HANDS_OFF, Motion, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import (
     ARRIVED,
     JogCommand,
     MotionOutcome,
     MoveCommand,
 )
+from rastrainer_simulator.teleoperation.steering import (
+    ROBOT_AXES,
+    NearestSurface,
+    SteeringSettings,
+    ToolDirection,
+    camera_axes,
+)
 from rastrainer_simulator.teleoperation.teleoperation import (
     StickResponse,
     Teleoperation,
     TeleoperationSettings,
     Tip,
-)
-from rastrainer_simulator.teleoperation.tool_steering import (
-    NearestSurface,
-    SteeringSettings,
-    ToolDirection,
 )
 from rastrainer_simulator.vectors import ZERO, add, angle, distance, dot, length, unit
 

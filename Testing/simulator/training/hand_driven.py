@@ -8,7 +8,7 @@ import numpy as np
 from rastrainer.procedure.plan import Checkpoint, Procedure, ProcedureKind, ProcedureTrajectory
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.operator_input import OperatorCommand
+from rastrainer_simulator.state import OperatorCommand
 from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
 from rastrainer_simulator.training.rules import NAMING_A_TRIAL, TouchMoment
 from rastrainer_simulator.training.training import Training

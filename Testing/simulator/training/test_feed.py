@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rastrainer.protocol import Phase
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorInput
+from rastrainer_simulator.state import HANDS_OFF, OperatorInput
 from rastrainer_simulator.teleoperation.teleoperation import StickResponse
 from rastrainer_simulator.training.feed import (
     LONGEST_FEED_M,

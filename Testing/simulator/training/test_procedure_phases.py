@@ -7,10 +7,10 @@ import pytest
 
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.procedure_state import Tool
 from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.training.feed import Feed, HeadAhead
 from rastrainer_simulator.training.rules import RECORDING_FAILED
+from rastrainer_simulator.trial_state import Tool
 from Testing.simulator.training.hand_driven import (
     AHEAD,
     DRILLED,

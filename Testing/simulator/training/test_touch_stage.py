@@ -3,9 +3,9 @@
 import pytest
 
 from rastrainer.protocol import Phase, Proximity
-from rastrainer_simulator.registration_state import TouchState
 from rastrainer_simulator.state import TouchStage, TrainingState
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings, touch_stage
+from rastrainer_simulator.trial_state import TouchState
 
 RUNNING = TrainingState(phase=Phase.RUNNING, next_point="2")
 TOUCHED = TrainingState(

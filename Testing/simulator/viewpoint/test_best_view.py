@@ -8,9 +8,8 @@ import pytest
 from rastrainer.head.mesh import hides, outward_normals, read_head_mesh
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
-from rastrainer_simulator.authoring.task_check import check_tasks
-from rastrainer_simulator.viewpoint.best_view import BESIDE_DEG
-from rastrainer_simulator.viewpoint.touch_views import TouchViews
+from rastrainer_simulator.authoring.scenario_check import check_tasks
+from rastrainer_simulator.viewpoint.best_view import BESIDE_DEG, TouchViews
 from Testing.simulator.authoring.planned_heads import setup_of
 
 SEEDS = (None, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (11, 12)))

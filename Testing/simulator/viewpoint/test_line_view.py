@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rastrainer_simulator.procedure_state import PlannedLine
+from rastrainer_simulator.trial_state import PlannedLine
 from rastrainer_simulator.viewpoint.line_views import AWAY_M, TALLEST_M, across_line
 
 EYE = (0.5, -0.6, 0.6)

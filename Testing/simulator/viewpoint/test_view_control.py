@@ -6,23 +6,21 @@ import numpy as np
 import pytest
 
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.viewpoint.orbit import (
+from rastrainer_simulator.viewpoint.view_control import (
     FARTHEST_M,
     FRONT,
     HIGHEST_DEG,
     LOWEST_DEG,
     NEAREST_M,
+    STILL,
     Orbit,
+    ViewControl,
+    ViewMotion,
+    along_skin,
     camera_pose,
     heading_deg,
     limited,
     orbit_to,
-)
-from rastrainer_simulator.viewpoint.view_control import (
-    STILL,
-    ViewControl,
-    ViewMotion,
-    along_skin,
 )
 
 EYE, FIDUCIAL = (0.55, 0.4, 0.35), (0.5, 0.1, 0.25)

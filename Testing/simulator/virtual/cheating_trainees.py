@@ -21,9 +21,8 @@ from rastrainer.trial.score_reference import fiducial_normals
 from rastrainer_simulator.collision.robot_shape import sphere_directions
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.operator_input import HANDS_OFF, OperatorCommand, OperatorInput
 from rastrainer_simulator.record.trial_entries import TrialEntries
-from rastrainer_simulator.state import Answer, Motion
+from rastrainer_simulator.state import HANDS_OFF, Answer, Motion, OperatorCommand, OperatorInput
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill

@@ -18,10 +18,9 @@ from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.skin import Skin
 from rastrainer_simulator.scene.skin_marks import place_marks
 from rastrainer_simulator.state import SimulationState, TouchStage
-from rastrainer_simulator.teleoperation.axes import camera_axes
+from rastrainer_simulator.teleoperation.steering import camera_axes
 from rastrainer_simulator.vectors import Vector, vector
-from rastrainer_simulator.viewpoint.orbit import CameraPose, camera_pose
-from rastrainer_simulator.viewpoint.view_control import Pictures
+from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures, camera_pose
 
 WIDTH_PX, HEIGHT_PX = 1280, 720
 INSET_PX = 158

@@ -23,7 +23,7 @@ from rastrainer_simulator.net.views.presenter import Feedback, Hello, Seat
 from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
-from rastrainer_simulator.server.rating_server import ReplayLoader, trials_to_show
+from rastrainer_simulator.server.replay_server import ReplayLoader, trials_to_show
 from rastrainer_simulator.virtual.cohort import RECORDS
 from Testing.simulator.net.views.served import ViewClient
 

@@ -33,7 +33,7 @@ class Task:
         labels: "1" to "15", in touch order.
         fiducials: (15, 3) float, RAS mm, in touch order.
         complexity: index from `rastrainer_simulator.authoring.touch_order`.
-        shortest_path_mm: from `rastrainer_simulator.authoring.surface_path`, or None.
+        shortest_path_mm: from `rastrainer_simulator.authoring.touch_order`, or None.
     """
 
     name: str

@@ -11,8 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.control_name import IN_MENUS, OF_VIEW, STICKS, ControlName
-from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.inputs import IN_MENUS, OF_VIEW, STICKS, ControlName, InputDevice
 from rastrainer_simulator.input.presets import preset_name, presets_of
 from rastrainer_simulator.net.views.screen import Menu, MenuItem
 

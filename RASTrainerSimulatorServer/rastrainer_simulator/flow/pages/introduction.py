@@ -6,8 +6,7 @@ from rastrainer_simulator.flow.pages.bindings import BindingsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.control_name import ROTATION, TRANSLATION, ControlName
-from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.inputs import ROTATION, TRANSLATION, ControlName, InputDevice
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
 from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem
 

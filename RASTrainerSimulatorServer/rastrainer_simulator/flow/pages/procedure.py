@@ -34,8 +34,8 @@ from rastrainer_simulator.net.views.screen import (
     Screen,
     Tone,
 )
-from rastrainer_simulator.procedure_state import PlannedLine
 from rastrainer_simulator.state import TrialResult
+from rastrainer_simulator.trial_state import PlannedLine
 
 STAND_OFF_MM = 30.0
 """Of the guide's tip before the entry where the robot aligns it: near, and clear of the skin."""

@@ -8,8 +8,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_hint
 from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.control_name import ControlContext, ControlName
-from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.net.views.feedback_event import feedback_event
 from rastrainer_simulator.net.views.screen import Hint, Menu, Screen
 from rastrainer_simulator.replay.playback import Playback

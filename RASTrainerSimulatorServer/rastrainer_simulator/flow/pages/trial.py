@@ -7,7 +7,7 @@ from rastrainer_simulator.flow.pages.introduction import ControlsPage
 from rastrainer_simulator.flow.pages.match import MatchPage, look_at_match
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.start import SettingsPage
-from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.net.views.screen import Menu
 
 

@@ -9,7 +9,7 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.chosen_trial import start_task
 from rastrainer_simulator.flow.session.obstacles import obstacle, tutorial_rule
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.control_name import ControlName
+from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.net.views.screen import Fact, Menu
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 

@@ -6,8 +6,7 @@ import dataclasses
 from collections.abc import Callable
 from typing import ClassVar
 
-from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.input.inputs import InputDevice
+from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
 from rastrainer_simulator.net.views.screen import ItemKind, Menu, MenuItem, Screen
 

@@ -16,8 +16,7 @@ from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, TouchRule, Tutor
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.ops.texts.texts import LANGUAGES
-from rastrainer_simulator.teleoperation.axes import AxesChoice
-from rastrainer_simulator.teleoperation.tool_steering import ToolDirection
+from rastrainer_simulator.teleoperation.steering import AxesChoice, ToolDirection
 
 PREFERENCES_FILE = "preferences.json"
 MAX_BYTES = 2**14

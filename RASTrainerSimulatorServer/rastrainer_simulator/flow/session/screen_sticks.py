@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from rastrainer_simulator.input.control_name import ControlName
-from rastrainer_simulator.operator_input import OperatorInput
+from rastrainer_simulator.input.inputs import ControlName
+from rastrainer_simulator.state import OperatorInput
 
 SHOW, TILT = "sticks", "tilt"
 """What is clicked to show or hide the sticks, and to have the right one tilt the tool."""

@@ -48,14 +48,13 @@ from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
 from rastrainer_simulator.net.views.screen import Tone
-from rastrainer_simulator.operator_input import OperatorInput
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
-from rastrainer_simulator.state import Answer, SimulationState, TrainingState
+from rastrainer_simulator.state import Answer, OperatorInput, SimulationState, TrainingState
 from rastrainer_simulator.vectors import Vector, in_meters
-from rastrainer_simulator.viewpoint.orbit import Orbit
+from rastrainer_simulator.viewpoint.view_control import Orbit
 
 REACHED_S = 20.0
 """How long a reached assignment is shown: it comes while the result is read."""

@@ -17,9 +17,9 @@ from rastrainer.trial.touch_registration import trace_guide
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.precise_clock import raise_thread_priority
 from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
-from rastrainer_simulator.registration_state import TraceState
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.trial_state import TraceState
 from rastrainer_simulator.vectors import Vector, add, in_meters, scale, subtract, unit, vector
 
 LOOK_S = 0.25

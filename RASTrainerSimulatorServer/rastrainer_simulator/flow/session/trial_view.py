@@ -9,20 +9,19 @@ from dataclasses import replace
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.scenario import Camera, Scenario
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.operator_input import OperatorInput
-from rastrainer_simulator.state import SimulationState
-from rastrainer_simulator.teleoperation.axes import AxesChoice
+from rastrainer_simulator.state import OperatorInput, SimulationState
+from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import vector
-from rastrainer_simulator.viewpoint.best_view import BestView
+from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
 from rastrainer_simulator.viewpoint.line_views import across_line
-from rastrainer_simulator.viewpoint.orbit import heading_deg, orbit_to
-from rastrainer_simulator.viewpoint.touch_views import BestViews
 from rastrainer_simulator.viewpoint.view_control import (
     Pictures,
     ViewControl,
     ViewMotion,
     along_skin,
+    heading_deg,
+    orbit_to,
 )
 
 

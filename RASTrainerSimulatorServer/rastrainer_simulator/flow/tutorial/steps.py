@@ -12,9 +12,9 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES
 from rastrainer_simulator.state import TouchStage
-from rastrainer_simulator.teleoperation.axes import Axes
+from rastrainer_simulator.teleoperation.steering import Axes
 from rastrainer_simulator.vectors import Vector, distance, dot, subtract
-from rastrainer_simulator.viewpoint.orbit import FRONT, Orbit
+from rastrainer_simulator.viewpoint.view_control import FRONT, Orbit
 
 MOVE_MM = 30.0
 SLOW_MM = 10.0

@@ -12,9 +12,8 @@ from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.operator_input import OperatorCommand
 from rastrainer_simulator.ops.texts.texts import Texts
-from rastrainer_simulator.state import SimulationState, TouchStage, TrainingState
+from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage, TrainingState
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
 from rastrainer_simulator.training.true_error import Truth

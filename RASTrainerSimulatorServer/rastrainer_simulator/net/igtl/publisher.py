@@ -19,9 +19,9 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.connection import ClientConnection
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
-from rastrainer_simulator.procedure_state import ProcedureState, Tool
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.training.tracing import stroke_data
+from rastrainer_simulator.trial_state import ProcedureState, Tool
 
 
 def tool_tip(state: SimulationState, seq: int) -> Message:

@@ -13,8 +13,8 @@ from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.messages import Worn
 from rastrainer_simulator.net.views.presenter import TraceGuidance
-from rastrainer_simulator.registration_state import TracedPoint
 from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.trial_state import TracedPoint
 
 NEWS_HZ = 5.0
 

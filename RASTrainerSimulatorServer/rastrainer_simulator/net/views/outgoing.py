@@ -15,14 +15,13 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.messages import PROTOCOL, Worn
 from rastrainer_simulator.net.views.presenter import Control, Feedback, TraceGuidance
 from rastrainer_simulator.net.views.screen import Screen, screen_to_json
-from rastrainer_simulator.procedure_state import Tool
 from rastrainer_simulator.scene.nodes import no_go_name
 from rastrainer_simulator.state import SimulationState
-from rastrainer_simulator.teleoperation.axes import AxesChoice
+from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
+from rastrainer_simulator.trial_state import Tool
 from rastrainer_simulator.viewpoint.line_views import aim
-from rastrainer_simulator.viewpoint.orbit import CameraPose, camera_pose
-from rastrainer_simulator.viewpoint.view_control import Pictures
+from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures, camera_pose
 
 WELCOME = "welcome"
 SCENE = "scene"

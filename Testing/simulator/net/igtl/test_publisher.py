@@ -16,15 +16,17 @@ from rastrainer.protocol import DeviceName, Phase, Proximity
 from rastrainer_simulator.loop.rates import Pacer
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
 from rastrainer_simulator.net.state_feed import StateFeed
-from rastrainer_simulator.procedure_state import PlannedLine, ProcedureState, TrajectoryState
-from rastrainer_simulator.registration_state import (
+from rastrainer_simulator.state import StepResult, TrainingState
+from rastrainer_simulator.trial_state import (
     CheckedPoint,
     FinalRegistration,
+    PlannedLine,
+    ProcedureState,
     TouchState,
     TracedPoint,
     TraceState,
+    TrajectoryState,
 )
-from rastrainer_simulator.state import StepResult, TrainingState
 from Testing.simulator.net.igtl.servers import at_rest
 
 TICK_S = 0.004

@@ -19,8 +19,8 @@ from pyigtl.messages import MessageBase, message_type_to_class_constructor
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, Point, Points, Status, String
 from rastrainer.igtl.message import Message
-from rastrainer_simulator.registration_state import TouchState
 from rastrainer_simulator.state import TrainingState
+from rastrainer_simulator.trial_state import TouchState
 from Testing.domain.igtl.sent_pose import transform_of
 from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import PlainServer, at_rest

@@ -13,8 +13,8 @@ import pytest
 from rastrainer.igtl.content import Command, Point, Points, Status, String, Transform
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer_simulator.net.limits import LinkLimits
-from rastrainer_simulator.registration_state import TouchState
 from rastrainer_simulator.state import TrainingState
+from rastrainer_simulator.trial_state import TouchState
 from Testing.simulator.net.igtl.servers import LinkServer, at_rest
 
 SOURCE = Path(__file__).with_name("reference_client.cpp")

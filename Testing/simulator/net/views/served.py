@@ -16,8 +16,7 @@ from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
-from rastrainer_simulator.viewpoint.orbit import CameraPose
-from rastrainer_simulator.viewpoint.view_control import Pictures
+from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures
 from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST, PATIENCE_S, LoopThread
 
