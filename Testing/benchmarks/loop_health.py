@@ -10,7 +10,7 @@ import numpy as np
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import DeviceName
-from rastrainer_simulator.loop.precise_clock import LoopStatistics
+from rastrainer_simulator.loop.timing import LoopStatistics
 
 TIMEOUT_S = 60.0
 

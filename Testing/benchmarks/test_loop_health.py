@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rastrainer_simulator.loop.precise_clock import LoopStatistics
+from rastrainer_simulator.loop.timing import LoopStatistics
 from Testing.benchmarks.loop_health import undisturbed
 
 HEALTHS = [

@@ -16,7 +16,7 @@ from multiprocessing.connection import Connection
 import numpy as np
 
 from rastrainer.igtl.client import Client
-from rastrainer_simulator.loop.precise_clock import (
+from rastrainer_simulator.loop.timing import (
     FIRST,
     LoopStatistics,
     precise_timing,

@@ -17,7 +17,7 @@ from typing import Any
 
 from rastrainer_simulator.cli.main import main as run
 from rastrainer_simulator.input.gamepads import Gamepads
-from rastrainer_simulator.loop.precise_clock import raise_thread_priority
+from rastrainer_simulator.loop.timing import raise_thread_priority
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 

@@ -21,15 +21,16 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.procedure_motion import PlannedBone
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.loop.precise_clock import (
+from rastrainer_simulator.loop.results import DurableResults, PendingAnswers, Subscribers
+from rastrainer_simulator.loop.timing import (
     LoopStatistics,
     Punctuality,
+    RateLimit,
+    TrialLimits,
     precise_timing,
     raise_thread_priority,
     sleep_until,
 )
-from rastrainer_simulator.loop.rates import RateLimit, TrialLimits
-from rastrainer_simulator.loop.results import DurableResults, PendingAnswers, Subscribers
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.beside_the_trial import NotedReport
 from rastrainer_simulator.record.trial_archive import TrialArchive

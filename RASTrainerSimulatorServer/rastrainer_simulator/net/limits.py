@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer_simulator.loop.rates import TrialLimits
+from rastrainer_simulator.loop.timing import TrialLimits
 
 LIMITS_FILE = "limits.json"
 MAX_BYTES = 2**14

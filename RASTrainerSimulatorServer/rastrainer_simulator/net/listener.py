@@ -10,7 +10,7 @@ import ssl
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-from rastrainer_simulator.loop.rates import AsyncRateLimiter
+from rastrainer_simulator.loop.timing import AsyncRateLimiter
 
 MAX_HANDSHAKES = 32
 """Most TLS handshakes at a time."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.loop.precise_clock import LoopStatistics
+from rastrainer_simulator.loop.timing import LoopStatistics
 from rastrainer_simulator.state import EventKind, SimulationState, StepResult, TrainingState
 
 _log = logging.getLogger(__name__)

@@ -15,7 +15,7 @@ from rastrainer.protocol import GhostRule, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.loop.precise_clock import raise_thread_priority
+from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import SimulationState

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.precise_clock import LoopStatistics
 from rastrainer_simulator.loop.results import Subscribers
+from rastrainer_simulator.loop.timing import LoopStatistics
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.state import Event, SimulationState, StepResult
 

@@ -31,7 +31,7 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.study_steps import StudySteps
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.precise_clock import raise_thread_priority
+from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.listener import is_loopback

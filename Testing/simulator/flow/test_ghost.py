@@ -18,7 +18,7 @@ from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.rates import TrialLimits
+from rastrainer_simulator.loop.timing import TrialLimits
 from rastrainer_simulator.replay.ghost import Ghost
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from Testing.simulator.flow.conftest import Outside

@@ -19,7 +19,7 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop import control_loop
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.loop.rates import TrialLimits
+from rastrainer_simulator.loop.timing import TrialLimits
 from rastrainer_simulator.record.journal import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.record.trial_recorder import FLUSH_TICKS

@@ -8,7 +8,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client, LinkError
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer_simulator.loop.rates import TrialLimits
+from rastrainer_simulator.loop.timing import TrialLimits
 from rastrainer_simulator.net.limits import (
     LIMITS_FILE,
     LinkLimits,

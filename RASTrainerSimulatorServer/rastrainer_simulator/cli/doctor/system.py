@@ -19,7 +19,7 @@ from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatu
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE, read_preferences
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, read_bindings
-from rastrainer_simulator.loop.precise_clock import is_real_time_permitted
+from rastrainer_simulator.loop.timing import is_real_time_permitted
 from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.listener import listening_socket
 from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive

@@ -15,7 +15,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.loop.precise_clock import raise_thread_priority
+from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.views.screen import Fact, Menu, Tone
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import given

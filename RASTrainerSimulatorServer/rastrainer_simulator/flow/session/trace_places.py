@@ -15,7 +15,7 @@ from rastrainer.scenario.scenario import Camera
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.touch_registration import trace_guide
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.loop.precise_clock import raise_thread_priority
+from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.true_error import Truth

@@ -16,7 +16,7 @@ from rastrainer.igtl.content import Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName, Rate
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.loop.rates import Pacer
+from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.igtl.connection import ClientConnection
 from rastrainer_simulator.net.igtl.outgoing import Outgoing
 from rastrainer_simulator.state import SimulationState, TrainingState

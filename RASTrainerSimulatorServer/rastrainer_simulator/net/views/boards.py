@@ -16,7 +16,7 @@ from rastrainer.command_arguments import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.json_checks import accepted, one_of, text
 from rastrainer.protocol import OPEN_PHASES
-from rastrainer_simulator.loop.rates import Pacer
+from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.gate import ROLE, refuse_for
 from rastrainer_simulator.net.views.presenter import InstructorOrder, Presenter, Seat

@@ -20,7 +20,7 @@ from aiohttp.typedefs import Handler
 from rastrainer.command_arguments import decode_json_object
 from rastrainer.errors import InputError
 from rastrainer.json_checks import one_of, text
-from rastrainer_simulator.loop.rates import AsyncRateLimiter
+from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 from rastrainer_simulator.ops.instructor_pin import WRONG_GUESSES, GuessLimit
 

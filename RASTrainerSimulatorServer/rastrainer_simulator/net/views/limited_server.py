@@ -10,7 +10,7 @@ from aiohttp import web
 from aiohttp.typedefs import Middleware
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.loop.rates import AsyncRateLimiter
+from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
 from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log

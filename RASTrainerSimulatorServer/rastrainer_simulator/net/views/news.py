@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.loop.rates import Pacer
+from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.messages import Worn
 from rastrainer_simulator.net.views.presenter import TraceGuidance

@@ -12,7 +12,7 @@ from typing import Any
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.loop.rates import RateLimit
+from rastrainer_simulator.loop.timing import RateLimit
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views import messages
 from rastrainer_simulator.net.views.messages import Received, Worn, check_message

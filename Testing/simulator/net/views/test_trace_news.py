@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer.protocol import CommandName
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.loop.precise_clock import LoopStatistics
+from rastrainer_simulator.loop.timing import LoopStatistics
 from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
 from rastrainer_simulator.state import StepResult
 from Testing.simulator.landmarked import with_landmarks

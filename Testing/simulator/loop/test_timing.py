@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from rastrainer_simulator.loop.precise_clock import (
+from rastrainer_simulator.loop.timing import (
     FIRST,
     SECOND,
     SWITCH_INTERVAL_S,
