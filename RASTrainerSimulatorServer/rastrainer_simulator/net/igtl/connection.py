@@ -10,8 +10,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import Protocol
 
-from rastrainer.igtl.message import CONTENTS, Message
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import CONTENTS, Message, MessageReader
 from rastrainer_simulator.loop.timing import ReadingBudget
 from rastrainer_simulator.net.igtl.outgoing import Outgoing, OutgoingQueue
 from rastrainer_simulator.net.limits import LinkLimits

@@ -12,8 +12,7 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.igtl.content import Command, String, Transform
-from rastrainer.igtl.message import Message, pack
-from rastrainer.igtl.stream import MessageReader
+from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer_simulator.loop.timing import AsyncRateLimiter, ReadingBudget
 from rastrainer_simulator.net.limits import LinkLimits
 from rastrainer_simulator.state import Answer
