@@ -36,8 +36,6 @@ LAYERS = {
         rastrainer.study.protocol
         rastrainer.study.curriculum
         rastrainer.study
-        rastrainer.export, rastrainer.report.elements
-        rastrainer.report.sections
         rastrainer.report
     """,
     "Slicer's side": """

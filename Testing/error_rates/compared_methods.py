@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.report.sections.method_comparison import TITLES
+from rastrainer.report.method_comparison import TITLES
 from rastrainer.statistics.crossover import fit_differences, is_separable
 from rastrainer.statistics.intervals import ALPHA, scipy_module
 from rastrainer.statistics.paired import holm

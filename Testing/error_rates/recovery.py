@@ -12,7 +12,7 @@ import numpy as np
 from rastrainer.number_text import fixed
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.registration.target_error import COMMON_BIAS_SD_MM
-from rastrainer.report.sections.variation import StudyVariation, study_variation, view_bias
+from rastrainer.report.variation import StudyVariation, study_variation, view_bias
 from rastrainer.statistics.intervals import Estimate, scipy_module
 from rastrainer.study.protocol.steps import Step, StepKind, steps_for
 from rastrainer.study.protocol.study_protocol import StudyProtocol

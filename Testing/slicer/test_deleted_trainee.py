@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from PySide6 import QtCore
 
-from rastrainer.export import trainee_data
 from rastrainer.slicer.background_work import BrokenOffError, CancelableUntilBegun
+from rastrainer.study import trainee_data
 from rastrainer.study.database.study import Study
 from Testing.slicer.host.cancels import cancels
 from Testing.slicer.recorded_trial import write_recorded_trial

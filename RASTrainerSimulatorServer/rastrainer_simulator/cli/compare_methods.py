@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.export.tidy_csv import csv_text
 from rastrainer.files.writing import make_empty_folder, write_text
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.number_text import fixed
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.report.sections.mode_comparison import Series, grouped_bars
+from rastrainer.report.mode_comparison import Series, grouped_bars
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
+from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.cli.options import add_json, add_study

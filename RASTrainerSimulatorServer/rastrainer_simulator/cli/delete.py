@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.export.trainee_data import erase_trainee
 from rastrainer.study.database.study import Study
+from rastrainer.study.trainee_data import erase_trainee
 from rastrainer_simulator.cli.options import add_study
 
 

@@ -7,7 +7,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.export.tidy_csv import (
+from rastrainer.files.writing import make_empty_folder, write_text
+from rastrainer.journal.recording import read_trajectory
+from rastrainer.json_checks import accepted
+from rastrainer.report.published_tables import with_ctps
+from rastrainer.study.database.database import StudyPlace
+from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.tidy_csv import (
     aborted_csv,
     aborted_touches_csv,
     answers_csv,
@@ -17,14 +25,6 @@ from rastrainer.export.tidy_csv import (
     touches_csv,
     trials_csv,
 )
-from rastrainer.files.writing import make_empty_folder, write_text
-from rastrainer.journal.recording import read_trajectory
-from rastrainer.json_checks import accepted
-from rastrainer.report.sections.published_tables import with_ctps
-from rastrainer.study.database.database import StudyPlace
-from rastrainer.study.database.study import Study
-from rastrainer.study.database.values import StoredTrial
-from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer_simulator.cli.options import add_config, add_incomplete, add_study, read_known_study
 from rastrainer_simulator.cli.record_store_settings import (
     home_page_url,

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer import transforms
-from rastrainer.export.tidy_csv import csv_text
 from rastrainer.files.point_list import PointList, write_line, write_markups, write_point_cloud
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.tidy_csv import csv_text
 
 _TO_LPS = np.diag([-1.0, -1.0, 1.0, 1.0])
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.report.elements.comparisons import CONFIRMATORY
+from rastrainer.report.comparisons import CONFIRMATORY
 from rastrainer.statistics.crossover import fit_differences, is_separable
 from rastrainer.statistics.intervals import ALPHA, scipy_module
 from rastrainer.statistics.paired import holm, rank_test

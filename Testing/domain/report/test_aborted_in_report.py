@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.export.tidy_csv import aborted_csv, aborted_touches_csv, write_history
 from rastrainer.report.report import report_html
 from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
+from rastrainer.study.tidy_csv import aborted_csv, aborted_touches_csv, write_history
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.trial_feedback import competence_of
 from rastrainer_simulator.cli.main import main

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rastrainer.report.report import report_html
-from rastrainer.report.sections.trainees import curricula
+from rastrainer.report.trainees import curricula
 from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.study import Study

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer.report.report import report_html
-from rastrainer.report.sections.method_comparison import (
+from rastrainer.report.method_comparison import (
     TITLES,
     as_conditions,
     compare_methods,
     method_comparison,
 )
+from rastrainer.report.report import report_html
 from rastrainer.statistics.intervals import mean_interval
 from rastrainer.statistics.paired import compare_paired
 from rastrainer.study.study_data import StudyData, TrialRow

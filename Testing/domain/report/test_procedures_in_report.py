@@ -4,8 +4,8 @@ import re
 
 import pytest
 
+from rastrainer.report.procedures import procedures
 from rastrainer.report.report import report_html
-from rastrainer.report.sections.procedures import procedures
 from Testing.domain.report.studied_procedures import TOO_DEEP_MM, with_procedures
 from Testing.domain.report.test_report import cohort
 

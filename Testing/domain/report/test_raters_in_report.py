@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rastrainer.report.raters import raters
 from rastrainer.report.report import report_html
-from rastrainer.report.sections.raters import raters
 from rastrainer.statistics.agreement import intraclass_correlations, quadratic_kappa
 from rastrainer.study.ratings import FORMS, GEARS, OSATS, Rating
 from Testing.domain.report.test_report import cohort

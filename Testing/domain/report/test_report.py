@@ -13,15 +13,15 @@ import pytest
 from scipy.stats import pearsonr
 
 from rastrainer.errors import InputError
-from rastrainer.report.elements.comparisons import compare_modes, mode_delays, paired_means
-from rastrainer.report.elements.markup import paragraph
-from rastrainer.report.report import report_html, write_report
-from rastrainer.report.sections.published_tables import (
+from rastrainer.report.comparisons import compare_modes, mode_delays, paired_means
+from rastrainer.report.markup import paragraph
+from rastrainer.report.published_tables import (
     cohort_scores,
     complexity_correlation,
     performance_color,
     with_ctps,
 )
+from rastrainer.report.report import report_html, write_report
 from rastrainer.study.database.study import Study
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.protocol.study_protocol import read_study_protocol

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rastrainer.report.elements.comparisons import CONFIRMATORY, compare_modes
-from rastrainer.report.sections.published_tables import with_ctps
+from rastrainer.report.comparisons import CONFIRMATORY, compare_modes
+from rastrainer.report.published_tables import with_ctps
 from rastrainer.statistics import paired
 from rastrainer.statistics.competence import lc_cusum, lc_cusum_limit
 from rastrainer.statistics.intervals import correlation

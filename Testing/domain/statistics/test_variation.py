@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rastrainer.report.report import report_html
-from rastrainer.report.sections.variation import study_variation, variation, view_bias
+from rastrainer.report.variation import study_variation, variation, view_bias
 from rastrainer.statistics.variation import Trials, fit_variation
 from rastrainer_simulator.virtual.outcome_model import draw_outcomes, expected_outcomes
 from Testing.error_rates.recovery import MODEL, PROTOCOL, draw_protocol_study

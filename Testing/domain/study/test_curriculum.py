@@ -10,7 +10,6 @@ import pytest
 
 from rastrainer.command_arguments import check_arguments, decode_json_object
 from rastrainer.errors import InputError
-from rastrainer.export.trainee_data import export_trainee
 from rastrainer.protocol import MAX_ASSIGNMENTS, MAX_GATES, AssignmentState, CommandName, GoalKind
 from rastrainer.study.curriculum.curriculum import (
     Assignment,
@@ -25,6 +24,7 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
+from rastrainer.study.trainee_data import export_trainee
 from rastrainer.trial.scoring import SCORE_VERSION
 from Testing.domain.study.old_study import write_old_study
 from Testing.domain.trial.trial_records import gentle_score, make_aborted, make_record

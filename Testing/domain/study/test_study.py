@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.export.tidy_csv import write_history
-from rastrainer.export.trainee_data import export_trainee
 from rastrainer.registration.fits import KINDS
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
@@ -19,6 +17,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
 from rastrainer.study.database.study_trials import find
 from rastrainer.study.database.values import StoredRegistration
+from rastrainer.study.tidy_csv import write_history
+from rastrainer.study.trainee_data import export_trainee
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.trial.trial_records import gentle_score, make_record
 

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.report.sections.calibration import calibration
+from rastrainer.report.calibration import calibration
 from rastrainer.statistics.intervals import proportion
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.study.tre_calibration import CalibrationPoint, TreCalibration

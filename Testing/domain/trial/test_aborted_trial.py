@@ -5,12 +5,12 @@ import json
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.export.trainee_data import erase_trainee, export_trainee
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.schema import study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import DeletedTrialError
+from rastrainer.study.trainee_data import erase_trainee, export_trainee
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.scoring import passes
 from rastrainer.trial.trial_feedback import competence_of, progress_of

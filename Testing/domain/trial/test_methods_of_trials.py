@@ -7,13 +7,13 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.files.point_list import PointList
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.report import methods_note, with_one_method
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.tidy_csv import trials_csv
 from rastrainer.trial.score_reference import score_reference
 from rastrainer.trial.scoring import SCORE_VERSION, ScoreMeasures, score_trial, score_version
 from rastrainer.trial.touch_registration import GivenPoints, register_trial

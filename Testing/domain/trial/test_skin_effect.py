@@ -7,13 +7,13 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.trial_head import UNMOVED, SkinShift
-from rastrainer.report.sections.method_comparison import shifted_skin
+from rastrainer.report.method_comparison import shifted_skin
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import StudyData, trial_rows
+from rastrainer.study.tidy_csv import trials_csv
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial, score_arguments
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer.trial.touch_registration import unshifted_tre_mm

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.report.sections.trainees import curricula
+from rastrainer.report.trainees import curricula
 from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.database import LockWait, StudyBusyError

@@ -9,10 +9,10 @@ from datetime import timedelta
 
 import pytest
 
-from rastrainer.export.trainee_data import erase_trainee, export_trainee
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import PlatformLinks
+from rastrainer.study.trainee_data import erase_trainee, export_trainee
 from rastrainer_simulator.lti import grade_return
 from rastrainer_simulator.lti.grade_return import FIRST_RETRY_S, LAST_RETRY_S, scores_url
 from Testing.domain.trial.trial_records import first_score, gentle_score, make_record

@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import FIDUCIAL_COUNT
-from rastrainer.report.elements.comparisons import compare_modes
+from rastrainer.report.comparisons import compare_modes
 from rastrainer.statistics.intervals import paired_power
 from rastrainer.statistics.trend import TrendVerdict, falling_trend, fit_learning_curve
 from rastrainer.study.outcomes import MAIN_OUTCOMES

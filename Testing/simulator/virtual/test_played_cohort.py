@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rastrainer.report.elements.comparisons import compare_modes
+from rastrainer.report.comparisons import compare_modes
 from rastrainer.study.outcomes import MAIN_OUTCOMES
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import read_study_data

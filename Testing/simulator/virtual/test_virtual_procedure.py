@@ -10,7 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
-from rastrainer.report.sections.procedures import procedures
+from rastrainer.report.procedures import procedures
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.assets import asset_path

@@ -9,33 +9,33 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 import rastrainer
-from rastrainer.export.tidy_csv import trials_csv
 from rastrainer.files.writing import make_folder, write_text
 from rastrainer.number_text import counted
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.report.elements.comparisons import (
+from rastrainer.report.calibration import calibration
+from rastrainer.report.comparisons import (
     ModeComparison,
     compare_modes,
     versions_note,
     with_one_score_version,
 )
-from rastrainer.report.elements.markup import bullets, page, paragraph, section
-from rastrainer.report.sections.calibration import calibration
-from rastrainer.report.sections.learning import learning
-from rastrainer.report.sections.method_comparison import method_comparison, shifted_skin
-from rastrainer.report.sections.methods import limits, methods
-from rastrainer.report.sections.mode_comparison import distributions, mode_comparison, motion
-from rastrainer.report.sections.paired_statistics import findings, order_caveat, paired_statistics
-from rastrainer.report.sections.passing import passing, started_trials
-from rastrainer.report.sections.procedures import procedures
-from rastrainer.report.sections.published_tables import paper_notes, published_tables, with_ctps
-from rastrainer.report.sections.raters import raters
-from rastrainer.report.sections.trainees import curricula, groups, questionnaires
-from rastrainer.report.sections.variation import variation
+from rastrainer.report.learning import learning
+from rastrainer.report.markup import bullets, page, paragraph, section
+from rastrainer.report.method_comparison import method_comparison, shifted_skin
+from rastrainer.report.methods import limits, methods
+from rastrainer.report.mode_comparison import distributions, mode_comparison, motion
+from rastrainer.report.paired_statistics import findings, order_caveat, paired_statistics
+from rastrainer.report.passing import passing, started_trials
+from rastrainer.report.procedures import procedures
+from rastrainer.report.published_tables import paper_notes, published_tables, with_ctps
+from rastrainer.report.raters import raters
+from rastrainer.report.trainees import curricula, groups, questionnaires
+from rastrainer.report.variation import variation
 from rastrainer.statistics.few_subjects import FEW_SUBJECTS
 from rastrainer.statistics.intervals import scipy_module
 from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.study_data import StudyData
+from rastrainer.study.tidy_csv import trials_csv
 
 PAGE, NUMBERS = "report.html", "trials.csv"
 

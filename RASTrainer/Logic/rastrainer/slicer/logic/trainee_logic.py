@@ -7,8 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.export.tidy_csv import write_histories, write_history
-from rastrainer.export.trainee_data import Erasure, erase_trainee, export_trainee
 from rastrainer.progress import Progress, no_progress
 from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
 from rastrainer.slicer.signal import Signal
@@ -17,6 +15,8 @@ from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborte
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial, Trainee
+from rastrainer.study.tidy_csv import write_histories, write_history
+from rastrainer.study.trainee_data import Erasure, erase_trainee, export_trainee
 from rastrainer.study.tre_calibration import TreCalibration, calibration_of
 
 LOOK_EVERY_S = 1.0

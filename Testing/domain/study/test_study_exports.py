@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.export.tidy_csv import answers_csv, scores_csv, trials_csv
 from rastrainer.report.report import report_html
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.questionnaires import SSQ
 from rastrainer.study.study_data import read_study_data
+from rastrainer.study.tidy_csv import answers_csv, scores_csv, trials_csv
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements
 from Testing.domain.study.played_study import study_with_trials

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from rastrainer.number_text import fixed, p_text, significant
-from rastrainer.report.elements.comparisons import ModeComparison, tested
-from rastrainer.report.elements.markup import Cell, Line, figure, heading, paragraph, section, table
-from rastrainer.report.elements.svg import (
+from rastrainer.report.comparisons import ModeComparison, tested
+from rastrainer.report.markup import Cell, Line, figure, heading, paragraph, section, table
+from rastrainer.report.svg import (
     FAINT,
     INK,
     Axis,

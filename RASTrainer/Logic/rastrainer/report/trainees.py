@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from rastrainer.number_text import fixed, p_phrase
-from rastrainer.report.elements.markup import (
+from rastrainer.report.markup import (
     Cell,
     Line,
     bullets,

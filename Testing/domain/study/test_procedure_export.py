@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from rastrainer.export.tidy_csv import PROCEDURE_COLUMNS, procedures_csv
+from rastrainer.study.tidy_csv import PROCEDURE_COLUMNS, procedures_csv
 from Testing.domain.report.studied_procedures import TOO_DEEP_MM, with_procedures
 from Testing.domain.report.test_report import cohort
 

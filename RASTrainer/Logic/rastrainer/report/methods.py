@@ -10,8 +10,8 @@ import numpy as np
 import rastrainer
 from rastrainer.motion.definitions import FILTER
 from rastrainer.number_text import counted
-from rastrainer.report.elements.comparisons import ModeComparison, compared_version
-from rastrainer.report.elements.markup import bullets, heading, paragraph, section, table
+from rastrainer.report.comparisons import ModeComparison, compared_version
+from rastrainer.report.markup import bullets, heading, paragraph, section, table
 from rastrainer.statistics.few_subjects import what_cannot_be_concluded
 from rastrainer.statistics.intervals import scipy_module
 from rastrainer.study.outcomes import mode_title, task_title

@@ -8,10 +8,10 @@ from datetime import datetime
 import numpy as np
 
 from rastrainer.number_text import counted, percent
-from rastrainer.report.elements.comparisons import SCORE, compared_version, versions_note
-from rastrainer.report.elements.markup import bullets, figure, heading, paragraph, section, table
-from rastrainer.report.elements.svg import mode_color
-from rastrainer.report.sections.learning import learning_curves
+from rastrainer.report.comparisons import SCORE, compared_version, versions_note
+from rastrainer.report.learning import learning_curves
+from rastrainer.report.markup import bullets, figure, heading, paragraph, section, table
+from rastrainer.report.svg import mode_color
 from rastrainer.statistics.competence import (
     FALSE_DISCOVERY,
     LcCusum,

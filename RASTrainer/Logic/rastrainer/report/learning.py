@@ -8,10 +8,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rastrainer.number_text import fixed, p_text, percent, significant
-from rastrainer.report.elements.comparisons import versions_note
-from rastrainer.report.elements.markup import Cell, Line, bullets, figure, paragraph, section, table
-from rastrainer.report.elements.svg import FAINT, INK, Axis, Sheet, axis_over, mode_color, y_grid
-from rastrainer.report.sections.paired_statistics import interval_text
+from rastrainer.report.comparisons import versions_note
+from rastrainer.report.markup import Cell, Line, bullets, figure, paragraph, section, table
+from rastrainer.report.paired_statistics import interval_text
+from rastrainer.report.svg import FAINT, INK, Axis, Sheet, axis_over, mode_color, y_grid
 from rastrainer.statistics.trend import (
     ALPHA,
     MIN_FIT_TRIALS,

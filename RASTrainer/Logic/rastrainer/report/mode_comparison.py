@@ -9,9 +9,10 @@ import numpy as np
 
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.number_text import fixed
-from rastrainer.report.elements.comparisons import ModeComparison, tested
-from rastrainer.report.elements.markup import Cell, Line, figure, paragraph, section, table
-from rastrainer.report.elements.svg import (
+from rastrainer.report.comparisons import ModeComparison, tested
+from rastrainer.report.markup import Cell, Line, figure, paragraph, section, table
+from rastrainer.report.paired_statistics import interval_text
+from rastrainer.report.svg import (
     FAINT,
     INK,
     Axis,
@@ -22,7 +23,6 @@ from rastrainer.report.elements.svg import (
     number,
     y_grid,
 )
-from rastrainer.report.sections.paired_statistics import interval_text
 from rastrainer.statistics.paired import PairedComparison
 from rastrainer.study.outcomes import (
     MAIN_OUTCOMES,

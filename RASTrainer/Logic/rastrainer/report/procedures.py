@@ -16,8 +16,8 @@ from rastrainer.procedure.score import (
     PLUNGE_LIMIT_MM,
     TARGET_LIMIT_MM,
 )
-from rastrainer.report.elements.markup import bullets, figure, heading, paragraph, section, table
-from rastrainer.report.elements.svg import FAINT, INK, Sheet, axis_over, number, y_grid
+from rastrainer.report.markup import bullets, figure, heading, paragraph, section, table
+from rastrainer.report.svg import FAINT, INK, Sheet, axis_over, number, y_grid
 from rastrainer.statistics.intervals import mean
 from rastrainer.study.study_data import StudyData, TrialRow
 

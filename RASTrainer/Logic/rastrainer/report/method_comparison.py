@@ -13,8 +13,8 @@ import numpy as np
 
 from rastrainer.number_text import fixed, p_text
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.report.elements.comparisons import ModeComparison, compare_modes, tested
-from rastrainer.report.elements.markup import (
+from rastrainer.report.comparisons import ModeComparison, compare_modes, tested
+from rastrainer.report.markup import (
     Cell,
     Line,
     bullets,
@@ -24,8 +24,8 @@ from rastrainer.report.elements.markup import (
     section,
     table,
 )
-from rastrainer.report.sections.mode_comparison import Series, grouped_bars
-from rastrainer.report.sections.paired_statistics import interval_text
+from rastrainer.report.mode_comparison import Series, grouped_bars
+from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.few_subjects import what_it_shows
 from rastrainer.statistics.intervals import mean_interval
 from rastrainer.statistics.paired import holm

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from rastrainer.number_text import fixed
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.report.elements.markup import bullets, figure, paragraph, section, table
-from rastrainer.report.elements.svg import (
+from rastrainer.report.markup import bullets, figure, paragraph, section, table
+from rastrainer.report.svg import (
     FAINT,
     GRID,
     INK,

@@ -1,1 +1,0 @@
-"""What leaves a study: tables for other programs, and all that it has of one trainee."""

@@ -1,1 +1,0 @@
-"""The building blocks of a report: HTML, SVG and comparisons."""

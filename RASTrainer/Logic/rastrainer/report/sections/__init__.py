@@ -1,1 +1,0 @@
-"""The sections of a report; each gives its HTML, or "" where a study has nothing for it."""
