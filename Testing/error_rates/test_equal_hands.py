@@ -13,7 +13,7 @@ from Testing.error_rates.hands import HEADS, SEEDS, SLOW, TASKS, USUAL, keys, sc
 from Testing.error_rates.registered import errors_along_skin, registered_errors
 from Testing.simulator.authoring import planned_heads
 
-SETS = 1000
+SETS = 300
 PLACES = [(head, task) for head in HEADS for task in TASKS]
 
 

@@ -18,18 +18,18 @@ from Testing.error_rates.played import COLIN27, WAYS, all_keys, play, seeds, sto
 from Testing.error_rates.registered import common_biases, errors_along_skin, registered_errors
 
 FEW = {
-    "goals": 60,
-    "next task": 40,
-    "agreement": 40,
-    "several groups": 10,
-    "target errors": 10,
-    "learning": 20,
-    "propagation": 10,
-    "groups": 20,
-    "recovery": 10,
-    "recovery intervals": 10,
-    "aborted trials": 25,
-    "sequences": 30,
+    "goals": 30,
+    "next task": 20,
+    "agreement": 20,
+    "several groups": 5,
+    "target errors": 5,
+    "learning": 10,
+    "propagation": 5,
+    "groups": 10,
+    "recovery": 5,
+    "recovery intervals": 5,
+    "aborted trials": 12,
+    "sequences": 15,
 }
 """Fewer data sets for costly tables."""
 COSTLY = {"biased aim", "equal hands", "match warnings", "methods", "played cohort", "slow hands"}
@@ -39,7 +39,7 @@ COSTLY = {"biased aim", "equal hands", "match warnings", "methods", "played coho
 @pytest.mark.parametrize("name", [name for name in TABLES if name not in COSTLY])
 def test_the_limits_hold_in_a_few_seeded_data_sets(name):
     _, simulate = TABLES[name]
-    found = simulate(FEW.get(name, 150))
+    found = simulate(FEW.get(name, 75))
     assert any(one.at_most is not None or one.at_least is not None for one in found)
     failing = [one for one in found if not one.holds(standard_errors=3.3)]
     assert failing == []
@@ -87,7 +87,7 @@ def test_practicing_the_weakest_task_takes_no_more_trials_than_taking_turns():
     further = [
         curricula.course(curricula.next_best, seed).trials
         - curricula.course(curricula.by_turns, seed).trials
-        for seed in range(40)
+        for seed in range(20)
     ]
     assert np.mean(further) <= 3.3 * np.std(further, ddof=1) / np.sqrt(len(further))
 
@@ -151,9 +151,8 @@ def assert_is_as_stored(key):
     assert second.score == pytest.approx(first.score, abs=5.0)
 
 
-@pytest.mark.parametrize("way", ["press", "aim beside"])
-def test_a_cheat_reproduces_a_stored_trial(way):
-    assert_is_as_stored((way, "task-1", 1))
+def test_a_cheat_reproduces_a_stored_trial():
+    assert_is_as_stored(("press", "task-1", 1))
 
 
 @pytest.mark.soak

@@ -41,7 +41,7 @@ def test_concurrent_writers_lose_and_duplicate_nothing(study_place):
     assert check(path) == "ok"
 
 
-@pytest.mark.parametrize("wanted", [20, pytest.param(400, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("wanted", [8, pytest.param(400, marks=pytest.mark.soak)])
 def test_killed_writers_lose_and_duplicate_nothing(study_place, wanted):
     path = study_place
     rng = random.Random(5)

@@ -22,12 +22,18 @@ from Testing.error_rates.registered import errors_along_skin
 from Testing.simulator.authoring.heads import egg
 from Testing.simulator.training.hand_driven import Trial
 
-HEADS, HANDS = 4, 3
+HEADS, HANDS = (0, 1), (0,)
+MORE_HEADS, MORE_HANDS = (2, 3), (1, 2)
+"""Of `make soak`."""
 FLE_MM, BIAS_MM = 1.0, 2.0
 ANY_HEIGHT = TrainingSettings(touch_rule=TouchRule.WITHIN_RADIUS)
 
 
-@pytest.fixture(scope="module", params=range(HEADS))
+def _with_soak(always, more):
+    return [*always, *(pytest.param(each, marks=pytest.mark.soak) for each in more)]
+
+
+@pytest.fixture(scope="module", params=_with_soak(HEADS, MORE_HEADS))
 def scenario(request, tmp_path_factory):
     """A head of random size and shape with one task of random fiducials above its base."""
     random = np.random.default_rng(request.param)
@@ -106,7 +112,7 @@ def score_of(scenario, hands, meanwhile=lambda _trial: None, settings=None):
     return analyze_trial(TrialRecord.from_json(record), scenario, truth=pose).score
 
 
-@pytest.fixture(params=range(HANDS))
+@pytest.fixture(params=_with_soak(HANDS, MORE_HANDS))
 def hands(request, scenario):
     return Hands.of(scenario, request.param)
 

@@ -95,9 +95,10 @@ def test_equal_jobs_give_equal_trials_whatever_was_played_before_and_in_which_pr
     assert there[::-1] == here
 
 
-@pytest.mark.parametrize("engine", ["processes", "dask"])
-def test_every_engine_gives_the_results_in_the_order_of_the_jobs(engine):
-    workers = {"processes": 2, "dask": 1}[engine]
+@pytest.mark.parametrize(
+    ("engine", "workers"), [("processes", 2), pytest.param("dask", 1, marks=pytest.mark.soak)]
+)
+def test_every_engine_gives_the_results_in_the_order_of_the_jobs(engine, workers):
     found = list(run_jobs(squared, range(20), engine, workers))
     assert found == [number * number for number in range(20)]
 
@@ -110,6 +111,7 @@ def test_dask_plays_the_same_trial_as_this_process(protocol, population):
     assert numbers(there) == numbers(play(job))
 
 
+@pytest.mark.soak
 def test_a_scheduler_that_is_missing_is_reported():
     with pytest.raises(InputError, match="no Dask scheduler at tcp"):
         list(run_jobs(squared, [1], "dask", address="tcp://127.0.0.1:1"))
@@ -152,7 +154,7 @@ def test_power_grows_with_the_repetitions_of_the_protocol(capsys, tmp_path):
         )
         path = tmp_path / f"{repetitions}.json"
         path.write_text(json.dumps(protocol.to_json()))
-        words = ["--protocol", str(path), "--power", "200", "--hmd-speed", "1.1"]
+        words = ["--protocol", str(path), "--power", "100", "--hmd-speed", "1.1"]
         assert main(["simulate-cohort", "--trainees", "8", *words]) == 0
         shares.append(re.search(r"completion_time_s +\S+ +([0-9.]+) %", capsys.readouterr().out)[1])
     assert float(shares[1]) > float(shares[0]) + 15
@@ -162,7 +164,7 @@ def test_what_is_true_of_drawn_trainees_can_be_said_by_options(capsys):
     """Haste that costs accuracy makes errors scatter: the same effect is found less often."""
     shares = []
     for haste in ([], ["--tempo-spread", "0.5", "--trade-off", "1", "--interaction", "0.2"]):
-        words = ["simulate-cohort", "--trainees", "8", "--power", "200", "--hmd-aim", "1.2"]
+        words = ["simulate-cohort", "--trainees", "8", "--power", "100", "--hmd-aim", "1.2"]
         assert main([*words, *haste, "--lapses", "0.1", "--accuracy-learning", "0.1"]) == 0
         shares.append(float(re.search(r"rmse_mm +\S+ +([0-9.]+) %", capsys.readouterr().out)[1]))
     assert shares[1] < shares[0] - 30

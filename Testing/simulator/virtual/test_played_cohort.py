@@ -33,7 +33,7 @@ def exponent(learning, numbers, seeds):
 
 def test_the_given_exponent_of_practice_is_played():
     """Hands whose gain stayed as it was gave 0.02 to 0.04 of 0.15."""
-    assert exponent(0.3, (FIRST, LATER), (1, 2)) == pytest.approx(0.3, abs=0.04)
+    assert exponent(0.3, (FIRST, LATER), (1,)) == pytest.approx(0.3, abs=0.04)
 
 
 @pytest.mark.soak
@@ -50,7 +50,7 @@ def test_a_view_that_misleads_moves_the_target_more_than_the_residuals():
         [
             [(trial.analysis.truth.true_tre_mm, trial.analysis.rigid.fre_mm) for trial in of_mode]
             for of_mode in (
-                [played(population, mode, 1, seed) for seed in (1, 2, 3)]
+                [played(population, mode, 1, seed) for seed in (1, 2)]
                 for mode in ("desktop", "hmd")
             )
         ]

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import LIFT_MM, Skill
@@ -37,7 +36,7 @@ def test_all_fiducials_are_reached_and_the_tip_never_gets_under_the_head(head, t
     assert min(heights) > fiducials[:, 2].min() - 2 * LIFT_MM
 
 
-def test_hands_that_travel_slowly_touch_only_where_they_arrive():
+def test_hands_that_travel_slowly_touch_only_where_they_arrive(setup):
     """The way over the head takes them longer than they would aim."""
     skill = Skill(speed_mm_s=54.0, gain_per_s=1.35, slip_at=None)
     refused = []
@@ -47,6 +46,6 @@ def test_hands_that_travel_slowly_touch_only_where_they_arrive():
             if command.name == "Capture" and not answer.ok:
                 refused.append(answer.message)
 
-    trial = play_virtual_trial(Simulation(load_setup(), 1), "task-5", 1, skill, DT, note)
+    trial = play_virtual_trial(Simulation(setup, 1), "task-5", 1, skill, DT, note)
     assert len(trial.touches_mm) == 15
     assert refused == []

@@ -58,11 +58,11 @@ def test_steady_hands_leave_the_error_of_the_registration_alone(meshes):
 def test_the_scatter_of_hands_is_that_of_their_skill(meshes):
     hands = ProcedureHands.of(replace(Skill(), aim_sd_mm=2.0 * Skill().aim_sd_mm))
     assert hands.depth_sd_mm == pytest.approx(2.0 * ProcedureHands().depth_sd_mm)
-    found = [analyzed(meshes, hands, seed)[1] for seed in range(40)]
+    found = [analyzed(meshes, hands, seed)[1] for seed in range(12)]
     by_hand = [each.depth[2] for one in found for each in one.trajectories]
-    assert np.std(by_hand) == pytest.approx(hands.depth_sd_mm, rel=0.15)
+    assert np.std(by_hand) == pytest.approx(hands.depth_sd_mm, rel=0.25)
     plunges = [each.plunge_mm for one in found for each in one.trajectories]
-    assert np.mean(plunges) == pytest.approx(hands.plunge_mm, rel=0.2)
+    assert np.mean(plunges) == pytest.approx(hands.plunge_mm, rel=0.35)
 
 
 def test_a_cohort_whose_protocol_names_a_procedure_is_reported_with_the_split(
