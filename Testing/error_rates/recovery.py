@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,9 +17,45 @@ from rastrainer.statistics.intervals import Estimate, scipy_module
 from rastrainer.study.protocol.steps import Step, StepKind, steps_for
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer_simulator.virtual.outcome_model import DOF, DrawnTrials, OutcomeModel, draw_trials
+from rastrainer_simulator.virtual.outcome_model import DOF, OutcomeModel, draw
 from rastrainer_simulator.virtual.population import pseudonym
 from Testing.error_rates.measured import Measured, share_of
+
+
+@dataclass(frozen=True)
+class DrawnTrials:
+    """What was drawn; all arrays are (trainees, modes, tasks).
+
+    Attributes:
+        times_s: Completion times.
+        errors_mm: RMSE of the registrations.
+        true_tre_mm: True errors at a target in the middle of the points.
+        lapses: Whether a touch was taken back.
+    """
+
+    times_s: np.ndarray
+    errors_mm: np.ndarray
+    true_tre_mm: np.ndarray
+    lapses: np.ndarray
+
+
+def draw_trials(
+    model: OutcomeModel, modes: Sequence[str], random: np.random.Generator, numbers: np.ndarray
+) -> DrawnTrials:
+    """Return everything of a study's trials.
+
+    Args:
+        model: The truth.
+        modes: Of the second axis of the arrays.
+        random: Of the draws.
+        numbers: (trainees, modes, tasks) int, which trial of the trainee's each is, from 1.
+    """
+    times, errors, fle, lapses = draw(model, modes, random, numbers)
+    # In the middle of the points the expected TRE² is FLE²/N (Fitzpatrick 1998).
+    sd = (fle / math.sqrt(3 * FIDUCIAL_COUNT))[..., None]
+    offsets = random.normal(size=(*numbers.shape, 3)) * sd
+    offsets[..., 0] += np.array([model.mode_bias_mm.get(mode, 0.0) for mode in modes])[:, None]
+    return DrawnTrials(times, errors, np.linalg.norm(offsets, axis=-1), lapses)
 
 
 def draw_protocol_study(

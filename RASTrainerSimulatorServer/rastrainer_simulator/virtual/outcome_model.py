@@ -75,23 +75,6 @@ class OutcomeModel:
     mode_bias_mm: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class DrawnTrials:
-    """What was drawn; all arrays are (trainees, modes, tasks).
-
-    Attributes:
-        times_s: Completion times.
-        errors_mm: RMSE of the registrations.
-        true_tre_mm: True errors at a target in the middle of the points.
-        lapses: Whether a touch was taken back.
-    """
-
-    times_s: np.ndarray
-    errors_mm: np.ndarray
-    true_tre_mm: np.ndarray
-    lapses: np.ndarray
-
-
 def draw_outcomes(
     model: OutcomeModel,
     trainees: int,
@@ -104,27 +87,8 @@ def draw_outcomes(
     `orders` are the modes in the order of each trainee; by default that of `modes` for all.
     """
     numbers = trial_numbers(orders or [tuple(modes)] * trainees, modes, len(model.task_times_s))
-    times, errors, _, _ = _draw(model, modes, random, numbers)
+    times, errors, _, _ = draw(model, modes, random, numbers)
     return times, errors
-
-
-def draw_trials(
-    model: OutcomeModel, modes: Sequence[str], random: np.random.Generator, numbers: np.ndarray
-) -> DrawnTrials:
-    """Return everything of a study's trials.
-
-    Args:
-        model: The truth.
-        modes: Of the second axis of the arrays.
-        random: Of the draws.
-        numbers: (trainees, modes, tasks) int, which trial of the trainee's each is, from 1.
-    """
-    times, errors, fle, lapses = _draw(model, modes, random, numbers)
-    # In the middle of the points the expected TRE² is FLE²/N (Fitzpatrick 1998).
-    sd = (fle / math.sqrt(3 * FIDUCIAL_COUNT))[..., None]
-    offsets = random.normal(size=(*numbers.shape, 3)) * sd
-    offsets[..., 0] += np.array([model.mode_bias_mm.get(mode, 0.0) for mode in modes])[:, None]
-    return DrawnTrials(times, errors, np.linalg.norm(offsets, axis=-1), lapses)
 
 
 def trial_numbers(orders: Sequence[Sequence[str]], modes: Sequence[str], tasks: int) -> np.ndarray:
@@ -136,10 +100,13 @@ def trial_numbers(orders: Sequence[Sequence[str]], modes: Sequence[str], tasks: 
     return periods[..., None] * tasks + np.arange(1, tasks + 1)
 
 
-def _draw(
+def draw(
     model: OutcomeModel, modes: Sequence[str], random: np.random.Generator, numbers: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return times in s, RMSE and localization errors in mm, and lapses, all as `numbers`."""
+    """Return times in s, RMSE and localization errors in mm, and lapses, all as `numbers`.
+
+    `numbers` are (trainees, modes, tasks) int, which trial of the trainee's each is, from 1.
+    """
     shape = numbers.shape
     own_time, own_fle = (
         random.normal(0, sd, (shape[0], 1, 1))

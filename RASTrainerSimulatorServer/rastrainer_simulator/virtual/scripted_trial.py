@@ -236,11 +236,7 @@ def _depth(client: Client, tool: str, after: float) -> float:
 
 def _wait(client: Client, is_wanted: Callable[[Mapping[str, Any]], bool]) -> Mapping[str, Any]:
     """Return the first state that is wanted."""
-
-    def is_it(message: Any) -> bool:
-        assert isinstance(message.content, String)
-        return is_wanted(json.loads(message.content.text))
-
-    found = client.wait_for(DeviceName.SIM_STATE, is_it, STATE_TIMEOUT_S)
-    assert isinstance(found.content, String)
-    return json.loads(found.content.text)
+    found = client.wait_for(
+        DeviceName.SIM_STATE, lambda message: is_wanted(_state(message)), STATE_TIMEOUT_S
+    )
+    return _state(found)

@@ -11,12 +11,11 @@ from rastrainer.report.svg import (
     FAINT,
     GRID,
     INK,
+    SCATTER_LEFT,
     Axis,
     Sheet,
-    axis_over,
     mode_color,
-    number,
-    y_grid,
+    scatter_sheet,
 )
 from rastrainer.statistics.intervals import Proportion
 from rastrainer.study.outcomes import mode_title
@@ -105,8 +104,6 @@ def _note() -> str:
     )
 
 
-WIDTH, HEIGHT = 660, 360
-LEFT, RIGHT, TOP, BOTTOM = 52, 640, 52, 306
 OFF = "#b3261e"
 """Outline of points outside their interval."""
 
@@ -119,18 +116,13 @@ def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[st
         colors: Mode → its title and color.
     """
     points = calibration.points
-    heading = "True against expected target error (mm)"
-    sheet = Sheet(WIDTH, HEIGHT, heading)
-    sheet.text(10, 16, heading, 12.5, INK, weight="600")
-    highest = max(max(point.true_mm, point.interval_mm[1]) for point in points)
-    up = axis_over([0.0, highest], BOTTOM, TOP, from_zero=True)
-    along = axis_over([0.0, max(point.expected_mm for point in points)], LEFT, RIGHT, True)
-    y_grid(sheet, up, LEFT, RIGHT)
-    for tick in along.ticks(8):
-        x = along.at(tick)
-        sheet.line(x, BOTTOM, x, BOTTOM + 4, FAINT)
-        sheet.text(x, BOTTOM + 17, number(tick), 10, FAINT, "middle")
-    _identity(sheet, along, up)
+    sheet, along, up = scatter_sheet(
+        "True against expected target error (mm)",
+        "expected TRE (mm)",
+        "true TRE (mm)",
+        max(point.expected_mm for point in points),
+        max(max(point.true_mm, point.interval_mm[1]) for point in points),
+    )
     # Bars of many trials overlap.
     opacity = max(0.05, min(0.55, 14 / len(points)))
     for point in points:
@@ -139,15 +131,7 @@ def calibration_chart(calibration: TreCalibration, colors: Mapping[str, tuple[st
     for point in points:
         _dot(sheet, along, up, point, colors[point.mode][1], radius)
     _legend(sheet, colors)
-    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 12, "expected TRE (mm)", 11, INK, "middle")
-    middle = (TOP + BOTTOM) / 2
-    sheet.text(16, middle, "true TRE (mm)", 11, INK, "middle", turn=-90)
     return sheet.svg()
-
-
-def _identity(sheet: Sheet, along: Axis, up: Axis) -> None:
-    end = min(along.high, up.high)
-    sheet.line(along.at(0.0), up.at(0.0), along.at(end), up.at(end), INK, 1.3, "5 4")
 
 
 def _bar(
@@ -174,7 +158,7 @@ def _dot(
 
 
 def _legend(sheet: Sheet, colors: Mapping[str, tuple[str, str]]) -> None:
-    x, y = float(LEFT), 38.0
+    x, y = float(SCATTER_LEFT), 38.0
     for title, color in colors.values():
         sheet.dot(x + 5, y - 4, 3.6, color, 0.85)
         x = _words(sheet, x + 14, y, title)

@@ -6,7 +6,7 @@ Effects of the modes are separated from those of their order where the orders al
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -126,6 +126,14 @@ def compare_modes(
         if means:
             order = None if delays is None else np.array([delays[trainee] for trainee in means])
             found.append(_compared(outcome, first, second, means, order))
+    return with_adjusted_p(found, confirmatory)
+
+
+def with_adjusted_p(
+    comparisons: Iterable[ModeComparison], confirmatory: Sequence[str]
+) -> tuple[ModeComparison, ...]:
+    """Return comparisons with the p of the `confirmatory` outcomes adjusted together (Holm)."""
+    found = list(comparisons)
     p_values = {
         index: comparison.result.p
         for index, comparison in enumerate(found)

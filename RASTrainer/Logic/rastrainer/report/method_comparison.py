@@ -13,7 +13,7 @@ import numpy as np
 
 from rastrainer.number_text import fixed, p_text
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.report.comparisons import ModeComparison, compare_modes, tested
+from rastrainer.report.comparisons import ModeComparison, compare_modes, tested, with_adjusted_p
 from rastrainer.report.markup import (
     Cell,
     Line,
@@ -28,7 +28,6 @@ from rastrainer.report.mode_comparison import Series, grouped_bars
 from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.few_subjects import what_it_shows
 from rastrainer.statistics.intervals import mean_interval
-from rastrainer.statistics.paired import holm
 from rastrainer.study.outcomes import Outcome
 from rastrainer.study.study_data import StudyData, TrialRow
 
@@ -121,15 +120,7 @@ def compare_methods(by_method: StudyData) -> tuple[ModeComparison, ...]:
         for first, second in itertools.combinations(names, 2)
         for comparison in compare_modes(by_method, OUTCOMES, first, second, confirmatory=())
     ]
-    p_values = {
-        index: each.result.p
-        for index, each in enumerate(found)
-        if each.result is not None and each.outcome is TRUE
-    }
-    adjusted = holm(np.array([*p_values.values()]))
-    for index, p in zip(p_values, adjusted, strict=True):
-        found[index] = replace(found[index], adjusted_p=float(p))
-    return tuple(found)
+    return with_adjusted_p(found, (TRUE.name,))
 
 
 def _findings(pairs: Sequence[ModeComparison]) -> list[str]:

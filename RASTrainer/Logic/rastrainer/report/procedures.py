@@ -17,8 +17,8 @@ from rastrainer.procedure.score import (
     TARGET_LIMIT_MM,
 )
 from rastrainer.report.markup import bullets, figure, heading, paragraph, section, table
-from rastrainer.report.svg import FAINT, INK, Sheet, axis_over, number, y_grid
-from rastrainer.statistics.intervals import mean
+from rastrainer.report.svg import INK, SCATTER_LEFT, scatter_sheet
+from rastrainer.statistics.intervals import Estimate, mean
 from rastrainer.study.study_data import StudyData, TrialRow
 
 KINDS = {
@@ -181,20 +181,18 @@ def procedures(data: StudyData) -> str:
 def _sentences(group: _Group, trials: int) -> list[str]:
     registration = group.rms("targetPointError", "byRegistrationMm")
     hand = group.rms("targetPointError", "byHandMm")
-    found = [
+    return [
         f"{len(group.trials)} of {counted(trials, 'trial')} continued with a procedure: "
         f"{counted(len(group.lines), 'line')} in all, by "
         f"{counted(len(group.trainees), 'trainee')}. The target point error was "
         f"{fixed(group.rms('targetPointError'), 2)} mm (RMS over all lines); the part that the "
         f"registration caused was {fixed(registration, 2)} mm, that of the hands "
         f"{fixed(hand, 2)} mm.",
-        _spread_sentence(group),
-        _difference_sentence(group),
+        *_over_trainees(group),
         f"{group.acceptable} of {len(group.trials)} procedures were acceptable "
         f"({percent(group.acceptable / len(group.trials))}); "
         f"{_hits(group.hits)}.",
     ]
-    return [sentence for sentence in found if sentence]
 
 
 def _hits(count: int) -> str:
@@ -203,42 +201,31 @@ def _hits(count: int) -> str:
     return f"{counted(count, 'time')} an instrument hit a no-go structure"
 
 
-def _spread_sentence(group: _Group) -> str:
-    """Return the error over the trainees, whose lines are not independent; "" for too few."""
+def _over_trainees(group: _Group) -> list[str]:
+    """Return the errors over the trainees, whose lines are not independent; nothing for too few."""
     if len(group.trainees) < LEAST_TRAINEES:
-        return ""
-    found = mean(np.array([own.rms("targetPointError") for own in group.by_trainee]))
-    low, high = found.interval
-    return (
-        f"Each trainee's own RMS was {fixed(found.value, 2)} mm on average "
-        f"[95 %: {fixed(low, 2)}, {fixed(high, 2)}]."
-    )
-
-
-def _difference_sentence(group: _Group) -> str:
-    """Return whether registration or hand caused more, over the trainees; "" for too few."""
-    if len(group.trainees) < LEAST_TRAINEES:
-        return ""
-    found = mean(
-        np.array(
-            [
-                own.rms("targetPointError", "byRegistrationMm")
-                - own.rms("targetPointError", "byHandMm")
-                for own in group.by_trainee
-            ]
-        )
-    )
-    low, high = found.interval
+        return []
+    own = [
+        [one.rms("targetPointError", part) for one in group.by_trainee]
+        for part in ("mm", "byRegistrationMm", "byHandMm")
+    ]
+    whole, registration, hand = map(np.array, own)
+    spread, difference = mean(whole), mean(registration - hand)
     verdict = "it cannot be said which of both caused more"
-    if low > 0:
+    if difference.interval[0] > 0:
         verdict = "the registration caused more than the hands"
-    elif high < 0:
+    elif difference.interval[1] < 0:
         verdict = "the hands caused more than the registration"
-    return (
+    return [
+        f"Each trainee's own RMS was {_on_average(spread)}.",
         f"Over {len(group.trainees)} trainees, {verdict}: registration minus hands, as RMS of each "
-        f"trainee, was {fixed(found.value, 2)} mm on average "
-        f"[95 %: {fixed(low, 2)}, {fixed(high, 2)}]."
-    )
+        f"trainee, was {_on_average(difference)}.",
+    ]
+
+
+def _on_average(found: Estimate) -> str:
+    low, high = found.interval
+    return f"{fixed(found.value, 2)} mm on average [95 %: {fixed(low, 2)}, {fixed(high, 2)}]"
 
 
 def _row(title: str, group: _Group) -> list[str]:
@@ -305,15 +292,8 @@ def _explanation() -> str:
     )
 
 
-WIDTH, HEIGHT = 660, 360
-LEFT, RIGHT, TOP, BOTTOM = 52, 640, 52, 306
-
-
 def split_chart(kinds: Mapping[str, _Group]) -> str:
     """Return the chart of both parts of the target point errors; both axes start at 0."""
-    title = "What caused the target point error (mm)"
-    sheet = Sheet(WIDTH, HEIGHT, title)
-    sheet.text(10, 16, title, 12.5, INK, weight="600")
     points = {
         kind: (
             group.lengths("targetPointError", "byRegistrationMm"),
@@ -322,21 +302,19 @@ def split_chart(kinds: Mapping[str, _Group]) -> str:
         for kind, group in kinds.items()
     }
     largest = max(float(values.max()) for both in points.values() for values in both)
-    up = axis_over([0.0, largest], BOTTOM, TOP, from_zero=True)
-    along = axis_over([0.0, largest], LEFT, RIGHT, from_zero=True)
-    y_grid(sheet, up, LEFT, RIGHT)
-    for tick in along.ticks(8):
-        x = along.at(tick)
-        sheet.line(x, BOTTOM, x, BOTTOM + 4, FAINT)
-        sheet.text(x, BOTTOM + 17, number(tick), 10, FAINT, "middle")
-    end = min(along.high, up.high)
-    sheet.line(along.at(0.0), up.at(0.0), along.at(end), up.at(end), INK, 1.3, "5 4")
+    sheet, along, up = scatter_sheet(
+        "What caused the target point error (mm)",
+        "by the hand (mm)",
+        "by the registration (mm)",
+        largest,
+        largest,
+    )
     count = sum(len(both[0]) for both in points.values())
     radius = 3.4 if count <= 150 else 2.2
     for kind, (by_registration, by_hand) in points.items():
         for x, y in zip(by_hand, by_registration, strict=True):
             sheet.dot(along.at(float(x)), up.at(float(y)), radius, KINDS[kind][1], 0.75)
-    x = float(LEFT)
+    x = float(SCATTER_LEFT)
     for kind in points:
         name, color = KINDS[kind]
         sheet.dot(x + 5, 34, 3.6, color, 0.85)
@@ -344,8 +322,6 @@ def split_chart(kinds: Mapping[str, _Group]) -> str:
         x += 36 + 6 * len(name)
     sheet.line(x, 34, x + 22, 34, INK, 1.3, "5 4")
     sheet.text(x + 28, 38, "both parts equal", 11)
-    sheet.text((LEFT + RIGHT) / 2, HEIGHT - 12, "by the hand (mm)", 11, INK, "middle")
-    sheet.text(16, (TOP + BOTTOM) / 2, "by the registration (mm)", 11, INK, "middle", turn=-90)
     return sheet.svg()
 
 

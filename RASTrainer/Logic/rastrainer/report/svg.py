@@ -158,6 +158,35 @@ def y_grid(sheet: Sheet, axis: Axis, left: float, right: float) -> None:
         sheet.text(left - 6, y + 3.5, number(tick), 10, FAINT, "end")
 
 
+SCATTER_WIDTH, SCATTER_HEIGHT = 660, 360
+SCATTER_LEFT, SCATTER_RIGHT, SCATTER_TOP, SCATTER_BOTTOM = 52, 640, 52, 306
+
+
+def scatter_sheet(
+    title: str, x_title: str, y_title: str, farthest: float, highest: float
+) -> tuple[Sheet, Axis, Axis]:
+    """Return a sheet for points, with the axes along and up, and the line on which both are equal.
+
+    Both axes start at 0 and reach `farthest` and `highest`; between title and axes there is room
+    for a legend.
+    """
+    sheet = Sheet(SCATTER_WIDTH, SCATTER_HEIGHT, title)
+    sheet.text(10, 16, title, 12.5, INK, weight="600")
+    along = axis_over([0.0, farthest], SCATTER_LEFT, SCATTER_RIGHT, from_zero=True)
+    up = axis_over([0.0, highest], SCATTER_BOTTOM, SCATTER_TOP, from_zero=True)
+    y_grid(sheet, up, SCATTER_LEFT, SCATTER_RIGHT)
+    for tick in along.ticks(8):
+        x = along.at(tick)
+        sheet.line(x, SCATTER_BOTTOM, x, SCATTER_BOTTOM + 4, FAINT)
+        sheet.text(x, SCATTER_BOTTOM + 17, number(tick), 10, FAINT, "middle")
+    end = min(along.high, up.high)
+    sheet.line(along.at(0.0), up.at(0.0), along.at(end), up.at(end), INK, 1.3, "5 4")
+    middle = (SCATTER_LEFT + SCATTER_RIGHT) / 2, (SCATTER_TOP + SCATTER_BOTTOM) / 2
+    sheet.text(middle[0], SCATTER_HEIGHT - 12, x_title, 11, INK, "middle")
+    sheet.text(16, middle[1], y_title, 11, INK, "middle", turn=-90)
+    return sheet, along, up
+
+
 def legend(sheet: Sheet, x: float, y: float, names: Sequence[tuple[str, str]]) -> None:
     """Draw names with their colors in a row."""
     for name, color in names:

@@ -17,6 +17,7 @@ from rastrainer.study.database.values import StoredProcedure, StoredTrial
 from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers
 from rastrainer.study.study_data import StudyData, TrialRow, trial_rows
+from rastrainer.trial.aborted_trial import AbortedTrial
 
 FIRST_COLUMNS = (
     *("trainee", "mode", "task", "number", "trial_id", "started_utc"),
@@ -88,7 +89,7 @@ def trials_csv(trials: Sequence[TrialRow]) -> str:
     names = sorted({name for trial in trials for name in trial.values})
     rows = [
         [
-            *(plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)),
+            *_who(trial),
             trial.number,
             trial.trial_id,
             trial.started_utc,
@@ -109,7 +110,7 @@ def aborted_csv(trials: Iterable[StoredAborted]) -> str:
         record = stored.record
         rows.append(
             [
-                *(plain_cell(text) for text in (record.trainee, record.mode, record.task)),
+                *_who(record),
                 record.trial_id,
                 record.started_utc,
                 record.aborted_utc,
@@ -135,7 +136,7 @@ def aborted_touches_csv(trials: Iterable[StoredAborted]) -> str:
     """Return the kept touches of aborted trials, like `touches_csv`."""
     rows = [
         [
-            *(plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)),
+            *_who(trial),
             trial.trial_id,
             plain_cell(point.label),
             *(_number(value) for value in (point.sim_time_s, *point.position_mm)),
@@ -159,7 +160,7 @@ def touches_csv(trials: Iterable[tuple[TrialRow, StoredTrial]]) -> str:
         residuals = dict(fitted)
         rows += [
             [
-                *(plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)),
+                *_who(trial),
                 trial.number,
                 trial.trial_id,
                 plain_cell(point.label),
@@ -180,15 +181,16 @@ def procedures_csv(trials: Iterable[TrialRow]) -> str:
     rows = []
     for trial in trials:
         done = trial.procedure
-        for errors in () if done is None else done.trajectories:
-            assert done is not None
-            rows.append([*_trial_cells(trial, done), *_error_cells(errors), *_score_cells(done)])
+        if done is None:
+            continue
+        for errors in done.trajectories:
+            score = [_number(done.score.score), done.score.version]
+            rows.append([*_trial_cells(trial, done), *_error_cells(errors), *score])
     return csv_text(PROCEDURE_COLUMNS, rows)
 
 
 def _trial_cells(trial: TrialRow, done: StoredProcedure) -> list[object]:
-    names = [plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)]
-    return [*names, trial.number, trial.trial_id, plain_cell(done.name), done.kind]
+    return [*_who(trial), trial.number, trial.trial_id, plain_cell(done.name), done.kind]
 
 
 def _error_cells(errors: Mapping[str, Any]) -> list[str]:
@@ -212,10 +214,6 @@ def _error_cells(errors: Mapping[str, Any]) -> list[str]:
         str(errors["alignments"]),
         *(_number(times.get(phase)) for phase in ("aligning", "drilling", "inserting")),
     ]
-
-
-def _score_cells(done: StoredProcedure) -> list[str]:
-    return [_number(done.score.score), done.score.version]
 
 
 def scores_csv(data: StudyData) -> str:
@@ -248,6 +246,11 @@ def ratings_csv(data: StudyData) -> str:
         for domain, mark in sorted(rating.marks.items())
     ]
     return csv_text(RATING_COLUMNS, rows)
+
+
+def _who(trial: TrialRow | AbortedTrial) -> list[str]:
+    """Return the cells of trainee, mode and task."""
+    return [plain_cell(text) for text in (trial.trainee, trial.mode, trial.task)]
 
 
 def _step_cells(answered: QuestionnaireAnswers) -> list[str]:

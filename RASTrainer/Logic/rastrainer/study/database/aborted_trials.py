@@ -12,7 +12,7 @@ from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
-from rastrainer.study.database.study_trials import RECORD_LIMIT_BYTES, decoded, json_text
+from rastrainer.study.database.study_trials import decoded, record_text
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.trial_feedback import PastTrial
@@ -57,9 +57,7 @@ class AbortedTrials:
         if not isinstance(record, AbortedTrial):
             delivered = record
             record = AbortedTrial.from_json(delivered)
-        text = json_text(delivered or record.to_json())
-        if len(text) > RECORD_LIMIT_BYTES:
-            raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+        text = record_text(delivered or record.to_json())
         with self._database.writing() as connection:
             return _add(connection, record, text)
 

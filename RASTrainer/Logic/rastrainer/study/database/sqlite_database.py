@@ -27,6 +27,16 @@ class SqliteDatabase(StudyDatabase):
     """A connection to one file; each process and thread may have one."""
 
     _connection: sqlite3.Connection
+    _pragmas: tuple[str, ...] = (
+        "foreign_keys = ON",
+        # Deleted trainees leave no bytes behind in the file.
+        "secure_delete = ON",
+        # Also sync the folder: what was committed stays after a power failure, since the simulator
+        # forgets a trial that we have acknowledged.
+        "synchronous = EXTRA",
+        "journal_mode = DELETE",
+        "trusted_schema = OFF",
+    )
 
     def __init__(self, path: str | os.PathLike[str], lock_wait: LockWait | None = None) -> None:
         """Open or create the file, and migrate its tables.
@@ -105,17 +115,7 @@ class SqliteDatabase(StudyDatabase):
             keep_others_out(f"{self.path}{suffix}")
 
     def _prepare(self) -> None:
-        for pragma in (
-            "foreign_keys = ON",
-            # Deleted trainees leave no bytes behind in the file.
-            "secure_delete = ON",
-            # Also sync the folder: what was committed stays after a power failure, since the
-            # simulator forgets a trial that we have acknowledged.
-            "synchronous = EXTRA",
-            "journal_mode = DELETE",
-            "trusted_schema = OFF",
-        ):
-            self._connection.execute(f"PRAGMA {pragma}")
+        self._set_pragmas()
         # In one transaction: another process may be creating the tables.
         with self.reading():
             self._check_origin()
@@ -123,6 +123,10 @@ class SqliteDatabase(StudyDatabase):
         if is_old:
             self._migrate()
         self._check_whole()
+
+    def _set_pragmas(self) -> None:
+        for pragma in self._pragmas:
+            self._connection.execute(f"PRAGMA {pragma}")
 
     def _check_whole(self) -> None:
         if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
@@ -192,6 +196,8 @@ class ReadOnlySqliteDatabase(SqliteDatabase):
     rolled back first, as by any program that opens the file; stored data remain.
     """
 
+    _pragmas = ("foreign_keys = ON", "trusted_schema = OFF")
+
     def _connect(self) -> sqlite3.Connection:
         if not self.path.is_file():
             raise InputError(f"There is no file {self.path}.")
@@ -205,15 +211,17 @@ class ReadOnlySqliteDatabase(SqliteDatabase):
         )
 
     def _prepare(self) -> None:
-        self._guard()
-        with self.reading():
-            self._check_origin()
-            is_old = self._number("user_version") < len(MIGRATIONS)
-        if is_old:
-            self._copy_into_memory()
-            self._migrate()
-        self._check_whole()
+        super()._prepare()
         self._connection.execute("PRAGMA query_only = ON")
+
+    def _migrate(self) -> None:
+        file, self._connection = self._connection, sqlite3.connect(":memory:", isolation_level=None)
+        try:
+            file.backup(self._connection)
+        finally:
+            file.close()
+        self._set_pragmas()
+        super()._migrate()
 
     def _roll_back(self) -> None:
         connection = sqlite3.connect(self.path, timeout=self._lock_wait.timeout_s)
@@ -221,18 +229,6 @@ class ReadOnlySqliteDatabase(SqliteDatabase):
             connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
         finally:
             connection.close()
-
-    def _guard(self) -> None:
-        for pragma in ("foreign_keys = ON", "trusted_schema = OFF"):
-            self._connection.execute(f"PRAGMA {pragma}")
-
-    def _copy_into_memory(self) -> None:
-        file, self._connection = self._connection, sqlite3.connect(":memory:", isolation_level=None)
-        try:
-            file.backup(self._connection)
-        finally:
-            file.close()
-        self._guard()
 
 
 def read_only_uri(path: Path) -> str:

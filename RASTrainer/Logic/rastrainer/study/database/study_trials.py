@@ -56,9 +56,7 @@ Value = TypeVar("Value")
 
 def add(connection: Connection, record: TrialRecord, json_object: Mapping[str, Any]) -> bool:
     """Store a trial with its trainee; return False if it is stored already."""
-    text = json_text(json_object)
-    if len(text) > RECORD_LIMIT_BYTES:
-        raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
+    text = record_text(json_object)
     if not check(connection, record):
         return False
     study_trainees.create_where_missing(connection, record.trainee, consent=False)
@@ -318,6 +316,14 @@ def json_text(value: object) -> str:
             "What a study stores must be JSON with finite numbers and whole characters, none of "
             "them null."
         ) from None
+    return text
+
+
+def record_text(record: Mapping[str, Any]) -> str:
+    """Return a record as ASCII JSON; raise `InputError` if that is impossible or above 1 MiB."""
+    text = json_text(record)
+    if len(text) > RECORD_LIMIT_BYTES:
+        raise InputError("The trial record is larger than 1 MiB, the most that is stored.")
     return text
 
 

@@ -157,7 +157,11 @@ class StudyProgress:
         """
         with self._database.writing() as connection:
             next_step = _progress(connection, pseudonym).next_step
-            if next_step is None or next_step.name != step or not _is_practice(next_step):
+            if (
+                next_step is None
+                or next_step.name != step
+                or next_step.kind is not StepKind.TRIAL_RUN
+            ):
                 raise InputError(f"{step[:80]} is not a trial run that comes next.")
             connection.execute(
                 f"INSERT INTO practice VALUES (({TRAINEE_ID}), ?, ?) "
@@ -254,10 +258,6 @@ def _practiced(connection: Connection, pseudonym: str, step: Step | None) -> flo
         (pseudonym, "" if step is None else step.name),
     ).fetchone()
     return 0.0 if row is None else row[0]
-
-
-def _is_practice(step: Step) -> bool:
-    return step.kind is StepKind.TRIAL_RUN
 
 
 def _protocol(connection: Connection) -> StudyProtocol | None:

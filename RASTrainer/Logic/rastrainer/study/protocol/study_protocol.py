@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -197,15 +198,9 @@ def _protocol(fields: Fields) -> StudyProtocol:
         else {},
         score_version=version,
         pass_mark=scoring.number("passMark", 1, 100) if "passMark" in scoring.names() else None,
-        guidance=fields.one_of("guidance", tuple(choice.value for choice in Guidance))
-        if "guidance" in fields.names()
-        else "",
-        ghost=fields.one_of("ghost", tuple(rule.value for rule in GhostRule))
-        if "ghost" in fields.names()
-        else "",
-        tutorial=fields.one_of("tutorial", tuple(rule.value for rule in TutorialRule))
-        if "tutorial" in fields.names()
-        else "",
+        guidance=_chosen(fields, "guidance", Guidance),
+        ghost=_chosen(fields, "ghost", GhostRule),
+        tutorial=_chosen(fields, "tutorial", TutorialRule),
         procedures=_by_task(fields, "procedures", tasks, Fields.identifier),
         methods=_by_task(fields, "methods", tasks, _method),
         skins=_by_task(
@@ -215,6 +210,13 @@ def _protocol(fields: Fields) -> StudyProtocol:
     if len(modes) * len(tasks) * protocol.repetitions > MAX_STEPS:
         raise fields.error("repetitions", f"so few that there are at most {MAX_STEPS} trials")
     return protocol
+
+
+def _chosen(fields: Fields, name: str, choices: type[Enum]) -> str:
+    """Return the choice of a field, "" where it is left out."""
+    if name not in fields.names():
+        return ""
+    return fields.one_of(name, tuple(choice.value for choice in choices))
 
 
 def _by_task(
