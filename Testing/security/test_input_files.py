@@ -24,7 +24,7 @@ from rastrainer.scenario.setup import read_setup
 from rastrainer.study.curriculum.curriculum import read_curriculum
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
-from rastrainer.study.study_notes import read_notes
+from rastrainer.trial.ctps import read_notes
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.settings import (
     SimulationSettings,

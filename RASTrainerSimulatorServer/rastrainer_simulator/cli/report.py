@@ -10,9 +10,9 @@ from rastrainer_simulator.cli.options import (
     STUDY_HELP,
     add_incomplete,
     add_study,
+    mean_times,
     read_known_study,
 )
-from rastrainer_simulator.cli.score import mean_times
 
 CSV_HEADER = "mode,subject,task,ct,rmse"
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from rastrainer.errors import InputError
 from rastrainer.trial.ctps import (
     CTPS_WARNING,
     CohortScores,
@@ -13,7 +12,7 @@ from rastrainer.trial.ctps import (
     score_cohort,
     trials_by_mode,
 )
-from rastrainer_simulator.cli.options import add_json
+from rastrainer_simulator.cli.options import add_json, mean_times
 from rastrainer_simulator.cli.output import json_text, text_table
 
 
@@ -58,33 +57,6 @@ def run(arguments: argparse.Namespace) -> int:
         print("\n\n".join(scores_text(mode, score) for mode, score in scores.items()))
         print(f"\nWarning: {CTPS_WARNING}")
     return 0
-
-
-def mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
-    """Return the mean completion time in s of each mode that was given one.
-
-    Args:
-        given: `MODE=SECONDS`, or `SECONDS` for all modes; the later one counts.
-        modes: The modes of the trials.
-
-    Raises:
-        InputError: no number, or a mode that no trial has.
-    """
-    means: dict[str, float] = {}
-    for text in given:
-        mode, separator, number = text.rpartition("=")
-        if separator and mode not in modes:
-            raise InputError(
-                f"--mean-ct names the mode {mode[:64]!r}, but the trials have {', '.join(modes)}."
-            )
-        try:
-            value = float(number)
-        except ValueError:
-            raise InputError(
-                f"--mean-ct must be a number of seconds or MODE=SECONDS, not {text[:64]!r}."
-            ) from None
-        means.update(dict.fromkeys([mode] if separator else modes, value))
-    return means
 
 
 def scores_json(scores: CohortScores) -> dict[str, Any]:

@@ -21,11 +21,11 @@ from rastrainer.report.markup import (
 from rastrainer.statistics.intervals import Correlation, correlation
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.study_data import StudyData, TrialRow
-from rastrainer.study.study_notes import Printed
 from rastrainer.trial.ctps import (
     CTPS_WARNING,
     CohortReference,
     CohortScores,
+    Printed,
     published_ctps,
     score_cohort,
     task_number,

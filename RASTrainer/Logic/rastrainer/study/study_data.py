@@ -20,8 +20,7 @@ from rastrainer.study.database.values import StoredProcedure, StoredTrial
 from rastrainer.study.protocol.study_progress import QuestionnaireAnswers, StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
 from rastrainer.study.ratings import Rating, RatingStore
-from rastrainer.study.study_notes import StudyNotes, read_notes
-from rastrainer.trial.ctps import Trial, read_trials
+from rastrainer.trial.ctps import StudyNotes, Trial, read_notes, read_trials
 from rastrainer.trial.scoring import FIRST_SCORE_VERSION, TrialScore
 
 
