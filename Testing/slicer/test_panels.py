@@ -146,11 +146,11 @@ def test_a_study_locked_by_another_program_is_reported_and_shown_again_by_itself
     other = sqlite3.connect(study_path, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
     panels.press("archiveButton")
-    assert "Another program has the study" in panels.messages[-1].text
+    assert "Another program has locked the study" in panels.messages[-1].text
     panels.press("createTraineeButton")
-    assert "Another program has the study" in panels.messages[-1].text
+    assert "Another program has locked the study" in panels.messages[-1].text
     panels.choose("traineeComboBox", "Choose a trainee")
-    assert "Another program has the study" in panels.text("traineeText")
+    assert "Another program has locked the study" in panels.text("traineeText")
     other.execute("ROLLBACK")
     other.close()
     add_trial(1, "T-007")
@@ -471,14 +471,14 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     assert len((tmp_path / "all.csv").read_text().splitlines()) == 3
     # The consent was given elsewhere, which the module notices sooner or later.
     panels.widget.logic.session.trainees.changed.emit()
-    assert "agree to research: 1." in panels.text("scoreMessageText")
+    assert "consent to research: 1." in panels.text("scoreMessageText")
 
 
 def test_a_study_without_consenting_trainees_has_no_report(panels, add_trial, tmp_path):
     add_trial(1, "T-001")
     panels.answer("Folder for the report", str(tmp_path / "report"))
     panels.press("reportButton")
-    assert "agreed to research" in panels.messages[-1].text
+    assert "consented to research" in panels.messages[-1].text
 
 
 def test_the_report_of_the_study_is_written_and_opened(panels, add_trial, study_path, tmp_path):

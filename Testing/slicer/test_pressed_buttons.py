@@ -177,7 +177,7 @@ def test_a_consent_that_could_not_be_saved_is_not_shown_as_given(host, monkeypat
     def refuse(_consent):
         from rastrainer.errors import InputError
 
-        raise InputError("Another program has the study.")
+        raise InputError("Another program has locked the study.")
 
     monkeypatch.setattr(host.widget.logic.session.trainees, "setConsent", refuse)
     host.check("consentCheckBox")

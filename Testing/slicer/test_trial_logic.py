@@ -424,7 +424,7 @@ def test_a_trial_waits_while_another_program_has_the_study_locked(lab, make_reco
     other.execute("BEGIN EXCLUSIVE")
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.problems)
-    assert "Another program has the study" in lab.problems[0]
+    assert "Another program has locked the study" in lab.problems[0]
     assert {"trialId": TRIAL} not in lab.all_sent("AcknowledgeTrial")
     other.execute("ROLLBACK")
     other.close()

@@ -117,7 +117,9 @@ async def _expect_spectator(page: web.WebSocketResponse) -> None:
             hello = check_message(first.data)
             if hello.type == HELLO and hello.values[0] == SPECTATOR:
                 return
-    raise InputError("Here one only watches: the first message must be a spectator's hello.")
+    raise InputError(
+        "This stream is only for watching: the first message must be a spectator's hello."
+    )
 
 
 async def _pass_on(simulator: aiohttp.ClientWebSocketResponse, page: web.WebSocketResponse) -> None:

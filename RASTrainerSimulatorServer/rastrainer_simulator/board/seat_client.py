@@ -28,8 +28,8 @@ MAX_MESSAGE_BYTES = 2**20
 MAX_FILE_BYTES = 32 * 2**20
 MAX_REASON = 300
 AWAY = "The simulator does not answer at {address}."
-OTHER_CERTIFICATE = "The certificate is another one than before: compare its fingerprint again."
-NOT_OURS = "What answers at {address} is no simulator of this version."
+OTHER_CERTIFICATE = "The certificate has changed: compare its fingerprint again."
+NOT_OURS = "The server at {address} is not a simulator of this version."
 
 
 class SeatAwayError(InputError):

@@ -97,13 +97,13 @@ def checked_address(address: str) -> str:
         parts, host, port = urlsplit(""), "", None
     if parts.scheme not in ("https", "http") or not host or port is None or parts.username:
         raise InputError(
-            f"{printable_name(address)} is no address of a simulator; it shows its own when it is "
-            "started with --lan, such as https://192.0.2.7:18946."
+            f"{printable_name(address)} is not the address of a simulator; a simulator that is "
+            "started with --lan shows its own, such as https://192.0.2.7:18946."
         )
     if parts.scheme == "http" and not is_loopback(host):
         raise InputError(
-            "Only a simulator on this computer is watched without TLS: start the other with --lan, "
-            "and use its https address."
+            "Only a simulator on this computer is watched without TLS: start the other one with "
+            "--lan, and use its https address."
         )
     name = f"[{host}]" if ":" in host else host
     return f"{parts.scheme}://{name}:{port}"
@@ -117,7 +117,7 @@ def checked_fingerprint(value: str) -> str:
     """
     shown = value.strip().upper()
     if _FINGERPRINT.fullmatch(shown) is None:
-        raise InputError("A fingerprint has 32 pairs of hexadecimal digits with colons between.")
+        raise InputError("A fingerprint has 32 pairs of hexadecimal digits, separated by colons.")
     return shown
 
 
@@ -125,7 +125,7 @@ def _read(path: Path) -> list[SeatEntry]:
     values = read_json(path, _MAX_BYTES)
     seats = values.get("seats", []) if isinstance(values, dict) else None
     if not isinstance(seats, list) or len(seats) > MOST_SEATS:
-        raise InputError(f"{path} does not hold a board's seats; move it away to start anew.")
+        raise InputError(f"{path} contains no board's seats; move it away to start afresh.")
     return [_entry(path, seat) for seat in seats]
 
 

@@ -44,7 +44,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="export a study: tidy CSV, Motion-BIDS, xAPI, Slicer's files",
         description=(
             "Write a study into an empty folder, a folder a format. Trainees appear by their "
-            "pseudonyms, and only those who agreed to research."
+            "pseudonyms, and only those who consented to research."
         ),
     )
     add_study(parser)
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name in formats:
         print(f"{arguments.output / name}: {_write(name, data, arguments)}")
     if data.without_consent:
-        print(f"Left out because they did not agree to research: {data.without_consent} trainees")
+        print(f"Left out because they did not consent to research: {data.without_consent} trainees")
     return 0
 
 

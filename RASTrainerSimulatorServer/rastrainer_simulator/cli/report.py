@@ -24,7 +24,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="write a study's report: tables, charts, tests, limits",
         description=(
             "Write report.html, which needs no other file and prints on A4, and trials.csv. "
-            "Trainees who did not agree to research are left out."
+            "Trainees who did not consent to research are left out."
         ),
     )
     add_study(parser, help_text=f"{STUDY_HELP}; or a CSV file with the header {CSV_HEADER}")

@@ -134,7 +134,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         description=(
             "Send a statement for each trial, aborted trial and questionnaire that the store does "
             "not have yet. Pseudonyms, results and times leave this computer; trainees who did not "
-            "agree to research are left out. Name and password of the store are read from "
+            "consent to research are left out. Name and password of the store are read from "
             f"{CREDENTIALS_VARIABLE} or a file, as name:password."
         ),
     )
@@ -214,7 +214,7 @@ def _credentials(path: Path | None) -> str:
     text = read_text(path, _MAX_CREDENTIALS)
     if os.name == "posix" and path.stat().st_mode & _OTHERS:
         raise InputError(
-            f"Others can read {printable_name(path)}; make it yours alone with chmod 600."
+            f"Others can read {printable_name(path)}; restrict it to yourself with chmod 600."
         )
     return text.strip()
 

@@ -153,7 +153,7 @@ def _access(answer: Any) -> tuple[str, float]:
         token = text(8192)(values.get("access_token"))
         return token, min(float(lasts_s), 86_400.0)
     except (TypeError, ValueError, OverflowError):
-        raise PlatformAwayError("it gives no access token") from None
+        raise PlatformAwayError("it provides no access token") from None
 
 
 def scores_url(line_item: str) -> str:

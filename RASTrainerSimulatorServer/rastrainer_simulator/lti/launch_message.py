@@ -139,7 +139,7 @@ class OpenLogins:
             raise RefusedLaunchError("This launch was used already, or has taken too long.")
         if not hmac.compare_digest(login.browser.encode(), browser.encode()):
             raise RefusedLaunchError(
-                "This launch was begun in another browser, or the browser keeps no cookies here: "
+                "This launch was begun in another browser, or this browser keeps no cookies: "
                 "the course must open the link in a new window."
             )
         return login
@@ -224,9 +224,9 @@ def _key_id(token: str) -> str:
 def _check_recipient(claims: Mapping[str, Any], platform: LearningPlatform) -> None:
     """Refuse what is also, or in truth, for another tool, and what is old."""
     if claims["aud"] not in (platform.client_id, [platform.client_id]):
-        raise RefusedLaunchError("The token is for other tools, too.")
+        raise RefusedLaunchError("The token is also addressed to other tools.")
     if claims.get("azp", platform.client_id) != platform.client_id:
-        raise RefusedLaunchError("The token was made out to another tool.")
+        raise RefusedLaunchError("The token was issued to another tool.")
     if int(claims["iat"]) < time.time() - OLDEST_S - LEEWAY_S:
         raise RefusedLaunchError("The token is too old.")
 

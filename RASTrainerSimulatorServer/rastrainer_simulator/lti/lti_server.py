@@ -168,7 +168,7 @@ class LtiServer:
                 self._key_sets,
             )
         except PlatformAwayError as error:
-            raise InputError(f"{login.platform.name} cannot be asked: {error}.") from None
+            raise InputError(f"{login.platform.name} cannot be reached: {error}.") from None
         page = LaunchPage.in_language_of(
             f"{launch.language},{request.headers.get(hdrs.ACCEPT_LANGUAGE, '')}"
         )

@@ -122,7 +122,7 @@ class KeySets:
                 known = _usable(await self._client.json(url))
                 self._keys[url], self._fetched[url] = known, now
             if known is None:
-                raise PlatformAwayError("its keys could not be had a moment ago")
+                raise PlatformAwayError("its keys could not be fetched a moment ago")
             return known.get(key_id)
 
 
@@ -130,7 +130,7 @@ def _usable(answer: Any) -> dict[str, RSAPublicKey]:
     """Return the keys for our algorithm by their IDs; what is no such key is left out."""
     listed = answer.get("keys") if isinstance(answer, dict) else None
     if not isinstance(listed, list) or len(listed) > MOST_KEYS:
-        raise PlatformAwayError(f"it does not answer with up to {MOST_KEYS} keys")
+        raise PlatformAwayError(f"its answer is not a list of at most {MOST_KEYS} keys")
     found: dict[str, RSAPublicKey] = {}
     for each in listed:
         if not isinstance(each, dict) or not isinstance(each.get("kid"), str):

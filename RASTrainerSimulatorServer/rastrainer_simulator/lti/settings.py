@@ -254,7 +254,7 @@ def _read(path: Path) -> rsa.RSAPrivateKey:
     values = read_json(path, _MAX_KEY_BYTES)
     if os.name == "posix" and path.stat().st_mode & _OTHERS:
         raise InputError(
-            f"Others can read {printable_name(path)}; make it yours alone with chmod 600."
+            f"Others can read {printable_name(path)}; restrict it to yourself with chmod 600."
         )
     try:
         key = serialization.load_pem_private_key(values["privateKey"].encode(), password=None)
@@ -262,7 +262,7 @@ def _read(path: Path) -> rsa.RSAPrivateKey:
         key = None
     if not isinstance(key, rsa.RSAPrivateKey):
         raise InputError(
-            f"{printable_name(path)} holds no private key; move it away, and a new one is made, "
-            "which each platform must be given."
+            f"{printable_name(path)} contains no private key; move it away, and a new one is made, "
+            "which must then be registered with each platform."
         )
     return key

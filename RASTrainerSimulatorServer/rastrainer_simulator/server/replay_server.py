@@ -132,7 +132,7 @@ def trials_to_show(study: Study, records: Path) -> tuple[str, ...]:
     if not found:
         raise InputError(
             f"There is nothing to rate: {records} has no journal of a finished trial of a trainee "
-            "who agreed to research."
+            "who consented to research."
         )
     return found
 

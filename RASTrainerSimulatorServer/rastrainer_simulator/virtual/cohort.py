@@ -158,8 +158,8 @@ def simulate_cohort(
     """
     if with_journals and protocol.procedures:
         raise InputError(
-            "The journals of virtual trainees hold the touches alone: leave --records out, or the "
-            "protocol's procedures."
+            "The journals of virtual trainees contain only the touches: leave out --records, or "
+            "the protocol's procedures."
         )
     if protocol.methods:
         raise InputError(

@@ -175,7 +175,8 @@ class RangeCamera:
         if len(points) < LEAST_POINTS:
             raise InputError(
                 f"The range camera sees {len(points)} points of the head; a match needs "
-                f"{LEAST_POINTS}: put the camera before the face, or its points closer together."
+                f"{LEAST_POINTS}: place the camera in front of the face, or its points closer "
+                "together."
             )
         return points
 

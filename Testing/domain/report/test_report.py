@@ -490,13 +490,13 @@ def test_trainees_without_consent_are_left_out_and_counted(tmp_path):
     data = read_study_data(tmp_path / "study.db")
     assert data.trainees == ("B",)
     assert data.answers == ()
-    assert "Left out: 1 trainee who did not agree" in words_of(report_html(data))
+    assert "Left out: 1 trainee who did not consent" in words_of(report_html(data))
 
 
 def test_a_study_without_any_consent_is_refused(tmp_path):
     with Study.open(tmp_path / "study.db") as study:
         study.add_trial(make_record())
-    with pytest.raises(InputError, match="no trials of trainees who agreed"):
+    with pytest.raises(InputError, match="no trials of trainees who consented"):
         write_report(read_study_data(tmp_path / "study.db"), tmp_path)
 
 

@@ -194,7 +194,7 @@ class OperationalError(RefusalError):
 @pytest.mark.parametrize(
     ("error", "words"),
     [
-        (RefusalError("canceling statement", "55P03"), "Another program has the study"),
+        (RefusalError("canceling statement", "55P03"), "Another program has locked the study"),
         (RefusalError("disk", "53100"), "the disk of its server is full"),
         (RefusalError("no", "42501"), "make it the owner"),
         (RefusalError("read", "25006"), "is read-only"),

@@ -265,7 +265,7 @@ def test_only_the_right_trial_of_the_right_trainee_counts_and_only_once(study):
         ("00000000-0000-0000-0000-000000000001", "not the one that the step"),
         (make_record()["trialId"], "it was task-3 in the mode hmd"),
         ("00000000-0000-0000-0000-000000000009", "has no trial"),
-        (None, "only with the trial that was stored"),
+        (None, "only with the UUID of the stored trial"),
     ]:
         with pytest.raises(InputError, match=words):
             progress.finish("T001", step.name, {"trialId": trial_id})
@@ -295,7 +295,7 @@ def test_a_trial_run_or_a_break_ends_too_early_only_with_a_reason(study):
         with pytest.raises(InputError, match="The trial run takes 5 minutes, of which"):
             progress.finish("T001", "hmd/trial-run", {"minutes": minutes})
     assert progress.skip("T001", "hmd/trial-run", "has practiced in a pilot").skipped
-    with pytest.raises(InputError, match="not a trial run that comes next"):
+    with pytest.raises(InputError, match="not the next step, or not a trial run"):
         progress.practice("T001", "hmd/trial-run", 1.0)
 
 
@@ -365,7 +365,7 @@ def test_the_place_of_a_deleted_trainee_is_reused(study):
         ({"breaks": {}}, "breaks.betweenModesMinutes must be"),
         (
             {"questionnaires": [{"name": "mmpi", "when": "after-all", "modes": []}]},
-            r"questionnaires\[0\].name must be a questionnaire .*known are sus",
+            r"questionnaires\[0\].name must be a questionnaire .*there are sus",
         ),
         (
             {"questionnaires": [{"name": "sus", "when": "often", "modes": []}]},

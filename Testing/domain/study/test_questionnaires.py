@@ -118,5 +118,5 @@ def test_missing_or_invalid_answers_are_refused(answers, words):
 
 
 def test_an_unknown_questionnaire_is_refused_with_the_known_ones():
-    with pytest.raises(InputError, match="known are sus, nasa-tlx, ssq"):
+    with pytest.raises(InputError, match="there are sus, nasa-tlx, ssq"):
         find_questionnaire("mmpi")

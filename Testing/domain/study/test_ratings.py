@@ -90,7 +90,7 @@ def test_what_is_no_mark_is_refused_with_a_sentence(study, store, rater, domain,
 def test_a_name_that_is_no_pseudonym_and_an_unknown_form_are_refused(store):
     with pytest.raises(InputError, match="The name of a rater must be"):
         store.assign("", TRIALS, 2, random.Random(1))
-    with pytest.raises(InputError, match="known are gears, osats"):
+    with pytest.raises(InputError, match="there are gears, osats"):
         find_form("o-score")
 
 

@@ -105,7 +105,7 @@ def test_each_further_abort_needs_its_own_reason(study):
 )
 def test_a_repeat_without_a_real_reason_is_refused(study, reason):
     abort(study, 900, 1)
-    with pytest.raises(InputError, match="played again only with a reason of 10 to 500"):
+    with pytest.raises(InputError, match="can be repeated only with a reason of 10 to 500"):
         StudyProgress(study).explain_repeat("A", reason)
     assert StudyProgress(study).progress("A").unexplained
 

@@ -213,7 +213,7 @@ def test_a_full_disk_is_reported_and_stored_data_remain(tmp_path):
     path = tmp_path / "study.db"
     Study.open(path).close()
     stored, sentence = in_child(fill_disk, path)
-    assert "cannot be written: the disk is full" in sentence or "the disk fails" in sentence
+    assert "cannot be written: the disk is full" in sentence or "the disk has errors" in sentence
     with Study.open(path) as study:
         trainees = study.trainees()
         assert sum(len(study.history(t.pseudonym)) for t in trainees) == stored
@@ -231,7 +231,7 @@ def locked(tmp_path):
 
 
 def test_a_study_locked_by_another_program_is_reported(locked):
-    with pytest.raises(StudyBusyError, match=r"Another program has the study .* locked; try again"):
+    with pytest.raises(StudyBusyError, match=r"Another program has locked the study .*; try again"):
         Study.open(locked, LockWait(0.01))
 
 

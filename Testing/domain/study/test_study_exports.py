@@ -143,7 +143,7 @@ def test_trainees_without_consent_are_left_out_of_exports_and_counted(tmp_path, 
     study_with_trials(tmp_path / "study.db", consent=False)
     words = ["export", tmp_path / "study.db", "-o", tmp_path / "out"]
     assert main([str(word) for word in words]) == 0
-    assert "did not agree to research: 1 trainees" in capsys.readouterr().out
+    assert "did not consent to research: 1 trainees" in capsys.readouterr().out
     for name in ("trials", "touches", "scores", "answers"):
         rows = rows_of((tmp_path / "out" / "csv" / f"{name}.csv").read_text())
         assert {row["trainee"] for row in rows} <= {"B"}

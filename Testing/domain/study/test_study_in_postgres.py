@@ -160,7 +160,7 @@ def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place, 
         lock_wait = LockWait(0.05, rest_s=1.0, clock=lambda: 0.0)
         with Study.open(place, lock_wait) as study:
             with holder.database.writing():
-                with pytest.raises(StudyBusyError, match="Another program has the study"):
+                with pytest.raises(StudyBusyError, match="Another program has locked the study"):
                     study.create_trainee("a")
                 assert lock_wait.timeout_s == 0.0
                 # Readers wait for nobody.
@@ -292,7 +292,7 @@ def test_a_role_that_may_only_read_reads_and_its_writing_is_refused(place, postg
         ("CREATE TABLE recipes (name TEXT)", "database of another program"),
         ("CREATE TABLE rastrainer_study (application_id INT, user_version INT, changes INT)",
          "database of another program"),
-        ("CREATE VIEW trials AS SELECT 1", "holds triggers, views"),
+        ("CREATE VIEW trials AS SELECT 1", "contains triggers, views"),
     ],
     ids=["other", "empty-header", "view"],
 )  # fmt: skip
@@ -308,12 +308,12 @@ def test_another_programs_database_is_refused_and_left_as_it_is(sql, words, plac
 @pytest.mark.parametrize(
     ("sql", "words"),
     [
-        ("CREATE RULE r AS ON DELETE TO trials DO INSTEAD NOTHING", "holds triggers"),
+        ("CREATE RULE r AS ON DELETE TO trials DO INSTEAD NOTHING", "contains triggers"),
         ("ALTER TABLE trials ENABLE ROW LEVEL SECURITY; CREATE POLICY p ON trials USING (false)",
-         "holds triggers"),
+         "contains triggers"),
         ("CREATE FUNCTION f() RETURNS trigger AS 'BEGIN RETURN NULL; END' LANGUAGE plpgsql; "
          "CREATE TRIGGER t BEFORE INSERT ON trials FOR EACH ROW EXECUTE FUNCTION f()",
-         "holds triggers"),
+         "contains triggers"),
         ("UPDATE rastrainer_study SET user_version = 99",
          f"newer RASTrainer .*99, this one knows {len(MIGRATIONS)}"),
     ],
@@ -463,9 +463,9 @@ def test_another_computer_is_reached_over_tls_alone(own_server, tmp_path):
     with Study.open(f"{far}?sslrootcert={certificate}") as study:
         assert study.create_trainee("a")
     other = own_server.offer_tls(tmp_path, "127.0.0.3")
-    with pytest.raises(InputError, match="another computer's: somebody else"):
+    with pytest.raises(InputError, match="belongs to another computer: somebody else"):
         Study.open(f"{far}?sslrootcert={other}")
-    with pytest.raises(InputError, match="not the one of its issuer"):
+    with pytest.raises(InputError, match="not from the expected issuer"):
         Study.open(f"{far}?sslrootcert={certificate}")
 
 

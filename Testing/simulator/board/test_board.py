@@ -102,7 +102,7 @@ def test_a_seat_with_another_certificate_is_sent_no_key_and_no_code(
     status, answer = board.ask(
         "/seats", "POST", name="Window 3", address=impostor.address, **values
     )
-    assert (status, answer.split(":")[0]) == (409, "The certificate is another one than before")
+    assert (status, answer.split(":")[0]) == (409, "The certificate has changed")
     assert seen == []
 
 
@@ -129,11 +129,11 @@ def test_a_removed_seat_is_forgotten_with_its_key(board, simulator):
     ("changes", "sentence"),
     [
         ({"address": "http://192.0.2.7:18945"}, "Only a simulator on this computer is watched"),
-        ({"address": "ftp://127.0.0.1:1"}, "is no address of a simulator"),
-        ({"address": "https://127.0.0.1"}, "is no address of a simulator"),
-        ({"address": "https://me:secret@127.0.0.1:1"}, "is no address of a simulator"),
-        ({"address": "https://127.0.0.1:99999"}, "is no address of a simulator"),
-        ({"address": "https://[127.0.0.1:1"}, "is no address of a simulator"),
+        ({"address": "ftp://127.0.0.1:1"}, "is not the address of a simulator"),
+        ({"address": "https://127.0.0.1"}, "is not the address of a simulator"),
+        ({"address": "https://me:secret@127.0.0.1:1"}, "is not the address of a simulator"),
+        ({"address": "https://127.0.0.1:99999"}, "is not the address of a simulator"),
+        ({"address": "https://[127.0.0.1:1"}, "is not the address of a simulator"),
         ({"address": "https://127.0.0.1:1"}, "does not answer at https://127.0.0.1:1"),
         ({"fingerprint": "12:34"}, "32 pairs of hexadecimal digits"),
         ({"name": ""}, "The name must be printable text of 1 to 40 characters"),
@@ -222,7 +222,7 @@ def test_a_seat_is_seen_live_and_nothing_that_its_page_sends_arrives_there(board
     kinds = live(board, seat, SPECTATOR)
     assert {"welcome", "screen", "state"} <= set(kinds)
     assert "pairing" not in kinds
-    refused = "Here one only watches: the first message must be a spectator's hello."
+    refused = "This stream is only for watching: the first message must be a spectator's hello."
     assert live(board, seat, HELLO) == refused
     assert simulator.served.presenter.calls == []
 

@@ -167,7 +167,7 @@ def test_a_locked_study_is_named_and_read_once_it_is_free(study, monkeypatch):
     monkeypatch.setattr("rastrainer_simulator.board.class_table.LOCK_WAIT_S", 0.01)
     reader, other = ClassReader(study), sqlite3.connect(study, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
-    with pytest.raises(StudyBusyError, match="has the study"):
+    with pytest.raises(StudyBusyError, match="has locked the study"):
         reader.read()
     other.close()
     assert list(reader.read().standings) == NAMES

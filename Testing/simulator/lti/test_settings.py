@@ -97,7 +97,7 @@ def test_the_private_key_is_made_once_and_its_owner_s_alone(tmp_path):
             ToolKey(tmp_path)
     path.chmod(0o600)
     path.write_text('{"privateKey": "none"}')
-    with pytest.raises(InputError, match="holds no private key"):
+    with pytest.raises(InputError, match="contains no private key"):
         ToolKey(tmp_path)
 
 

@@ -65,7 +65,7 @@ def test_a_journal_whose_first_line_is_damaged_goes_by_its_trial_or_is_named(cop
     assert main([str(word) for word in words]) == 1
     printed = capsys.readouterr().out
     assert "2 trials and 2 journals deleted" in printed
-    assert f"Whose journals these are cannot be read, they are left: {unknown}." in printed
+    assert f"These journals do not say whose they are, and are left: {unknown}." in printed
     assert not own.exists()
     assert unknown.exists()
 

@@ -197,7 +197,7 @@ def test_an_incomplete_cohort_is_neither_reported_nor_exported(copied, tmp_path,
         words = [command, str(copied / DATABASE), "-o", str(tmp_path / command)]
         assert main(words) == 2
         errors = capsys.readouterr().err
-        assert "not played to its end: 3 of 4 trials are there." in errors
+        assert "is incomplete: 3 of 4 trials are stored." in errors
         assert "into the same folder with the same options" in errors
         assert "--incomplete takes it as it is" in errors
         assert not (tmp_path / command).exists()
@@ -208,7 +208,7 @@ def test_an_incomplete_cohort_is_reported_when_asked_for_and_the_page_says_so(co
     words = ["report", str(copied / DATABASE), "-o", str(tmp_path / "page"), "--incomplete"]
     assert main(words) == 0
     page = (tmp_path / "page" / "report.html").read_text()
-    assert "3 of 4 trials are there. What follows is about these trials alone." in page
+    assert "3 of 4 trials are stored. What follows is about these trials alone." in page
 
 
 def test_a_cohort_without_any_trial_yet_is_reported_too(tmp_path):
@@ -224,7 +224,7 @@ def test_trials_that_got_stuck_are_reported_and_not_played_again(tmp_path):
         store.start({"seed": 1}, 40)
         store.add_stuck("00000000-0000-0000-0000-000000000001")
         assert store.has_played("00000000-0000-0000-0000-000000000001")
-        assert "0 of 40 trials are there, and 1 got stuck" in store.state().gap
+        assert "0 of 40 trials are stored, and 1 got stuck" in store.state().gap
         store.finish()
         assert store.state().gap == ""
 

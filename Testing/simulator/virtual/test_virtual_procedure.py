@@ -70,7 +70,7 @@ def test_a_cohort_whose_protocol_names_a_procedure_is_reported_with_the_split(
 ):
     asked = replace(protocol, modes=("desktop",), procedures={"task-1": "dbs"})
     settings = PlaySettings()
-    with pytest.raises(InputError, match="hold the touches alone"):
+    with pytest.raises(InputError, match="contain only the touches"):
         simulate_cohort(asked, population, 1, 7, tmp_path / "x", settings, with_journals=True)
     run = simulate_cohort(asked, population, 1, 7, tmp_path / "study", settings, workers=1)
     assert (run.played, run.stuck) == (1, 0)

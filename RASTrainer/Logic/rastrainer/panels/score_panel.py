@@ -101,7 +101,7 @@ class ScorePanel:
                 if written is not None:
                     text = _(
                         "{count} trials are written to {path}. Trainees left out because they did "
-                        "not agree to research: {leftOut}."
+                        "not consent to research: {leftOut}."
                     )
                     self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
 

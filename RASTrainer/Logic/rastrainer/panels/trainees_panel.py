@@ -117,7 +117,7 @@ class TraineesPanel:
             ui.newConsentCheckBox.checked = False
 
     def setConsent(self, consent: bool) -> None:
-        """Note whether the chosen trainee agrees to research."""
+        """Note whether the chosen trainee consents to research."""
         with slicer.util.tryWithErrorDisplay(_("The consent was not saved.")):
             try:
                 self._logic.setConsent(consent)

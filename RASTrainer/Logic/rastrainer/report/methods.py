@@ -51,7 +51,7 @@ def limits(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     sentences += _missing(data) + _paused(data)
     if data.without_consent:
         sentences.append(
-            f"Left out: {counted(data.without_consent, 'trainee')} who did not agree to research."
+            f"Left out: {counted(data.without_consent, 'trainee')} who did not consent to research."
         )
     if data.outside_protocol:
         sentences.append(

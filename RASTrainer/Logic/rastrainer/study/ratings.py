@@ -104,7 +104,7 @@ FORMS = {form.name: form for form in (GEARS, OSATS)}
 def find_form(name: str) -> RatingForm:
     """Return a form; raise `InputError` if unknown."""
     if name not in FORMS:
-        raise InputError(f"There is no form {name[:40]!r}; known are {', '.join(FORMS)}.")
+        raise InputError(f"There is no form {name[:40]!r}; there are {', '.join(FORMS)}.")
     return FORMS[name]
 
 

@@ -150,12 +150,12 @@ def read_study_data(place: StudyPlace, allow_incomplete: bool = False) -> StudyD
         data = _from_database(place)
     if data.gap and not allow_incomplete:
         raise IncompleteStudyError(
-            f"{data.gap} Simulate it again into the same folder with the same options: only what "
-            "is missing is played."
+            f"{data.gap} Simulate it again into the same folder with the same options: only the "
+            "missing trials are played."
         )
     if not data.trials:
         raise InputError(
-            f"The study {place} holds no trials of trainees who agreed to research "
+            f"The study {place} contains no trials of trainees who consented to research "
             f"({data.without_consent} did not)."
         )
     return data

@@ -80,7 +80,7 @@ def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
     agreed = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
     left_out = len(everyone) - len(agreed)
     if not agreed:
-        raise InputError(f"No trainee of this study agreed to research ({left_out} did not).")
+        raise InputError(f"No trainee of this study consented to research ({left_out} did not).")
     return write_history(study, agreed, path), left_out
 
 

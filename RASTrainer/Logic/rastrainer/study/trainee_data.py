@@ -107,7 +107,7 @@ class Erasure:
             )
         if self.unreadable:
             paths = ", ".join(str(path) for path in self.unreadable)
-            sentences.append(f"Whose journals these are cannot be read, they are left: {paths}.")
+            sentences.append(f"These journals do not say whose they are, and are left: {paths}.")
         return tuple(sentences)
 
 

@@ -119,7 +119,7 @@ class TreCalibration:
             found.append("No trial has both an expected and a true target error.")
         else:
             found.append(
-                f"{inside.count} of {count} true errors ({share_text(inside)}) lie in the 95 % "
+                f"{inside.count} of {count} true errors ({share_text(inside)}) lie within the 95 % "
                 f"interval that was given before (larger: {self.above}, smaller: "
                 f"{count - inside.count - self.above}). Root mean square: true "
                 f"{fixed(self.true_rms_mm, 2)} mm, expected {fixed(self.expected_rms_mm, 2)} mm."

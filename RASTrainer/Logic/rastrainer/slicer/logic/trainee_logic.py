@@ -131,7 +131,7 @@ class TraineeLogic:
         return trainee
 
     def setConsent(self, consent: bool) -> None:
-        """Note whether the chosen trainee agrees to research."""
+        """Note whether the chosen trainee consents to research."""
         self.study.set_consent(self.chosen, consent)
         self.changed.emit()
 
@@ -180,7 +180,7 @@ class TraineeLogic:
         return write_history(self.study, [self.chosen], path)
 
     def exportHistories(self, path: Path, progress: Progress = no_progress) -> tuple[int, int]:
-        """Write the trials of all who agreed to research as a CSV file.
+        """Write the trials of all who consented to research as a CSV file.
 
         Args:
             path: of the file.

@@ -88,8 +88,8 @@ class CurriculumStore:
         without = [each.assignment.name for each in untried.standings if each.mark is None]
         if without:
             raise InputError(
-                f"The assignment {without[0]} could never be reached: the pass mark of this study "
-                "holds for another score. Give the assignment a mark of its own."
+                f"The assignment {without[0]} could never be reached: this study's pass mark "
+                "applies to another version of the score. Give the assignment its own mark."
             )
 
     def choices(self) -> tuple[CurriculumChoice, ...]:

@@ -48,8 +48,8 @@ class CohortState:
             return ""
         stuck = f", and {self.stuck} got stuck" if self.stuck else ""
         return (
-            f"This virtual cohort was not played to its end: {self.stored} of {self.planned} "
-            f"trials are there{stuck}."
+            f"This virtual cohort is incomplete: {self.stored} of {self.planned} trials are "
+            f"stored{stuck}."
         )
 
 
@@ -151,7 +151,7 @@ def _check_new(connection: Connection) -> None:
     for table in ("trainees", "study_protocol"):
         if connection.execute(f"SELECT 1 FROM {table}").fetchone() is not None:
             raise InputError(
-                "The folder holds a study that is no virtual cohort, or one of an older "
+                "The folder contains a study that is no virtual cohort, or one of an older "
                 "RASTrainer; choose an empty folder."
             )
 
@@ -159,7 +159,7 @@ def _check_new(connection: Connection) -> None:
 def _refuse_other_plan(stored: Mapping[str, Any], plan: Mapping[str, Any]) -> None:
     names = [name for name in {**stored, **plan} if stored.get(name) != plan.get(name)]
     raise InputError(
-        f"The folder holds a virtual cohort that was started with other options (different: "
+        f"The folder contains a virtual cohort that was started with other options (different: "
         f"{', '.join(names)}). Resume it with the options that it was started with, or choose an "
         "empty folder."
     )

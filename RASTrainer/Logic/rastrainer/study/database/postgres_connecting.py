@@ -60,16 +60,16 @@ _OURS = ("23", "42")
 _MAX_WORDS = 200
 
 _BY_STATE = {
-    "22": "The study holds a value that RASTrainer did not write, or was to store one.",
+    "22": "The study contains a value that RASTrainer did not write, or was to store one.",
     "25006": "The study {0} is read-only.",
     "28": "The server of {0} refuses this user; check name, ~/.pgpass and pg_hba.conf.",
-    "3D000": "The server of {0} has no such database; its administrator creates it.",
+    "3D000": "The server of {0} has no such database; ask its administrator to create it.",
     "42501": "The user may not do this in {0}; make it the owner of the database.",
     "42P01": "The study {0} is damaged; restore it from a backup.",
     "42703": "The study {0} is damaged; restore it from a backup.",
     "53100": "The study {0} cannot be written: the disk of its server is full.",
     "XX": "The study {0} is damaged; restore it from a backup.",
-    "58": "The study {0} cannot be read or written: the disk of its server fails.",
+    "58": "The study {0} cannot be read or written: the disk of its server has errors.",
 }
 _BY_WORDS = {
     "password authentication failed": _BY_STATE["28"],
@@ -82,18 +82,19 @@ _BY_WORDS = {
         "~/.postgresql/root.crt, or name its file with sslrootcert."
     ),
     "certificate verify failed": (
-        "The certificate of {0} is not the one of its issuer: somebody else may be answering."
+        "The certificate of {0} is not from the expected issuer: somebody else may be answering."
     ),
     "does not match host name": (
-        "The certificate of {0} is another computer's: somebody else may be answering."
+        "The certificate of {0} belongs to another computer: somebody else may be answering."
     ),
     "does not support ssl": (
-        "The server of {0} does not offer TLS, which a study on another computer needs; its "
-        "administrator switches ssl on."
+        "The server of {0} does not offer TLS, which a study on another computer needs; ask "
+        "its administrator to switch ssl on."
     ),
     '" does not exist': "The server of {0} has no such database or user.",
     "permissions should be": (
-        "A file of keys or passwords for {0} can be read by others; make it yours with chmod 600."
+        "A file of keys or passwords for {0} can be read by others; restrict it to yourself with "
+        "chmod 600."
     ),
 }
 
@@ -134,7 +135,7 @@ def refuse_infinite_numbers(connection: Any) -> None:
 def _finite(_loader: Any, data: Any) -> float:
     value = float(bytes(data))
     if not math.isfinite(value):
-        raise InputError("The study holds a value that RASTrainer did not write.")
+        raise InputError("The study contains a value that RASTrainer did not write.")
     return value
 
 
@@ -213,7 +214,7 @@ def postgres_error(error: Any, address: PostgresAddress) -> InputError | None:
     state, text = error.sqlstate or "", str(error).lower()
     if state in _LOCKED:
         return StudyBusyError(
-            f"Another program has the study {address} locked; try again when it has finished."
+            f"Another program has locked the study {address}; try again when it has finished."
         )
     if state == _LEFT:
         return StudyBusyError(

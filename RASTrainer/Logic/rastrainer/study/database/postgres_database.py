@@ -101,7 +101,8 @@ def stored_version(connection: Any, address: PostgresAddress) -> int:
     """
     if _first(connection, _COMMANDS):
         raise InputError(
-            f"The study {address} holds triggers, views, rules or policies; ours has none."
+            f"The study {address} contains triggers, views, rules or policies, which no study of "
+            "RASTrainer has."
         )
     is_study = "SELECT count(*) FROM pg_tables WHERE tablename = 'rastrainer_study'"
     if not _first(connection, is_study):
@@ -305,8 +306,8 @@ class PostgresDatabase(StudyDatabase):
             raise InputError(f"The database {self._address} holds no study.")
         if not self._may_change:
             raise InputError(
-                f"The study {self._address} is of an earlier RASTrainer and is only read here; "
-                "open it once in Slicer, which migrates it."
+                f"The study {self._address} was made by an earlier RASTrainer and is opened "
+                "read-only here; open it once in Slicer, which migrates it."
             )
         with self._transaction(self._begin_waiting()) as statements:
             migrate(statements, self._address)

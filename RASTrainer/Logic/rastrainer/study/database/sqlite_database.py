@@ -100,7 +100,7 @@ class SqliteDatabase(StudyDatabase):
 
     def _check_place(self) -> None:
         if "\0" in str(self.path):
-            raise InputError("The name of a study database must not hold a null character.")
+            raise InputError("The name of a study database must not contain a null character.")
         if self.path.is_dir():
             raise InputError(f"{self.path} is a folder; a study database is a file.")
         if not self.path.parent.is_dir():
@@ -138,7 +138,10 @@ class SqliteDatabase(StudyDatabase):
         tables = self._connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
         # Triggers and views in a foreign file could run as ours.
         if self._connection.execute(_COMMANDS).fetchone()[0]:
-            raise InputError(f"The study {self.path} holds triggers or views; ours has none.")
+            raise InputError(
+                f"The study {self.path} contains triggers or views, which no study of RASTrainer "
+                "has."
+            )
         if self._number("application_id") != (APPLICATION_ID if tables else 0):
             raise InputError(f"{self.path} is the database of another program.")
         if self._number("user_version") > len(MIGRATIONS):
@@ -170,7 +173,7 @@ class SqliteDatabase(StudyDatabase):
             if "locked" in text:
                 self._lock_wait.note_timeout()
                 raise StudyBusyError(
-                    f"Another program has the study {self.path} locked; try again when it has "
+                    f"Another program has locked the study {self.path}; try again when it has "
                     "finished."
                 ) from error
             raise InputError(self._sentence(text)) from error
@@ -181,7 +184,7 @@ class SqliteDatabase(StudyDatabase):
             "readonly": f"The study {self.path} is read-only; allow writing to it and its folder.",
             "unable to open": f"The study {self.path} cannot be opened; check its permissions.",
             "full": f"The study {self.path} cannot be written: the disk is full.",
-            "disk i/o": f"The study {self.path} cannot be read or written: the disk fails.",
+            "disk i/o": f"The study {self.path} cannot be read or written: the disk has errors.",
         }
         for words, sentence in reasons.items():
             if words in text:

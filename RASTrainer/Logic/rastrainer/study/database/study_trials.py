@@ -332,7 +332,7 @@ def decoded(text: str, read: Callable[[Any], Value]) -> Value:
     try:
         return read(decode_finite_json(text))
     except (TypeError, ValueError, KeyError, AttributeError):
-        raise InputError("The study holds a value that RASTrainer did not write.") from None
+        raise InputError("The study contains a value that RASTrainer did not write.") from None
 
 
 def _check_exists(connection: Connection, trial_id: str) -> None:

@@ -74,8 +74,8 @@ class Progress:
         """
         if [step.name for step in steps[: len(entries)]] != [entry.step for entry in entries]:
             raise InputError(
-                "What was done so far is not what this protocol asks for; use the protocol that "
-                "the study was started with."
+                "The steps done so far do not match this protocol; use the protocol that the "
+                "study was started with."
             )
         return cls(tuple(steps), tuple(entries), enrolled_utc)
 
@@ -136,7 +136,7 @@ class Progress:
             return ""
         last = self.unexplained[-1]
         return (
-            f"This trial was aborted with {last.done}. It is played again only with a reason, "
+            f"This trial was aborted with {last.done}. It can be repeated only with a reason, "
             "which goes into the report."
         )
 
@@ -160,12 +160,14 @@ class Progress:
         """Return the details to store when a step is done; raise `InputError` if incomplete."""
         if step.kind is StepKind.QUESTIONNAIRE:
             if "answers" not in details:
-                raise InputError("A questionnaire is done only with its answers.")
+                raise InputError("A questionnaire is complete only with its answers.")
             questionnaire = find_questionnaire(step.questionnaire)
             return {"answers": list(questionnaire.checked(details["answers"]))}
         if step.kind is StepKind.TRIAL:
             if not isinstance(details.get("trialId"), str):
-                raise InputError("A trial is done only with the trial that was stored.")
+                raise InputError(
+                    "A step with a trial is complete only with the UUID of the stored trial."
+                )
             return {"trialId": details["trialId"]}
         return {"minutes": _checked_minutes(step, details.get("minutes"))}
 
@@ -176,7 +178,7 @@ class Progress:
             InputError: it is not the next step, or there is no reason.
         """
         self.expected(step_name)
-        return {"reason": _checked_reason(reason, "A step is skipped")}
+        return {"reason": _checked_reason(reason, "A step can be skipped")}
 
     def check_repeat(self, reason: str) -> tuple[Step, str]:
         """Return the aborted step and the reason to store when it is repeated.
@@ -186,7 +188,7 @@ class Progress:
         """
         if not self.unexplained:
             raise InputError("The next step was not aborted; it needs no reason to be played.")
-        return self._next(), _checked_reason(reason, "An aborted trial is played again")
+        return self._next(), _checked_reason(reason, "An aborted trial can be repeated")
 
     def _next(self) -> Step:
         if self.next_step is None:
@@ -198,8 +200,8 @@ class Progress:
         step = self._next()
         if step.name != step_name:
             raise InputError(
-                f"The next step is {step.name}, not {step_name[:80]}. Steps are done in their "
-                "order; one that must be left out is skipped with a reason."
+                f"The next step is {step.name}, not {step_name[:80]}. Steps are done in "
+                "order; to leave one out, skip it and give a reason."
             )
         return step
 
@@ -219,8 +221,8 @@ def _checked_minutes(step: Step, minutes: Any) -> float:
         what = "The trial run" if step.kind is StepKind.TRIAL_RUN else "The break"
         took = f"{minutes:.1f}" if is_number(minutes) else "none"
         raise InputError(
-            f"{what} takes {step.minutes:g} minutes, of which {took} are over; to continue "
-            "earlier, skip it with a reason."
+            f"{what} takes {step.minutes:g} minutes, of which {took} have passed; to continue "
+            "earlier, skip it and give a reason."
         )
     return float(minutes)
 

@@ -254,6 +254,6 @@ def find_questionnaire(name: str) -> Questionnaire:
     """Return a questionnaire; raise `InputError` if unknown."""
     if name not in QUESTIONNAIRES:
         raise InputError(
-            f"There is no questionnaire {name[:40]!r}; known are {', '.join(QUESTIONNAIRES)}."
+            f"There is no questionnaire {name[:40]!r}; there are {', '.join(QUESTIONNAIRES)}."
         )
     return QUESTIONNAIRES[name]

@@ -63,7 +63,7 @@ class StudyProgress:
             elif stored != protocol:
                 raise InputError(
                     f"This study was started with another protocol, {stored.title!r}. Changing it "
-                    "half-way would spoil the study: start a new one for the new protocol."
+                    "midway would invalidate the study: start a new one for the new protocol."
                 )
 
     def protocol(self) -> StudyProtocol | None:
@@ -162,7 +162,7 @@ class StudyProgress:
                 or next_step.name != step
                 or next_step.kind is not StepKind.TRIAL_RUN
             ):
-                raise InputError(f"{step[:80]} is not a trial run that comes next.")
+                raise InputError(f"{step[:80]} is not the next step, or not a trial run.")
             connection.execute(
                 f"INSERT INTO practice VALUES (({TRAINEE_ID}), ?, ?) "
                 "ON CONFLICT (trainee_id, step) "
