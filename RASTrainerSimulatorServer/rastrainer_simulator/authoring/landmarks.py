@@ -150,11 +150,10 @@ def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
     others = _thinned(np.arange(len(mesh.vertices)), OTHER_POINTS)
     places, normals = mesh.vertices[others].astype(float), mesh.vertex_normals[others]
     is_skin = _is_skin(mesh)[others]
-    squares = np.einsum("ij,ij->i", places, places)
     scales, pose = _beginning(reference, mesh)
     for _ in range(ROUNDS):
         moved = transforms.apply(pose, points * scales)
-        nearest = (squares - 2.0 * moved @ places.T).argmin(axis=1)
+        nearest = _nearest(moved, places)
         away = np.linalg.norm(places[nearest] - moved, axis=1)
         counts = is_skin[nearest]
         counts &= away <= np.quantile(away[counts], COUNTED_SHARE)
@@ -169,6 +168,12 @@ def _whole(reference: HeadMesh, mesh: HeadMesh) -> np.ndarray:
         pose = transforms.rigid(turned, shift) @ pose
         scales = np.clip(scales + step[6:], *SCALES)
     return pose @ np.diag([*scales, 1.0])
+
+
+def _nearest(points: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return which of the `places` (m, 3) is nearest to each of the `points` (n, 3), (n,) int."""
+    squares = np.einsum("ij,ij->i", places, places)
+    return (squares - 2.0 * points @ places.T).argmin(axis=1)
 
 
 def _is_skin(mesh: HeadMesh) -> np.ndarray:
@@ -207,9 +212,8 @@ def _local(reference: HeadMesh, place: np.ndarray, onto: np.ndarray, mesh: HeadM
         return start[0]
     points = start
     for _ in range(PATCH_ROUNDS):
-        distances = np.linalg.norm(points[1:, None] - others[None], axis=2)
-        nearest = distances.argmin(axis=1)
-        least = distances[np.arange(len(nearest)), nearest]
+        nearest = _nearest(points[1:], others)
+        least = np.linalg.norm(points[1:] - others[nearest], axis=1)
         counts = least <= np.quantile(least, COUNTED_SHARE)
         step = fit(points[1:][counts], others[nearest[counts]], RIGID)
         points = transforms.apply(step, points)

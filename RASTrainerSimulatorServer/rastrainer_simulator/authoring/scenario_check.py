@@ -26,8 +26,6 @@ from rastrainer_simulator.authoring.touch_order import complexity, shortest_path
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import start_joints
 from rastrainer_simulator.core.settings import SimulationSettings
-from rastrainer_simulator.scene.skin import Skin
-from rastrainer_simulator.scene.skin_marks import place_marks
 from rastrainer_simulator.viewpoint.best_view import WIDEST_DEG
 
 ROBOT_FOOT_MM = 110.0
@@ -183,12 +181,12 @@ def check_tasks(planning: PlanningSetup, tasks: Iterable[Task], first_seed: int 
 
     Reach is checked in the nominal pose of the head and in those of some seeds from `first_seed`.
     """
-    tasks, skin = list(tasks), Skin(planning.mesh)
+    tasks = list(tasks)
     wrong = []
     for task in tasks:
         wrong += _wrong_places(planning, task) or [
             *(_untouchable(planning, task, first_seed) or _unseen(planning, task)),
-            *_unreadable(skin, task),
+            *_unreadable(planning, task),
             *_wrong_measures(task, measured(planning, task)),
         ]
     for easier, harder in pairwise(tasks):
@@ -255,8 +253,8 @@ def _unseen(planning: PlanningSetup, task: Task) -> list[str]:
     ]
 
 
-def _unreadable(skin: Skin, task: Task) -> list[str]:
-    if place_marks(skin, task.fiducials, task.labels).has_room:
+def _unreadable(planning: PlanningSetup, task: Task) -> list[str]:
+    if planning.views.placement(task).has_room:
         return []
     return [
         f"{task.title}: there is no room for all numbers beside the arrows; spread the fiducials, "

@@ -19,8 +19,10 @@ from __future__ import annotations
 import heapq
 import itertools
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from rastrainer.head.mesh import HeadMesh, NearestPoint, hides, nearest_on_mesh, outward_normal
 
@@ -124,17 +126,18 @@ class Transitions:
     steps: np.ndarray
     turns: np.ndarray
 
-    def costs(self, orders: list[list[int]]) -> np.ndarray:
-        """Return the costs (m,) of m orders of as many fiducials each."""
-        rows = np.array(orders)
+    def costs(self, orders: ArrayLike) -> np.ndarray:
+        """Return the costs (m,) of m orders of as many fiducials each, (m, count) int."""
+        rows = np.asarray(orders)
         steps = self.steps[rows[:, :-1], rows[:, 1:]].sum(axis=1)
         return steps + self.turns[rows[:, :-2], rows[:, 1:-1], rows[:, 2:]].sum(axis=1)
 
-    def easiest(self, orders: list[list[int]]) -> tuple[float, list[int]]:
+    def easiest(self, orders: ArrayLike) -> tuple[float, list[int]]:
         """Return the least cost and the first order that has it."""
-        costs = self.costs(orders)
+        rows = np.asarray(orders)
+        costs = self.costs(rows)
         best = int(np.argmin(costs))
-        return float(costs[best]), orders[best]
+        return float(costs[best]), rows[best].tolist()
 
 
 def transitions_between(
@@ -204,14 +207,16 @@ def _improved(transitions: Transitions, order: list[int]) -> list[int]:
     """Reverse and move stretches of the order while that makes it cheaper."""
     best = np.inf
     while True:
-        cost, cheapest = transitions.easiest(_changed(order))
+        cost, cheapest = transitions.easiest(np.array(order)[_changes(len(order))])
         if cost >= best - 1e-9:
             return order
         order, best = cheapest, cost
 
 
-def _changed(order: list[int]) -> list[list[int]]:
-    count = len(order)
+@cache
+def _changes(count: int) -> np.ndarray:
+    """Return every order (m, count) of places with one stretch reversed, or a short one moved."""
+    order = list(range(count))
     changed = [order]
     for start in range(count):
         for end in range(start + 1, count + 1):
@@ -219,7 +224,7 @@ def _changed(order: list[int]) -> list[list[int]]:
             changed.append(order[:start] + stretch[::-1] + order[end:])
             if len(stretch) <= 3:
                 changed += [rest[:at] + stretch + rest[at:] for at in range(len(rest) + 1)]
-    return changed
+    return np.array(changed)
 
 
 class SurfaceGraph:

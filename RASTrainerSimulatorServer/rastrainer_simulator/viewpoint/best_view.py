@@ -24,7 +24,7 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.scene.skin import Skin
-from rastrainer_simulator.scene.skin_marks import place_marks
+from rastrainer_simulator.scene.skin_marks import Placement, place_marks
 from rastrainer_simulator.vectors import (
     Vector,
     add,
@@ -190,7 +190,7 @@ class TouchViews:
         self._collision = head_collision(setup.shape, self._head, setup.scenario.furniture)
         self._kinematics = make_kinematics(setup.robot)
         self._planner = TouchPlanner(setup.robot, self._collision)
-        self._known: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
+        self._known: dict[bytes, tuple[np.ndarray, Placement]] = {}
 
     def of(self, task: Task, head_to_world: np.ndarray) -> Iterator[tuple[str, BestView | None]]:
         """Yield each fiducial's label and best view, None where there is none.
@@ -200,7 +200,8 @@ class TouchViews:
         pose = np.array(head_to_world, dtype=float)
         pose[:3, 3] /= MM_PER_M
         self._collision.set_head_pose(pose)
-        in_head, numbers = self._on_skin(task)
+        in_head, placement = self._on_skin(task)
+        numbers = np.array(placement.places)
         normals = in_head @ pose[:3, :3].T
         places, beside = (
             transforms.apply(pose, points / MM_PER_M) for points in (task.fiducials, numbers)
@@ -216,13 +217,17 @@ class TouchViews:
             touch = ViewedTouch(*map(_vector, (place, normal, number, planned.direction)))
             yield label, best_view(touch, sight, front)
 
-    def _on_skin(self, task: Task) -> tuple[np.ndarray, np.ndarray]:
-        """Return the skin's normals at a task's fiducials, and where their numbers are, (n, 3)."""
+    def placement(self, task: Task) -> Placement:
+        """Return where the marks of a task are on the skin."""
+        return self._on_skin(task)[1]
+
+    def _on_skin(self, task: Task) -> tuple[np.ndarray, Placement]:
+        """Return the skin's normals at a task's fiducials, (n, 3), and where its marks are."""
         key = task.fiducials.tobytes()
         if key not in self._known:
             normals = outward_normals(self._head, task.fiducials)
-            marks = place_marks(Skin(self._head), task.fiducials, task.labels)
-            self._known[key] = normals, np.array(marks.places)
+            placement = place_marks(Skin(self._head), task.fiducials, task.labels)
+            self._known[key] = normals, placement
         return self._known[key]
 
 

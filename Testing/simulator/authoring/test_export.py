@@ -204,31 +204,35 @@ def test_two_people_who_differ_in_the_face_alone_have_the_same_images_without_it
     assert differing < 0.002 * np.count_nonzero(first.values)
 
 
-def test_nothing_of_the_images_is_left_outside_of_the_shield():
+@pytest.fixture(scope="module")
+def written_in():
+    """A ball with a face, its images with something written into the air, and without the face."""
     head = ball_with_a_face()
     images = images_of(head, np.eye(3) * 2.0)
+    images.values[2:6, 10:60, 120] = 90
+    return head, images, without_face_in(images, head)
+
+
+def test_nothing_of_the_images_is_left_outside_of_the_shield(written_in):
+    head, images, left = written_in
     grid = Grid(images.values.shape, images.ijk_to_ras)
     around = np.linalg.norm(grid.places() - nose_tip(head), axis=-1) < RADIUS_MM
-    left = without_face_in(images, head).values > 0
-    assert (images.values > 0)[around & ~grid.inside(without_face(head))].any()
-    assert not left[around & ~grid.inside(without_face(head))].any()
+    outside = around & ~grid.inside(without_face(head))
+    assert (images.values > 0)[outside].any()
+    assert not (left.values > 0)[outside].any()
 
 
-def test_what_is_written_into_the_air_around_the_head_goes_too():
-    head = ball_with_a_face()
-    images = images_of(head, np.eye(3) * 2.0)
-    values = images.values.copy()
-    values[2:6, 10:60, 120] = 90
-    images = HeadVolume(values, images.ijk_to_ras, 100.0, 50.0)
-    grid = Grid(values.shape, images.ijk_to_ras)
+def test_what_is_written_into_the_air_around_the_head_goes_too(written_in):
+    head, images, left = written_in
+    grid = Grid(images.values.shape, images.ijk_to_ras)
     far = grid.distances(grid.inside(head)) > KEPT_MM
-    assert values[far].any()
-    assert not without_face_in(images, head).values[far].any()
+    assert images.values[far].any()
+    assert not left.values[far].any()
 
 
 def test_images_whose_air_is_not_zero_get_air_in_the_place_of_the_face():
     head = ball_with_a_face()
-    images = images_of(head, np.eye(3) * 2.0)
+    images = images_of(head, np.eye(3) * 4.0)
     units = np.where(images.values > 0, 40, -1000).astype(np.int16)
     left = without_face_in(HeadVolume(units, images.ijk_to_ras, 400.0, 40.0), head)
     assert set(np.unique(left.values)) == {-1000, 40}
@@ -245,6 +249,7 @@ def with_procedure(folder):
     return planned
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_by_default_landmarks_are_left_out_with_the_face_and_procedures_with_the_skull(
     folder, tmp_path, capsys
 ):

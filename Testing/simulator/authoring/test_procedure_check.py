@@ -144,6 +144,7 @@ def plan_words(copy, made, path):
     return ["scenario", "plan", str(copy), "-o", str(made), "--procedure", str(path)]
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_procedure_from_a_file_is_added_with_its_meshes(copy, own_procedure, tmp_path):
     assert main(plan_words(copy, tmp_path / "made", own_procedure)) == 0
     made = load_scenario(tmp_path / "made")

@@ -80,7 +80,8 @@ def moved(task, index, point):
     return replace(task, fiducials=fiducials)
 
 
-def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(planning, tasks):
+def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(planning, tasks, monkeypatch):
+    monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.POSES_TRIED", 1)
     run, first = tasks[:2]
     lifted = moved(run, 2, run.fiducials[2] * 1.1)
     assert "Trial run: fiducial 3 is" in check_tasks(planning, [lifted])[0]
@@ -167,6 +168,7 @@ def test_fiducials_placed_by_hand_become_tasks_and_a_skull_that_is_made_meanwhil
     assert np.array_equal(scenario.tasks[0].fiducials, again.fiducials)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_skull_that_cannot_be_made_leaves_nothing_of_the_scenario(tmp_path, placed):
     def fails():
         raise InputError("The CT shows no bone.")

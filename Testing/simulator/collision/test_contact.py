@@ -89,12 +89,13 @@ def approaches(head, vertices, random):
 
 
 @pytest.mark.parametrize("holds", [True, False], ids=["direction held", "direction free"])
-def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds):
+@pytest.mark.parametrize("count", [20, pytest.param(70, marks=pytest.mark.soak)])
+def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds, count):
     random = np.random.default_rng(41)
     high = np.flatnonzero(head.vertices[:, 2] > head.vertices[:, 2].min() + 0.03)
     places = random.permutation([*random.choice(high, 100), *head.hollows(1500)[::15]])
     touched, deepest = 0, 0.0
-    for q, direction in islice(approaches(head, places, random), 70):
+    for q, direction in islice(approaches(head, places, random), count):
         driver = Driver(head.collision, q, holds)
         speed, aside = random.uniform(0.25, 0.5), random.normal(size=3)
         for tick in range(40):
@@ -102,7 +103,7 @@ def test_ramming_at_full_speed_from_all_sides_never_penetrates(head, holds):
             driver.push(push / np.linalg.norm(push) * speed * TICK)
             deepest = min(deepest, driver.clearance.shaft_m, head.distance(driver.tip))
             touched += tick == 24 and driver.clearance.tool_m < TOUCHING
-    assert touched >= 65
+    assert touched >= 0.92 * count
     assert deepest >= -DEEPEST
 
 

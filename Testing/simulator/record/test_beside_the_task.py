@@ -1,5 +1,7 @@
 """What is done beside the task never helps: waiting and detours cost points."""
 
+import functools
+
 import pytest
 
 from rastrainer.protocol import CommandName
@@ -25,6 +27,8 @@ ROUND_TRIP = [
     OperatorInput(translation=(0.0, 0.0, way)) for way in (1.0, -1.0) * 8 for _ in range(150)
 ]
 
+BESIDE = {"nothing": (), "idle": IDLE, "pause": (PAUSE, *IDLE, RESUME), "detours": ROUND_TRIP}
+
 
 class Meanwhile:
     """Lets inputs come in between after the third touch, and takes the trial's record."""
@@ -49,28 +53,29 @@ class Meanwhile:
 
 @pytest.fixture(scope="module")
 def played(setup):
-    """The analyses of one trial: in one go, with idleness, with a pause, and with detours."""
+    """Give the analysis of a trial by what is done beside it, each played once."""
     simulation = Simulation(setup, 5)
 
-    def play(*inputs):
-        meanwhile = Meanwhile(*inputs)
+    @functools.cache
+    def play(beside):
+        meanwhile = Meanwhile(*BESIDE[beside])
         trial = play_virtual_trial(simulation, "task-1", 3, BRISK, DT, meanwhile)
         truth = RevealedTruth(tuple(trial.head_to_world.ravel().tolist()), 0.0)
         return analyze_trial(meanwhile.record, setup.scenario, truth=truth)
 
-    return play(), play(*IDLE), play(PAUSE, *IDLE, RESUME), play(*ROUND_TRIP)
+    return play
 
 
 @pytest.mark.soak
 def test_waiting_in_a_trial_costs_points(played):
-    at_once, idle, *_ = played
+    at_once, idle = played("nothing"), played("idle")
     assert idle.record.completion_time_s > at_once.record.completion_time_s + 0.9 * WAIT_S
     assert idle.score.score < at_once.score.score
     assert idle.record.motion["idle_time_s"] > WAIT_S - 1.0
 
 
 def test_a_pause_changes_no_score_and_is_reported_beside_it_with_its_length(played):
-    at_once, _, paused, _ = played
+    at_once, paused = played("nothing"), played("pause")
     assert paused.record.completion_time_s == pytest.approx(
         at_once.record.completion_time_s, abs=2.0
     )
@@ -84,7 +89,7 @@ def test_a_pause_changes_no_score_and_is_reported_beside_it_with_its_length(play
 
 
 def test_detours_cost_points_and_are_advised_against(played):
-    at_once, *_, around = played
+    at_once, around = played("nothing"), played("detours")
     direct, detoured = (a.record.motion["path_efficiency"] for a in (at_once, around))
     assert detoured < 0.7 * direct < 0.7
     assert around.score.score < at_once.score.score

@@ -103,23 +103,19 @@ def test_the_picture_is_neither_empty_nor_overexposed(far):
     assert _share(far, 0, 2) < 0.02
 
 
-@pytest.fixture(scope="module")
-def tip(picture):
-    """Return a close picture of the tool's tip for a proximity."""
+def test_the_tool_tip_is_blue_when_free_and_light_blue_when_near_or_touching(picture):
     robot = load_robot()
     target = make_kinematics(robot).tip(np.array(robot.home))[:3, 3] * MM_PER_M
-    return lambda proximity: picture(camera=close_up(target), proximity=proximity)
-
-
-def test_the_tool_tip_is_blue_when_free_and_light_blue_when_near_or_touching(tip):
     blue, light = ((0, 40, 190), (60, 110, 255)), ((55, 140, 230), (110, 190, 255))
-    free = tip(Proximity.FREE)
+    free, near, touching = (
+        picture(camera=close_up(target), proximity=proximity, shadows=Shadows.NONE)
+        for proximity in (Proximity.FREE, Proximity.PROXIMITY, Proximity.CONTACT)
+    )
     assert _share(free, *blue) > 1e-4
     assert _share(free, *light) == 0
-    for proximity in (Proximity.PROXIMITY, Proximity.CONTACT):
-        near = tip(proximity)
-        assert _share(near, *light) > 1e-4
-        assert _share(near, *blue) == 0
+    assert _share(near, *light) > 1e-4
+    assert _share(near, *blue) == 0
+    assert np.array_equal(touching, near)
 
 
 def test_fiducials_are_colored_by_their_state_and_numbered(picture, head_to_world):
@@ -130,8 +126,9 @@ def test_fiducials_are_colored_by_their_state_and_numbered(picture, head_to_worl
     assert _share(pixels, (0, 0, 20), (60, 60, 80)) > 1e-4, "numbers: nearly black"
 
 
-def test_an_inset_shows_a_second_view_in_a_white_frame(picture, far, head_to_world):
-    both = picture(camera=FAR, shadows=Shadows.FULL, inset=close_up(head_to_world[:3, 3]))
+def test_an_inset_shows_a_second_view_in_a_white_frame(picture, head_to_world):
+    far = picture(camera=FAR, shadows=Shadows.NONE)
+    both = picture(camera=FAR, shadows=Shadows.NONE, inset=close_up(head_to_world[:3, 3]))
     changed = np.argwhere(np.any(np.abs(both - far) > 60, axis=2))
     (top, left), (bottom, right) = changed.min(axis=0), changed.max(axis=0)
     assert left > SIZE[0] / 2

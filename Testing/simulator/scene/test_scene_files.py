@@ -52,9 +52,15 @@ def test_what_was_built_once_is_there_the_next_time(built, setup):
     assert files.find("0" * 64) is None
 
 
-def test_a_broken_file_in_the_cache_is_built_again(built, setup):
+def test_a_broken_file_in_the_cache_is_built_again(built, setup, monkeypatch):
     folder, file = built
-    file.path.write_bytes(read_scene(file)[:-1])
+    content = read_scene(file)
+
+    async def build(_files, _setup, _task, path):
+        path.write_bytes(content)
+
+    monkeypatch.setattr(SceneFiles, "_build", build)
+    file.path.write_bytes(content[:-1])
     assert read_scene(file) is None
     assert asyncio.run(SceneFiles(folder).scene(setup, "")) == file
 

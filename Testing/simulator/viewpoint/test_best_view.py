@@ -17,9 +17,15 @@ SEEDS = (None, *(pytest.param(seed, marks=pytest.mark.soak) for seed in (11, 12)
 TASKS = ("trial-run", *(f"task-{number}" for number in range(1, 6)))
 
 
-@pytest.fixture(
-    scope="module", params=["colin27", "egg", pytest.param("small", marks=pytest.mark.soak)]
+HEADS = (
+    *(("colin27", task) for task in TASKS),
+    *(("egg", task) for task in TASKS[::5]),
+    *(pytest.param("egg", task, marks=pytest.mark.soak) for task in TASKS[1:5]),
+    *(pytest.param("small", task, marks=pytest.mark.soak) for task in TASKS),
 )
+
+
+@pytest.fixture(scope="module")
 def made(request, tmp_path_factory):
     return setup_of(request.param, tmp_path_factory.mktemp("heads"))
 
@@ -43,7 +49,7 @@ def seen_in_ras(head_to_world, point):
 
 
 @pytest.mark.parametrize("seed", SEEDS, ids=str)
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize(("made", "task"), HEADS, indirect=["made"])
 def test_every_touch_is_seen_within_60_degrees_of_the_normal(made, mesh, views, task, seed):
     scenario = made.scenario
     head_to_world = pose_of(scenario, seed)
@@ -85,6 +91,7 @@ def test_the_check_of_a_scenario_names_what_no_view_shows(setup, monkeypatch):
     scenario = setup.scenario
     planning = PlanningSetup(scenario, read_head_mesh(scenario.head_mesh), setup)
     task = scenario.task("task-1")
+    monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.POSES_TRIED", 0)
     assert check_tasks(planning, [task]) == []
     monkeypatch.setattr("rastrainer_simulator.viewpoint.best_view.WIDEST_DEG", 0.0)
     (sentence,) = check_tasks(planning, [task])
