@@ -10,9 +10,9 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
+from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CountedTrial, standing_in
-from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
@@ -55,7 +55,7 @@ PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True, version=
 
 def told(*trials):
     standing = standing_in(TWO, trials, lambda _version: 70.0)
-    return ToldCurriculum.of("P08", standing).arguments()
+    return CurriculumMessage.of("P08", standing).arguments()
 
 
 def states(screen):

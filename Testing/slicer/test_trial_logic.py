@@ -18,7 +18,7 @@ from rastrainer.slicer.logic import trial_delivery, trial_logic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.registration_nodes import isApplied
 from rastrainer.slicer.scene.scene import Role, findNode
-from rastrainer.study.database.database import LockWait, StudyAwayError
+from rastrainer.study.database.database import LockWait, StudyUnreachableError
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import review
 from rastrainer.trial.analysis import analyze_trial
@@ -233,7 +233,7 @@ def test_a_trial_whose_study_was_away_is_scored_when_it_is_back(
     def away_once():
         if lab.sent("SubmitRegistration") and not outages:
             outages.append("server")
-            raise StudyAwayError("The study cannot be reached now.")
+            raise StudyUnreachableError("The study cannot be reached now.")
         return opened()
 
     lab.open_study = away_once

@@ -15,7 +15,7 @@ from aiohttp import web
 from playwright.sync_api import sync_playwright
 
 from rastrainer.protocol import Phase
-from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
+from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer_simulator.board.class_table import ClassReader, ClassStanding
 from rastrainer_simulator.flow.session.curricula import AssignmentWords
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
@@ -37,7 +37,7 @@ SAY = Texts(ENGLISH).say
 def assignments(found: ClassStanding, trainee: str) -> str:
     """Return where a trainee stands, as the seat says it."""
     words = AssignmentWords(Texts(ENGLISH), lambda task: SAY(f"task.{task}"), str.capitalize)
-    return words.in_brief(ToldCurriculum.of(trainee, found.standings[trainee]))
+    return words.in_brief(CurriculumMessage.of(trainee, found.standings[trainee]))
 
 
 def seat(

@@ -13,13 +13,13 @@ from aiohttp import hdrs, web
 
 from rastrainer.errors import InputError
 from rastrainer.study.curriculum.curriculum import Curriculum
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import (
     AssignmentStanding,
     CurriculumStanding,
     by_curriculum,
 )
-from rastrainer.study.curriculum.told_curriculum import ToldAssignment
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
@@ -224,7 +224,7 @@ def _table(
 
 
 def _column(standing: AssignmentStanding, words: AssignmentWords) -> dict[str, Any]:
-    told = ToldAssignment.of(standing)
+    told = AssignmentMessage.of(standing)
     return {"name": told.name, "label": words.label(told), "goal": words.goal(told)}
 
 
@@ -233,7 +233,7 @@ def _row(name: str, standing: CurriculumStanding, words: AssignmentWords) -> dic
     return {
         "trainee": name,
         "reached": standing.reached,
-        "next": "" if best is None else words.label(ToldAssignment.of(best)),
+        "next": "" if best is None else words.label(AssignmentMessage.of(best)),
         "cells": [_cell(each, words) for each in standing.standings],
     }
 
@@ -241,7 +241,7 @@ def _row(name: str, standing: CurriculumStanding, words: AssignmentWords) -> dic
 def _cell(standing: AssignmentStanding, words: AssignmentWords) -> dict[str, Any]:
     return {
         "state": standing.state.value,
-        "progress": words.progress(ToldAssignment.of(standing)),
+        "progress": words.progress(AssignmentMessage.of(standing)),
         "done": standing.done,
         "needed": standing.needed,
         "reachedUtc": standing.reached_utc,

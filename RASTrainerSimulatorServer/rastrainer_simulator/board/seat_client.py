@@ -32,7 +32,7 @@ OTHER_CERTIFICATE = "The certificate has changed: compare its fingerprint again.
 NOT_OURS = "The server at {address} is not a simulator of this version."
 
 
-class SeatAwayError(InputError):
+class SeatUnreachableError(InputError):
     """The simulator does not answer."""
 
 
@@ -80,14 +80,14 @@ class SeatClient:
         """Return the fingerprint of the certificate at an https address, to be compared.
 
         Raises:
-            SeatAwayError: nobody answers by TLS.
+            SeatUnreachableError: nobody answers by TLS.
         """
         parts = urlsplit(address)
         place = (parts.hostname or "", parts.port or 0)
         try:
             text = await asyncio.to_thread(ssl.get_server_certificate, place, timeout=TIMEOUT_S)
         except (OSError, ValueError):
-            raise SeatAwayError(AWAY.format(address=address)) from None
+            raise SeatUnreachableError(AWAY.format(address=address)) from None
         digest = hashlib.sha256(ssl.PEM_cert_to_DER_cert(text)).digest()
         return digest.hex(":").upper()
 
@@ -96,7 +96,7 @@ class SeatClient:
 
         Raises:
             RefusedError: the code is wrong.
-            SeatAwayError, OtherCertificateError, UnpairedError: as their names say.
+            SeatUnreachableError, OtherCertificateError, UnpairedError: as their names say.
             InputError: something else answers.
         """
         entry = SeatEntry("", "", address, "", fingerprint)
@@ -115,7 +115,7 @@ class SeatClient:
 
         Raises:
             RefusedError: the PIN is wrong, or it cannot be done now.
-            SeatAwayError, OtherCertificateError, UnpairedError: as their names say.
+            SeatUnreachableError, OtherCertificateError, UnpairedError: as their names say.
         """
         body = {"pin": pin, "order": order.value, "text": text}
         await self._request(entry, hdrs.METH_POST, "/instructor", body)
@@ -125,7 +125,7 @@ class SeatClient:
 
         Raises:
             RefusedError: there is none.
-            SeatAwayError, OtherCertificateError, UnpairedError: as their names say.
+            SeatUnreachableError, OtherCertificateError, UnpairedError: as their names say.
         """
         headers: dict[str, str] = {}
         content = await self._request(entry, hdrs.METH_GET, path, None, headers)
@@ -135,7 +135,7 @@ class SeatClient:
         """Open the stream of a simulator; the hello is to be sent.
 
         Raises:
-            SeatAwayError, OtherCertificateError, UnpairedError: as their names say.
+            SeatUnreachableError, OtherCertificateError, UnpairedError: as their names say.
         """
         try:
             return await self._session.ws_connect(
@@ -151,7 +151,7 @@ class SeatClient:
         except aiohttp.ServerFingerprintMismatch:
             raise OtherCertificateError(OTHER_CERTIFICATE) from None
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError):
-            raise SeatAwayError(AWAY.format(address=entry.address)) from None
+            raise SeatUnreachableError(AWAY.format(address=entry.address)) from None
 
     async def _request(
         self,
@@ -177,7 +177,7 @@ class SeatClient:
         except aiohttp.ServerFingerprintMismatch:
             raise OtherCertificateError(OTHER_CERTIFICATE) from None
         except (aiohttp.ClientError, OSError, asyncio.TimeoutError):
-            raise SeatAwayError(AWAY.format(address=entry.address)) from None
+            raise SeatUnreachableError(AWAY.format(address=entry.address)) from None
         if response.status == 200:
             if headers is not None:
                 headers.update(response.headers)
@@ -215,4 +215,4 @@ def _certificate(entry: SeatEntry) -> aiohttp.Fingerprint | bool:
 def _problem(entry: SeatEntry, status: int) -> InputError:
     if status == 401:
         return UnpairedError("The simulator does not know this board any more: pair again.")
-    return SeatAwayError(AWAY.format(address=entry.address))
+    return SeatUnreachableError(AWAY.format(address=entry.address))

@@ -63,7 +63,7 @@ def copy_study(source: Study, target: Study) -> dict[str, int]:
 
     Raises:
         InputError: the target holds something, or has other values afterwards; it stays empty.
-        StudyAwayError: a server cannot be reached.
+        StudyUnreachableError: a server cannot be reached.
     """
     counts = {}
     with source.database.reading() as given, target.database.writing() as taken:

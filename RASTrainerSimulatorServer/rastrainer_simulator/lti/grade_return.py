@@ -16,7 +16,7 @@ from rastrainer.json_checks import text
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer_simulator.lti.course_study import CourseStudy, DueGrade
 from rastrainer_simulator.lti.launch_message import SCORE_SCOPE
-from rastrainer_simulator.lti.platform_client import PlatformAwayError, PlatformClient
+from rastrainer_simulator.lti.platform_client import PlatformClient, PlatformUnreachableError
 from rastrainer_simulator.lti.settings import LearningPlatform, LtiSettings, ToolKey
 from rastrainer_simulator.ops.study_thread import StudyThread
 
@@ -88,7 +88,7 @@ class GradeReturn:
                 confirmed += await self._send(platform, grade)
                 self._retry.pop(platform, None)
                 self._failures.pop(_key(grade), None)
-            except PlatformAwayError as error:
+            except PlatformUnreachableError as error:
                 self._failures[_key(grade)] += 1
                 self._wait(platform, error)
         return confirmed
@@ -98,7 +98,7 @@ class GradeReturn:
         is_waited_for = self._retry.get(platform, (0.0, 0.0))[0] > self._clock()
         return is_allowed and not is_waited_for and self._refused.get(_key(grade)) != grade.score
 
-    def _wait(self, platform: LearningPlatform, error: PlatformAwayError) -> None:
+    def _wait(self, platform: LearningPlatform, error: PlatformUnreachableError) -> None:
         pause = min(2.0 * self._retry.get(platform, (0.0, FIRST_RETRY_S / 2.0))[1], LAST_RETRY_S)
         self._retry[platform] = (self._clock() + pause, pause)
         self._tokens.pop(platform, None)
@@ -153,7 +153,7 @@ def _access(answer: Any) -> tuple[str, float]:
         token = text(8192)(values.get("access_token"))
         return token, min(float(lasts_s), 86_400.0)
     except (TypeError, ValueError, OverflowError):
-        raise PlatformAwayError("it provides no access token") from None
+        raise PlatformUnreachableError("it provides no access token") from None
 
 
 def scores_url(line_item: str) -> str:

@@ -187,7 +187,7 @@ async def read_launch(
 
     Raises:
         RefusedLaunchError: it is forged, for others, too old, or not what was asked for.
-        PlatformAwayError: the platform's keys cannot be had.
+        PlatformUnreachableError: the platform's keys cannot be had.
     """
     key = await key_sets.key(platform.key_set_url, _key_id(token))
     if key is None:

@@ -29,7 +29,11 @@ from rastrainer_simulator.lti.launch_message import (
     read_launch,
 )
 from rastrainer_simulator.lti.launch_page import PAGE_HEADERS, LaunchPage
-from rastrainer_simulator.lti.platform_client import KeySets, PlatformAwayError, PlatformClient
+from rastrainer_simulator.lti.platform_client import (
+    KeySets,
+    PlatformClient,
+    PlatformUnreachableError,
+)
 from rastrainer_simulator.lti.settings import KEYS, LAUNCH, LOGIN, LtiSettings, ToolKey
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.connections import Connections
@@ -167,7 +171,7 @@ class LtiServer:
                 self._settings.launch_url,
                 self._key_sets,
             )
-        except PlatformAwayError as error:
+        except PlatformUnreachableError as error:
             raise InputError(f"{login.platform.name} cannot be reached: {error}.") from None
         page = LaunchPage.in_language_of(
             f"{launch.language},{request.headers.get(hdrs.ACCEPT_LANGUAGE, '')}"

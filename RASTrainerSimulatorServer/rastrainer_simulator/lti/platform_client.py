@@ -30,7 +30,7 @@ REST_S = 30.0
 SHORTEST_BITS, LONGEST_BITS = 2048, 8192
 
 
-class PlatformAwayError(InputError):
+class PlatformUnreachableError(InputError):
     """The platform does not answer as it should: the same may be asked later."""
 
 
@@ -56,26 +56,26 @@ class PlatformClient:
         """Return the JSON at an address, or that answers a form.
 
         Raises:
-            PlatformAwayError: there is none.
+            PlatformUnreachableError: there is none.
         """
         status, content = await self._ask("GET" if form is None else "POST", url, data=form)
         if status >= 300:
-            raise PlatformAwayError(f"it answers with status {status}")
+            raise PlatformUnreachableError(f"it answers with status {status}")
         try:
             return decode_finite_json(content.decode())
         except ValueError:
-            raise PlatformAwayError("its answer is not JSON") from None
+            raise PlatformUnreachableError("its answer is not JSON") from None
 
     async def send(self, url: str, body: bytes, kind: str, token: str) -> int:
         """Send something, and return the status of the answer.
 
         Raises:
-            PlatformAwayError: there is no answer, or one that asks for patience.
+            PlatformUnreachableError: there is no answer, or one that asks for patience.
         """
         headers = {"Content-Type": kind, "Authorization": f"Bearer {token}"}
         status, _content = await self._ask("POST", url, data=body, headers=headers)
         if status in BUSY or status >= 500:
-            raise PlatformAwayError(f"it answers with status {status}")
+            raise PlatformUnreachableError(f"it answers with status {status}")
         return status
 
     async def _ask(self, method: str, url: str, **options: Any) -> tuple[int, bytes]:
@@ -87,11 +87,11 @@ class PlatformClient:
                 async for piece in answer.content.iter_chunked(2**14):
                     content += piece
                     if len(content) > MAX_ANSWER_BYTES:
-                        raise PlatformAwayError("its answer is too large")
+                        raise PlatformUnreachableError("its answer is too large")
                 return answer.status, bytes(content)
         except (aiohttp.ClientError, OSError, ValueError, asyncio.TimeoutError) as error:
             reason = str(error) or type(error).__name__
-            raise PlatformAwayError(f"it does not answer ({reason[:200]})") from None
+            raise PlatformUnreachableError(f"it does not answer ({reason[:200]})") from None
 
 
 class KeySets:
@@ -109,7 +109,7 @@ class KeySets:
         """Return a key of the set at an address of the settings; None if it is not there.
 
         Raises:
-            PlatformAwayError: the keys cannot be had.
+            PlatformUnreachableError: the keys cannot be had.
         """
         async with self._locks.setdefault(url, asyncio.Lock()):
             now = self._clock()
@@ -122,7 +122,7 @@ class KeySets:
                 known = _usable(await self._client.json(url))
                 self._keys[url], self._fetched[url] = known, now
             if known is None:
-                raise PlatformAwayError("its keys could not be fetched a moment ago")
+                raise PlatformUnreachableError("its keys could not be fetched a moment ago")
             return known.get(key_id)
 
 
@@ -130,7 +130,7 @@ def _usable(answer: Any) -> dict[str, RSAPublicKey]:
     """Return the keys for our algorithm by their IDs; what is no such key is left out."""
     listed = answer.get("keys") if isinstance(answer, dict) else None
     if not isinstance(listed, list) or len(listed) > MOST_KEYS:
-        raise PlatformAwayError(f"its answer is not a list of at most {MOST_KEYS} keys")
+        raise PlatformUnreachableError(f"its answer is not a list of at most {MOST_KEYS} keys")
     found: dict[str, RSAPublicKey] = {}
     for each in listed:
         if not isinstance(each, dict) or not isinstance(each.get("kid"), str):

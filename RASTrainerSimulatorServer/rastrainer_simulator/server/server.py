@@ -17,7 +17,7 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, CommandName
 from rastrainer.scenario.scenario import task_by_method
-from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
+from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.settings import SimulationSettings
@@ -335,7 +335,7 @@ class SimulatorServer:
             self._study.take(StudyStep.from_arguments(arguments))
             return _answered(Answer(0, True))
         if name == CommandName.CURRICULUM:
-            self._curricula.take(ToldCurriculum.from_arguments(arguments))
+            self._curricula.take(CurriculumMessage.from_arguments(arguments))
             return _answered(Answer(0, True))
         if name == CommandName.START_TUTORIAL:
             return _answered(self._start_tutorial(**arguments))

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.report.report import report_html
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
+from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.study_data import StudyData, TrialRow, read_study_data
@@ -84,7 +84,7 @@ def test_an_aborted_trial_counts_as_not_passed_in_the_lc_cusum():
     def aborted(number, hour, **changes):
         started = f"2024-05-17T{hour:02d}:30:00Z"
         record = make_aborted(number, trainee="A", mode="hmd", startedUtc=started, **changes)
-        return StoredAborted(AbortedTrial.from_json(record))
+        return StoredAbortedTrial(AbortedTrial.from_json(record))
 
     rows = tuple(row(number) for number in range(1, 13))
     whole = StudyData("x", rows, has_order=True)
@@ -113,7 +113,7 @@ def test_aborted_trials_and_their_touches_are_exported(path):
 
 def test_a_reason_never_becomes_a_formula_in_a_spreadsheet():
     record = AbortedTrial.from_json(make_aborted(reason="=1+1"))
-    text = aborted_csv([StoredAborted(record, "s", "@SUM(A1:A9)")])
+    text = aborted_csv([StoredAbortedTrial(record, "s", "@SUM(A1:A9)")])
     assert "'=1+1" in text
     assert "'@SUM(A1:A9)" in text
 

@@ -17,7 +17,7 @@ from rastrainer.study.database import (
 from rastrainer.study.database.database import (
     LockWait,
     PostgresAddress,
-    StudyAwayError,
+    StudyUnreachableError,
     beside_study,
     study_place,
 )
@@ -157,11 +157,11 @@ def test_a_window_does_not_wait_for_a_server_that_is_silent_and_rests_after_it(
     monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 0.01)
     lock_wait = LockWait(0.05, rest_s=1.0, clock=lambda: 0.0)
     address = PostgresAddress("127.0.0.1", "study", "seat", silent_server.getsockname()[1])
-    with pytest.raises(StudyAwayError, match="cannot be reached now"):
+    with pytest.raises(StudyUnreachableError, match="cannot be reached now"):
         Study.open(address, lock_wait)
     assert lock_wait.timeout_s == 0.0
     monkeypatch.setattr(postgres_database, "connected_within", None)
-    with pytest.raises(StudyAwayError, match="cannot be reached now"):
+    with pytest.raises(StudyUnreachableError, match="cannot be reached now"):
         Study.open(address, lock_wait)
 
 

@@ -17,9 +17,9 @@ from rastrainer.study.curriculum.curriculum import (
     curriculum_from_json,
     read_curriculum,
 )
+from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore, counted_trials
 from rastrainer.study.curriculum.standing import CountedTrial, standing_in
-from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -347,15 +347,15 @@ def test_a_study_of_an_earlier_format_gets_the_table(tmp_path):
 
 
 def told_of(trials, *assignments):
-    arguments = ToldCurriculum.of("A", stand(trials, *assignments)).arguments()
+    arguments = CurriculumMessage.of("A", stand(trials, *assignments)).arguments()
     return check_arguments(CommandName.CURRICULUM, json.loads(json.dumps(arguments)))
 
 
 def test_what_slicer_tells_the_simulator_arrives_as_it_was_and_fits_into_a_message():
     checked = told_of([PASSED])
-    assert ToldCurriculum.from_arguments(checked) == ToldCurriculum.of("A", stand([PASSED]))
-    none = check_arguments(CommandName.CURRICULUM, ToldCurriculum("A").arguments())
-    assert ToldCurriculum.from_arguments(none) == ToldCurriculum("A")
+    assert CurriculumMessage.from_arguments(checked) == CurriculumMessage.of("A", stand([PASSED]))
+    none = check_arguments(CommandName.CURRICULUM, CurriculumMessage("A").arguments())
+    assert CurriculumMessage.from_arguments(none) == CurriculumMessage("A")
     names = [f"{number:02d}{'x' * 38}" for number in range(MAX_ASSIGNMENTS)]
     largest = [
         Assignment(
@@ -365,7 +365,7 @@ def test_what_slicer_tells_the_simulator_arrives_as_it_was_and_fits_into_a_messa
         )
         for place, name in enumerate(names)
     ]
-    whole = ToldCurriculum.of("A" * 64, stand([], *largest)).arguments()
+    whole = CurriculumMessage.of("A" * 64, stand([], *largest)).arguments()
     decode_json_object(json.dumps(whole))
     assert len(json.dumps(whole)) < 20_000
 
@@ -390,7 +390,7 @@ def test_what_slicer_tells_the_simulator_arrives_as_it_was_and_fits_into_a_messa
     ids=lambda told: json.dumps(told)[:30],
 )
 def test_a_hostile_message_is_refused(told):
-    good = ToldCurriculum.of("A", stand([])).arguments()
+    good = CurriculumMessage.of("A", stand([])).arguments()
     bad = {**good, "assignments": [{**good["assignments"][0], **told}]}
     with pytest.raises(InputError):
         check_arguments(CommandName.CURRICULUM, bad)

@@ -16,7 +16,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.study.database import postgres_connecting, postgres_database
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.database import LockWait, StudyAwayError, StudyBusyError
+from rastrainer.study.database.database import LockWait, StudyBusyError, StudyUnreachableError
 from rastrainer.study.database.schema import MIGRATIONS, study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
@@ -71,7 +71,7 @@ def test_a_server_killed_while_trials_are_stored_loses_none_that_was_acknowledge
         record = make_record(trialId=f"00000000-0000-0000-0000-{number:012d}")
         try:
             study.add_trial(record)
-        except StudyAwayError:
+        except StudyUnreachableError:
             away += 1
             continue
         acknowledged.append(number)
@@ -122,7 +122,7 @@ def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_tried_again(pl
             "mark": lambda: ratings.give(mark_id, "R1", trial, form, domain, 4),
         }
         for change in changes.values():
-            with LosesTheAnswer(study), pytest.raises(StudyAwayError):
+            with LosesTheAnswer(study), pytest.raises(StudyUnreachableError):
                 change()
             with study.database.reading() as connection:
                 before = counts_of(connection)
@@ -145,7 +145,7 @@ def test_a_connection_is_made_anew_after_the_server_was_away(own_server):
     with Study.open(place) as study:
         study.create_trainee("a")
         own_server.kill()
-        with pytest.raises(StudyAwayError, match="cannot be reached now"):
+        with pytest.raises(StudyUnreachableError, match="cannot be reached now"):
             study.trainees()
         assert study.database.version() is None
         own_server.start()

@@ -12,8 +12,8 @@ from playwright.sync_api import sync_playwright
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
-from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.study import Study
 from rastrainer_simulator.assets import asset_path
 from Testing.domain.trial.trial_records import gentle_score, make_record
@@ -47,7 +47,7 @@ def play(path: Path) -> None:
                 study.add_trial(record, score=score)
 
 
-def keep_panel(folder: Path) -> ToldCurriculum:
+def keep_panel(folder: Path) -> CurriculumMessage:
     """Keep the section of the module; return what it tells the simulator of the first trainee."""
     host = Host(folder)
     host.open()
@@ -68,12 +68,12 @@ def keep_panel(folder: Path) -> ToldCurriculum:
     host.find("curriculumCollapsibleButton").grab().save(str(picture))
     reduce_colors(picture)
     with Study.open_for_reading(path) as study:
-        told = ToldCurriculum.of("T001", CurriculumStore(study).standing("T001"))
+        told = CurriculumMessage.of("T001", CurriculumStore(study).standing("T001"))
     host.close()
     return told
 
 
-def keep_seat(folder: Path, told: ToldCurriculum) -> None:
+def keep_seat(folder: Path, told: CurriculumMessage) -> None:
     """Keep the page of a simulator that was told this."""
     config = folder / "records-config"
     config.mkdir()

@@ -8,7 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from rastrainer.protocol import MAX_ASSIGNMENTS, Phase
-from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.study.ratings import FORMS
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
@@ -177,7 +177,7 @@ def names_of_pages(base: type = SessionPage) -> set[str]:
 
 def with_curriculum(session) -> None:
     """Give the trainee a curriculum with as many assignments as there may be, and long titles."""
-    told = ToldAssignment(
+    told = AssignmentMessage(
         *("long", "task-5", "competent", "open", 100), mode="hmd", method="landmarks-surface"
     )
     others = [
@@ -186,7 +186,7 @@ def with_curriculum(session) -> None:
     ]
     longest = replace(told, procedure="biopsy", played=3, mark=70.0, weakest="distance")
     session._services.curricula.take(
-        ToldCurriculum("P07", "The first weeks " * 5, "long", (longest, *others))
+        CurriculumMessage("P07", "The first weeks " * 5, "long", (longest, *others))
     )
     session.is_slicer_connected = lambda: True
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.protocol import TRIAL_RUN, AssignmentState, GoalKind
-from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.flow.pages.result import FinishedPage
 from rastrainer_simulator.flow.session.curricula import MAX_TRAINEES, Curricula
@@ -17,19 +17,19 @@ from Testing.simulator.flow.trainee import STEP_S
 
 LOCKED, OPEN, REACHED = (state.value for state in AssignmentState)
 SCORE, COMPETENT = (kind.value for kind in GoalKind)
-TOLD = ToldCurriculum(
+TOLD = CurriculumMessage(
     "P07",
     "First steps",
     "two",
     (
-        ToldAssignment("one", "task-1", SCORE, REACHED, 2, done=2, mark=70.0, played=3),
-        ToldAssignment(
+        AssignmentMessage("one", "task-1", SCORE, REACHED, 2, done=2, mark=70.0, played=3),
+        AssignmentMessage(
             "two", "task-2", SCORE, OPEN, 3, done=1, mark=72.5, played=2, weakest="time"
         ),
-        ToldAssignment("three", "task-3", COMPETENT, LOCKED, 100, mark=70.0, missing=("two",)),
-        ToldAssignment("four", "task-4", SCORE, OPEN, 1, mode="hmd", mark=70.0),
-        ToldAssignment("five", "task-9", SCORE, OPEN, 1, procedure="none", mark=70.0),
-        ToldAssignment("six", "task-4", SCORE, OPEN, 1, scenario="elsewhere", mark=70.0),
+        AssignmentMessage("three", "task-3", COMPETENT, LOCKED, 100, mark=70.0, missing=("two",)),
+        AssignmentMessage("four", "task-4", SCORE, OPEN, 1, mode="hmd", mark=70.0),
+        AssignmentMessage("five", "task-9", SCORE, OPEN, 1, procedure="none", mark=70.0),
+        AssignmentMessage("six", "task-4", SCORE, OPEN, 1, scenario="elsewhere", mark=70.0),
     ),
 )
 
@@ -133,7 +133,7 @@ def test_without_slicer_nothing_is_locked_and_nothing_is_said(menu, outside):
 
 
 def test_the_page_closes_when_the_curriculum_ends(page, outside):
-    outside.services.curricula.take(ToldCurriculum("P07"))
+    outside.services.curricula.take(CurriculumMessage("P07"))
     page.until_menu("experiment")
 
 
@@ -181,5 +181,5 @@ def test_of_too_many_trainees_the_oldest_is_forgotten():
         curricula.take(replace(TOLD, trainee=f"P{number}"))
     assert curricula.of("P0") is None
     assert curricula.of("P1") is not None
-    curricula.take(ToldCurriculum("P1"))
+    curricula.take(CurriculumMessage("P1"))
     assert curricula.of("P1") is None

@@ -27,7 +27,7 @@ from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.scene.study_plots import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.aborted_trials import StoredAborted
+from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.database import EXAMPLE, study_place
 from rastrainer.study.database.values import StoredTrial, Trainee
 
@@ -297,7 +297,7 @@ def _entry(trainee: Trainee) -> str:
     return trainee.pseudonym
 
 
-def _aborted(aborted: Sequence[StoredAborted]) -> str:
+def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:
     """Return how many trials were aborted, the trial runs apart; "" where none was."""
     records = [stored.record for stored in aborted if not stored.record.is_trial_run]
     runs = len(aborted) - len(records)

@@ -19,7 +19,7 @@ from rastrainer.statistics.competence import (
     fewest_trials,
     lc_cusum_limit,
 )
-from rastrainer.study.database.aborted_trials import StoredAborted
+from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.values import moment
 from rastrainer.study.outcomes import mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
@@ -88,7 +88,7 @@ def started_trials(data: StudyData) -> str:
     return section("Started trials", *parts)
 
 
-def _started_rows(data: StudyData, aborted: list[StoredAborted]) -> list[list[str]]:
+def _started_rows(data: StudyData, aborted: list[StoredAbortedTrial]) -> list[list[str]]:
     finished = Counter((trial.trainee, trial.mode, trial.task) for trial in data.trials)
     early: Counter[tuple[str, str, str]] = Counter()
     late: Counter[tuple[str, str, str]] = Counter()
@@ -110,7 +110,7 @@ def _counts(finished: int, early: int, late: int) -> list[str]:
     return [str(finished + early + late), str(finished), str(early), str(late)]
 
 
-def _repeats(aborted: list[StoredAborted]) -> list[str]:
+def _repeats(aborted: list[StoredAbortedTrial]) -> list[str]:
     return [
         f"{stored.record.trainee}, {stored.step}, aborted with {len(stored.record.points)} points "
         f"touched ({stored.record.reason}): {stored.repeat_reason}"

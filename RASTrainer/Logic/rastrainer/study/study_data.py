@@ -12,7 +12,7 @@ from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
+from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.cohort_store import CohortStore, IncompleteStudyError
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.study import Study
@@ -93,7 +93,7 @@ class StudyData:
     versions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     has_order: bool = False
     gap: str = ""
-    aborted: tuple[StoredAborted, ...] = ()
+    aborted: tuple[StoredAbortedTrial, ...] = ()
     ratings: tuple[Rating, ...] = ()
     standings: Mapping[str, CurriculumStanding] = field(default_factory=dict)
 

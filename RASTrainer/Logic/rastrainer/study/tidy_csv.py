@@ -11,7 +11,7 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
 from rastrainer.registration.fits import RIGID
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
+from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure, StoredTrial
 from rastrainer.study.protocol.questionnaires import find_questionnaire
@@ -103,7 +103,7 @@ def trials_csv(trials: Sequence[TrialRow]) -> str:
     return csv_text([*FIRST_COLUMNS, *names], rows)
 
 
-def aborted_csv(trials: Iterable[StoredAborted]) -> str:
+def aborted_csv(trials: Iterable[StoredAbortedTrial]) -> str:
     """Return aborted trials as CSV, with the reasons of repeated steps."""
     rows = []
     for stored in trials:
@@ -132,7 +132,7 @@ def aborted_csv(trials: Iterable[StoredAborted]) -> str:
     return csv_text(ABORTED_COLUMNS, rows)
 
 
-def aborted_touches_csv(trials: Iterable[StoredAborted]) -> str:
+def aborted_touches_csv(trials: Iterable[StoredAbortedTrial]) -> str:
     """Return the kept touches of aborted trials, like `touches_csv`."""
     rows = [
         [

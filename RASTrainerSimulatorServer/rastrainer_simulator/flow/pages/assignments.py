@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rastrainer.scenario.scenario import method_of
-from rastrainer.study.curriculum.told_curriculum import ToldAssignment
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.chosen_trial import start_task
 from rastrainer_simulator.flow.session.obstacles import assignment_obstacle
@@ -50,7 +50,7 @@ class AssignmentsPage(SessionPage):
         if self.session.curriculum is None:
             self.back()
 
-    def _item(self, each: ToldAssignment) -> MenuItem:
+    def _item(self, each: AssignmentMessage) -> MenuItem:
         words = self.session.assignment_words
         reason = assignment_obstacle(self.session, each)
         return MenuItem(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer_simulator.ops.texts.texts import Texts
 
 MAX_TRAINEES = 1000
@@ -21,9 +21,9 @@ class Curricula:
     """
 
     def __init__(self) -> None:
-        self._told: dict[str, ToldCurriculum] = {}
+        self._told: dict[str, CurriculumMessage] = {}
 
-    def take(self, told: ToldCurriculum) -> None:
+    def take(self, told: CurriculumMessage) -> None:
         """Take what Slicer tells of a trainee."""
         self._told.pop(told.trainee, None)
         if told.assignments:
@@ -35,14 +35,14 @@ class Curricula:
         """Forget everybody, when no Slicer is connected any more."""
         self._told.clear()
 
-    def of(self, trainee: str) -> ToldCurriculum | None:
+    def of(self, trainee: str) -> CurriculumMessage | None:
         """Return where a trainee stands; None for who has no curriculum."""
         return self._told.get(trainee)
 
 
 def newly_reached(
-    before: ToldCurriculum | None, now: ToldCurriculum | None
-) -> Iterator[ToldAssignment]:
+    before: CurriculumMessage | None, now: CurriculumMessage | None
+) -> Iterator[AssignmentMessage]:
     """Yield the assignments that a trainee has reached since Slicer told of them before."""
     if before is None or now is None or before is now or before.trainee != now.trainee:
         return
@@ -61,7 +61,7 @@ class AssignmentWords:
         self._task_title = task_title
         self._procedure_title = procedure_title
 
-    def title(self, each: ToldAssignment) -> str:
+    def title(self, each: AssignmentMessage) -> str:
         """Return what people call an assignment."""
         by = f"study.by {each.method}"
         words = [self._task_title(each.task)]
@@ -73,7 +73,7 @@ class AssignmentWords:
         procedure = self._procedure_title(each.procedure)
         return self._say("assignments.with procedure", trial=trial, procedure=procedure)
 
-    def label(self, each: ToldAssignment) -> str:
+    def label(self, each: AssignmentMessage) -> str:
         """Return a short title for a row: the task, and the first that is special about it."""
         if each.procedure:
             special = self._procedure_title(each.procedure)
@@ -84,7 +84,7 @@ class AssignmentWords:
         title = self._task_title(each.task)
         return f"{title} · {special}" if special else title
 
-    def progress(self, each: ToldAssignment) -> str:
+    def progress(self, each: AssignmentMessage) -> str:
         """Return how far the trainee is, in few characters."""
         if each.is_reached:
             return self._say("assignments.reached")
@@ -93,7 +93,7 @@ class AssignmentWords:
         key = "assignments.percent" if each.is_by_competence else "assignments.count"
         return self._say(key, done=each.done, needed=each.needed)
 
-    def goal(self, each: ToldAssignment) -> str:
+    def goal(self, each: AssignmentMessage) -> str:
         """Return when an assignment is reached."""
         if not each.mark:
             return self._say("assignments.no mark")
@@ -102,17 +102,17 @@ class AssignmentWords:
         key = "assignments.one trial" if each.needed == 1 else "assignments.trials"
         return self._say(key, needed=each.needed, mark=each.mark)
 
-    def gate(self, told: ToldCurriculum, each: ToldAssignment) -> str:
+    def gate(self, told: CurriculumMessage, each: AssignmentMessage) -> str:
         """Return what a locked assignment waits for."""
         missing = [found for name in each.missing if (found := told.find(name)) is not None]
         names = self._texts.listed(self.title(one) for one in missing) or "–"
         return self._say("assignments.gate", assignments=names)
 
-    def summary(self, told: ToldCurriculum) -> str:
+    def summary(self, told: CurriculumMessage) -> str:
         """Return how many assignments are reached."""
         return self._say("assignments.summary", reached=told.reached, count=len(told.assignments))
 
-    def in_brief(self, told: ToldCurriculum) -> str:
+    def in_brief(self, told: CurriculumMessage) -> str:
         """Return what a teacher reads of it: how many are reached, and how far the next one is."""
         best = told.find(told.next)
         if best is None:
@@ -121,7 +121,7 @@ class AssignmentWords:
         following = self._say("assignments.next in brief", assignment=label, progress=progress)
         return f"{self.summary(told)} · {following}"
 
-    def advice(self, told: ToldCurriculum) -> str:
+    def advice(self, told: CurriculumMessage) -> str:
         """Return what to practice next, and why."""
         best = told.find(told.next)
         if best is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rastrainer.protocol import TRIAL_RUN, StepKind, TutorialRule
 from rastrainer.scenario.scenario import playable_methods
-from rastrainer.study.curriculum.told_curriculum import ToldAssignment
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer_simulator.flow.session.chosen_trial import procedure_of, registration_method
 from rastrainer_simulator.flow.session.session import TrainingSession
 
@@ -31,7 +31,7 @@ def obstacle(session: TrainingSession, task: str) -> str:
     return _missing_before(session, task, is_assigned=bool(own))
 
 
-def assignment_obstacle(session: TrainingSession, each: ToldAssignment) -> str:
+def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> str:
     """Return why the trainee cannot begin a trial of an assignment; "" if nothing is in the way."""
     unready, told = _unready(session), session.curriculum
     if unready or told is None:

@@ -14,7 +14,7 @@ from rastrainer.journal.folder import journals_of
 from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.curriculum.told_curriculum import ToldAssignment, ToldCurriculum
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.curricula import AssignmentWords, newly_reached
@@ -140,7 +140,7 @@ class TrainingSession:
         self._controls = controls
         self._asked: list[tuple[str, Future[Answer]]] = []
         self.notices = Notices()
-        self._told: ToldCurriculum | None = None
+        self._told: CurriculumMessage | None = None
         self.state: SimulationState = control_loop.latest
 
     @property
@@ -184,7 +184,7 @@ class TrainingSession:
         return OperatorDevice(self._controls, self.texts, self.mode, self.screen_sticks.is_shown)
 
     @property
-    def curriculum(self) -> ToldCurriculum | None:
+    def curriculum(self) -> CurriculumMessage | None:
         """Where the trainee stands in a curriculum.
 
         None without one, in a study, which comes before it, and while no Slicer is connected.
@@ -195,7 +195,7 @@ class TrainingSession:
         return self._services.curricula.of(trainee)
 
     @property
-    def next_assignment(self) -> ToldAssignment | None:
+    def next_assignment(self) -> AssignmentMessage | None:
         """The assignment to practice next; None where no open one is left, or no curriculum."""
         told = self.curriculum
         return None if told is None else told.find(told.next)

@@ -13,9 +13,9 @@ from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.curriculum.curriculum import Curriculum, read_curriculum
+from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CurriculumStanding
-from rastrainer.study.curriculum.told_curriculum import ToldCurriculum
 from rastrainer.study.database.study import Study
 
 
@@ -33,7 +33,7 @@ class CurriculumLogic:
         self.changed = Signal()
         self._trainees = trainees
         self._link = link
-        self._told: dict[str, ToldCurriculum] = {}
+        self._told: dict[str, CurriculumMessage] = {}
         self._standings: dict[str, CurriculumStanding] = {}
         self._stamps: dict[str, tuple[int | None, ...]] = {}
         self._followed: Study | None = None
@@ -101,11 +101,11 @@ class CurriculumLogic:
         self.changed.emit()
 
     def _tell(self, name: str, standing: CurriculumStanding | None) -> None:
-        told = ToldCurriculum.of(name, standing)
+        told = CurriculumMessage.of(name, standing)
         self._standings.pop(name, None)
         if standing is not None:
             self._standings[name] = standing
-        if self._told.get(name, ToldCurriculum(name)) == told:
+        if self._told.get(name, CurriculumMessage(name)) == told:
             return
         self._told[name] = told
         if standing is None:

@@ -11,7 +11,7 @@ from rastrainer.progress import Progress, no_progress
 from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
-from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAborted
+from rastrainer.study.database.aborted_trials import AbortedTrials, StoredAbortedTrial
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial, Trainee
@@ -217,7 +217,7 @@ class TraineeLogic:
 
         return inBackground(read, progress)
 
-    def aborted(self) -> tuple[StoredAborted, ...]:
+    def aborted(self) -> tuple[StoredAbortedTrial, ...]:
         """Return the aborted trials of the chosen trainee in the order they were started."""
         return AbortedTrials(self.study).of(self.chosen) if self.chosenTrainee() else ()
 

@@ -19,7 +19,7 @@ from rastrainer.trial.trial_feedback import PastTrial
 
 
 @dataclass(frozen=True)
-class StoredAborted:
+class StoredAbortedTrial:
     """An aborted trial, and why it was repeated.
 
     Attributes:
@@ -61,7 +61,7 @@ class AbortedTrials:
         with self._database.writing() as connection:
             return _add(connection, record, text)
 
-    def of(self, pseudonym: str) -> tuple[StoredAborted, ...]:
+    def of(self, pseudonym: str) -> tuple[StoredAbortedTrial, ...]:
         """Return a trainee's aborted trials in order of starting; `InputError` if unknown."""
         with self._database.reading() as connection:
             study_trainees.find(connection, pseudonym)
@@ -90,7 +90,7 @@ class AbortedTrials:
             return tuple(trial for _when, trial in sorted(timed, key=lambda each: each[0]))
 
 
-def stored_of(connection: Connection, pseudonym: str) -> tuple[StoredAborted, ...]:
+def stored_of(connection: Connection, pseudonym: str) -> tuple[StoredAbortedTrial, ...]:
     """Return the aborted trials of a trainee in order of starting."""
     rows = connection.execute(
         "SELECT record_json, coalesce(step, ''), coalesce(reason, '') FROM aborted_trials "
@@ -99,7 +99,7 @@ def stored_of(connection: Connection, pseudonym: str) -> tuple[StoredAborted, ..
         (pseudonym,),
     ).fetchall()
     found = [
-        StoredAborted(decoded(text, AbortedTrial.from_json), step, reason)
+        StoredAbortedTrial(decoded(text, AbortedTrial.from_json), step, reason)
         for text, step, reason in rows
     ]
     return tuple(sorted(found, key=lambda stored: moment(stored.record.started_utc)))

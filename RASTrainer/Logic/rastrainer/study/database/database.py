@@ -237,7 +237,7 @@ class StudyBusyError(InputError):
     """Another program has locked the study; nothing has changed, try again."""
 
 
-class StudyAwayError(StudyBusyError):
+class StudyUnreachableError(StudyBusyError):
     """The study's server cannot be reached; try again.
 
     Where the connection was lost while a change was being stored, it may or may not be stored.

@@ -21,7 +21,11 @@ from types import ModuleType
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.study.database.database import PostgresAddress, StudyAwayError, StudyBusyError
+from rastrainer.study.database.database import (
+    PostgresAddress,
+    StudyBusyError,
+    StudyUnreachableError,
+)
 
 _folders: list[Path] = []
 """In which Psycopg is searched where this Python has none of its own."""
@@ -230,6 +234,6 @@ def postgres_error(error: Any, address: PostgresAddress) -> InputError | None:
     is_about_the_link = "OperationalError" in {each.__name__ for each in type(error).__mro__}
     if not is_about_the_link:
         return InputError(_BY_STATE["22"]) if "nul (0x00)" in text else None
-    return StudyAwayError(
+    return StudyUnreachableError(
         f"The study {address} cannot be reached now. ({' '.join(text.split())[:_MAX_WORDS]})"
     )

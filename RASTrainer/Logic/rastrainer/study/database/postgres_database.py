@@ -24,9 +24,9 @@ from rastrainer.study.database.database import (
     LockWait,
     PostgresAddress,
     Rows,
-    StudyAwayError,
     StudyBusyError,
     StudyDatabase,
+    StudyUnreachableError,
 )
 from rastrainer.study.database.postgres_connecting import (
     INTERACTIVE_PATIENCE_S,
@@ -209,7 +209,7 @@ class PostgresDatabase(StudyDatabase):
         Raises:
             InputError: the server refuses, the database is another program's, of a newer
                 RASTrainer, or holds no study.
-            StudyAwayError: the server cannot be reached.
+            StudyUnreachableError: the server cannot be reached.
         """
         self._address = address
         self._driver = postgres_driver()
@@ -286,7 +286,7 @@ class PostgresDatabase(StudyDatabase):
         patience_s = self._lock_wait.timeout_s
         if patience_s == 0.0:
             # It has just failed: a window does not wait again so soon.
-            raise StudyAwayError(f"The study {self._address} cannot be reached now.")
+            raise StudyUnreachableError(f"The study {self._address} cannot be reached now.")
         if patience_s >= 1.0:
             return connected(self._address)
         begun = time.monotonic()
@@ -294,7 +294,9 @@ class PostgresDatabase(StudyDatabase):
             return connected_within(INTERACTIVE_PATIENCE_S, self._address)
         except TimeoutError:
             self._lock_wait.note_timeout(time.monotonic() - begun)
-            raise StudyAwayError(f"The study {self._address} cannot be reached now.") from None
+            raise StudyUnreachableError(
+                f"The study {self._address} cannot be reached now."
+            ) from None
 
     def _prepare(self) -> None:
         check_server(self._connection, self._address)

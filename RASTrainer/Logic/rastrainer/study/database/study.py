@@ -33,7 +33,7 @@ class Study:
     """A study; use it in a `with` statement, or call `close`.
 
     Every method raises `InputError` if the study cannot be read or written, `StudyBusyError` if
-    another program has locked it for too long, and `StudyAwayError` if its server cannot be
+    another program has locked it for too long, and `StudyUnreachableError` if its server cannot be
     reached. For one thread.
     """
 
@@ -61,7 +61,7 @@ class Study:
             InputError: the place is no study, damaged, or of a newer RASTrainer; or the folder is
                 missing or cannot be made.
             StudyBusyError: another program has locked it.
-            StudyAwayError: its server cannot be reached.
+            StudyUnreachableError: its server cannot be reached.
         """
         place = study_place(place)
         if isinstance(place, PostgresAddress):
@@ -83,7 +83,7 @@ class Study:
         Raises:
             InputError: as `open`, or there is no such study.
             StudyBusyError: another program has locked it.
-            StudyAwayError: its server cannot be reached.
+            StudyUnreachableError: its server cannot be reached.
         """
         place = study_place(place)
         if isinstance(place, PostgresAddress):

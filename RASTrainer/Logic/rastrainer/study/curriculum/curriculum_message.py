@@ -11,7 +11,7 @@ from rastrainer.study.curriculum.standing import AssignmentStanding, CurriculumS
 
 
 @dataclass(frozen=True)
-class ToldAssignment:
+class AssignmentMessage:
     """An assignment and where the trainee stands with it; see `AssignmentStanding`.
 
     Attributes:
@@ -35,7 +35,7 @@ class ToldAssignment:
     weakest: str = ""
 
     @classmethod
-    def of(cls, standing: AssignmentStanding) -> ToldAssignment:
+    def of(cls, standing: AssignmentStanding) -> AssignmentMessage:
         """Return what is told of a standing."""
         each = standing.assignment
         return cls(
@@ -81,7 +81,7 @@ class ToldAssignment:
 
 
 @dataclass(frozen=True)
-class ToldCurriculum:
+class CurriculumMessage:
     """What a trainee's menu shows of a curriculum.
 
     Attributes:
@@ -94,10 +94,10 @@ class ToldCurriculum:
     trainee: str
     title: str = ""
     next: str = ""
-    assignments: tuple[ToldAssignment, ...] = ()
+    assignments: tuple[AssignmentMessage, ...] = ()
 
     @classmethod
-    def of(cls, trainee: str, standing: CurriculumStanding | None) -> ToldCurriculum:
+    def of(cls, trainee: str, standing: CurriculumStanding | None) -> CurriculumMessage:
         """Return what is told of where a trainee stands."""
         if standing is None:
             return cls(trainee)
@@ -106,13 +106,13 @@ class ToldCurriculum:
             trainee,
             standing.curriculum.title,
             "" if best is None else best.assignment.name,
-            tuple(ToldAssignment.of(each) for each in standing.standings),
+            tuple(AssignmentMessage.of(each) for each in standing.standings),
         )
 
     @classmethod
-    def from_arguments(cls, arguments: Mapping[str, Any]) -> ToldCurriculum:
+    def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:
         """Return what checked command arguments tell."""
-        told = tuple(ToldAssignment(**each) for each in arguments["assignments"])
+        told = tuple(AssignmentMessage(**each) for each in arguments["assignments"])
         return cls(**{**arguments, "assignments": told})
 
     def arguments(self) -> dict[str, Any]:
@@ -133,6 +133,6 @@ class ToldCurriculum:
         """How many assignments are reached."""
         return sum(each.is_reached for each in self.assignments)
 
-    def find(self, name: str) -> ToldAssignment | None:
+    def find(self, name: str) -> AssignmentMessage | None:
         """Return the assignment of a name; None where there is none."""
         return next((each for each in self.assignments if each.name == name), None)
