@@ -76,8 +76,7 @@ def test_the_score_is_between_0_and_100(measures, reference):
     assert 0.0 < score(measures, reference) <= 100.0
 
 
-@pytest.mark.parametrize("measure", SCORED)
-@given(measures=procedures(), step=st.floats(1e-3, 1e3), reference=references)
+@given(st.sampled_from(SCORED), procedures(), st.floats(1e-3, 1e3), references)
 def test_faster_more_accurate_and_gentler_are_each_strictly_better(
     measure, measures, step, reference
 ):
@@ -85,8 +84,7 @@ def test_faster_more_accurate_and_gentler_are_each_strictly_better(
     assert score(measures, reference) > score(worse, reference)
 
 
-@pytest.mark.parametrize("measure", LIMITS)
-@given(measures=procedures(), other=acceptable, excess=st.floats(0.0, 100.0), reference=references)
+@given(st.sampled_from([*LIMITS]), procedures(), acceptable, st.floats(0.0, 100.0), references)
 def test_exceeding_a_limit_cannot_be_compensated(measure, measures, other, excess, reference):
     limit = LIMITS[measure]
     beyond = 1 + int(excess) if limit == 0 else math.nextafter(limit, math.inf) + excess

@@ -6,7 +6,10 @@ import pytest
 from rastrainer.registration.fits import KINDS
 from rastrainer.registration.registration import register
 
-SEEDS = range(60)
+
+@pytest.fixture(params=[15, pytest.param(60, marks=pytest.mark.soak)], ids="{} heads".format)
+def seeds(request):
+    return range(request.param)
 
 
 def faults(moving, fixed, kind="rigid"):
@@ -25,15 +28,15 @@ def direction(rng):
     return vector / np.linalg.norm(vector)
 
 
-@pytest.mark.parametrize("heads", [150, pytest.param(500, marks=pytest.mark.soak)])
+@pytest.mark.parametrize("heads", [60, pytest.param(500, marks=pytest.mark.soak)])
 def test_clean_heads_raise_no_alarm(touched_head, heads):
     for seed in range(heads):
         moving, fixed, _ = touched_head(seed)
         assert faults(moving, fixed, KINDS[seed % 3]) == []
 
 
-def test_exact_points_raise_no_alarm(touched_head):
-    for seed in SEEDS:
+def test_exact_points_raise_no_alarm(touched_head, seeds):
+    for seed in seeds:
         _, fixed, _ = touched_head(seed, count=3 + seed % 13)
         assert faults(fixed, fixed) == []
 
@@ -47,8 +50,8 @@ def test_small_and_large_sets_raise_no_alarm(count, touched_head):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_mirrored_set_is_reported_even_if_the_fit_hides_it(kind, touched_head):
-    for seed in SEEDS:
+def test_a_mirrored_set_is_reported_even_if_the_fit_hides_it(kind, touched_head, seeds):
+    for seed in seeds:
         moving, fixed, rng = touched_head(seed)
         moving[:, rng.integers(3)] *= -1
         assert faults(moving, fixed, kind) == [("mirrored", ALL)]
@@ -68,8 +71,8 @@ def test_meters_instead_of_millimeters_are_reported_for_the_right_list(touched_h
     assert "fixed points seem to be in meters" in register(moving, fixed / 1e3).warnings[0].message
 
 
-def test_two_exchanged_labels_are_reported(touched_head):
-    for seed in SEEDS:
+def test_two_exchanged_labels_are_reported(touched_head, seeds):
+    for seed in seeds:
         moving, fixed, rng = touched_head(seed)
         a, b = rng.choice(15, 2, replace=False)
         if np.linalg.norm(fixed[a] - fixed[b]) < 12:
@@ -89,16 +92,16 @@ def test_a_reversed_or_shifted_list_is_reported(touched_head):
 
 
 @pytest.mark.parametrize("size_mm", [12, 30, 1000])
-def test_one_bad_touch_is_reported(size_mm, touched_head):
-    for seed in SEEDS:
+def test_one_bad_touch_is_reported(size_mm, touched_head, seeds):
+    for seed in seeds:
         moving, fixed, rng = touched_head(seed)
         row = rng.integers(15)
         moving[row] += size_mm * direction(rng)
         assert faults(moving, fixed) == [("outlier", labels(row))]
 
 
-def test_two_bad_touches_do_not_hide_each_other(touched_head):
-    for seed in SEEDS:
+def test_two_bad_touches_do_not_hide_each_other(touched_head, seeds):
+    for seed in seeds:
         moving, fixed, rng = touched_head(seed)
         a, b = sorted(rng.choice(15, 2, replace=False))
         moving[a] += 25 * direction(rng)
@@ -106,8 +109,8 @@ def test_two_bad_touches_do_not_hide_each_other(touched_head):
         assert faults(moving, fixed) == [("outlier", labels(a)), ("outlier", labels(b))]
 
 
-def test_touching_the_wrong_fiducial_is_reported_as_a_bad_touch(touched_head):
-    for seed in SEEDS:
+def test_touching_the_wrong_fiducial_is_reported_as_a_bad_touch(touched_head, seeds):
+    for seed in seeds:
         moving, fixed, rng = touched_head(seed)
         a, b = rng.choice(15, 2, replace=False)
         if np.linalg.norm(fixed[a] - fixed[b]) < 15:
@@ -116,8 +119,8 @@ def test_touching_the_wrong_fiducial_is_reported_as_a_bad_touch(touched_head):
         assert faults(moving, fixed) == [("duplicate", labels(a, b)), ("outlier", labels(a))]
 
 
-def test_unrelated_lists_are_reported(touched_head):
-    for seed in SEEDS:
+def test_unrelated_lists_are_reported(touched_head, seeds):
+    for seed in seeds:
         moving, fixed, rng = touched_head(seed)
         assert ("poor-fit", ALL) in faults(moving[rng.permutation(15)], fixed)
 

@@ -65,15 +65,13 @@ def test_the_score_is_between_0_and_100(trial, reference):
     assert 0.0 < score(trial, reference) <= 100.0
 
 
-@pytest.mark.parametrize("measure", MEASURES)
-@given(trial=trials, step=st.floats(1e-3, 1e4), reference=references)
+@given(st.sampled_from(MEASURES), trials, st.floats(1e-3, 1e4), references)
 def test_faster_more_accurate_and_gentler_are_each_strictly_better(measure, trial, step, reference):
     worse = replace(trial, **{measure: getattr(trial, measure) + step})
     assert score(trial, reference) > score(worse, reference)
 
 
-@pytest.mark.parametrize("measure", LIMITS)
-@given(trial=trials, other=acceptable, excess=st.floats(0.0, 1000.0), reference=references)
+@given(st.sampled_from([*LIMITS]), trials, acceptable, st.floats(0.0, 1000.0), references)
 def test_exceeding_a_limit_cannot_be_compensated(measure, trial, other, excess, reference):
     beyond = math.nextafter(LIMITS[measure], math.inf) + excess
     worse = score_trial(replace(trial, **{measure: beyond}), reference)
