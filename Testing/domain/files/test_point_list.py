@@ -1,10 +1,14 @@
-"""Point lists and how two of them are paired."""
+"""Point lists pair by label or order, and are read from and written to markups, CSV and PLY."""
+
+import json
 
 import numpy as np
 import pytest
+import slicer
+import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import PointList, pair
+from rastrainer.files.point_list import SCHEMA, PointList, pair, read_markups, write_markups
 
 XYZ = np.arange(9.0).reshape(3, 3)
 
@@ -67,3 +71,114 @@ def test_a_point_list_copies_its_points():
     np.testing.assert_array_equal(point_list.points, XYZ)
     with pytest.raises(ValueError, match="read-only"):
         point_list.points[0, 0] = 1
+
+
+POINTS = np.array([[1.5, -2.0, 3.25], [80.0, 0.125, -7.0], [-3.0, 40.0, 99.0]])
+
+
+def slicer_node():
+    scene = slicer.vtkMRMLScene()
+    logic = slicer.vtkSlicerMarkupsLogic()
+    logic.SetMRMLScene(scene)
+    return scene, logic, scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "F")
+
+
+def storage(scene, path):
+    node = scene.AddNewNodeByClass("vtkMRMLMarkupsJsonStorageNode")
+    node.SetFileName(str(path))
+    return node
+
+
+def document(**changes):
+    markup = {
+        "type": "Fiducial",
+        "coordinateSystem": "RAS",
+        "coordinateUnits": "mm",
+        "controlPoints": [{"label": "1", "position": [1, 2, 3]}],
+    }
+    markup.update(changes)
+    return {"@schema": SCHEMA, "markups": [markup]}
+
+
+def written(path, content):
+    path.write_text(content if isinstance(content, str) else json.dumps(content))
+    return path
+
+
+def test_points_that_slicer_saved_in_lps_are_read_in_ras(tmp_path):
+    scene, _logic, node = slicer_node()
+    for number, point in enumerate(POINTS, 1):
+        node.AddControlPoint(vtk.vtkVector3d(*point), str(number))
+    path = tmp_path / "F.mrk.json"
+    assert storage(scene, path).WriteData(node)
+    assert '"LPS"' in path.read_text()
+    point_list = read_markups(path)
+    assert point_list.labels == ("1", "2", "3")
+    np.testing.assert_allclose(point_list.points, POINTS)
+
+
+def test_slicer_opens_written_markups(tmp_path):
+    path = tmp_path / "ours.mrk.json"
+    write_markups(path, PointList(("a", "ü", "3"), POINTS))
+    scene, _logic, node = slicer_node()
+    assert storage(scene, path).ReadData(node)
+    assert [node.GetNthControlPointLabel(i) for i in range(3)] == ["a", "ü", "3"]
+    for i, point in enumerate(POINTS):
+        np.testing.assert_allclose(node.GetNthControlPointPositionWorld(i), point)
+        assert node.GetNthControlPointPositionStatus(i) == node.PositionDefined
+
+
+def test_points_survive_writing_and_reading_to_the_last_bit(tmp_path):
+    points = np.random.default_rng(0).normal(size=(15, 3)) * 1e3
+    write_markups(tmp_path / "a.mrk.json", PointList((), points))
+    again = read_markups(tmp_path / "a.mrk.json")
+    assert again.labels == ()
+    np.testing.assert_array_equal(again.points, points)
+
+
+def test_a_point_that_is_not_placed_is_named(tmp_path):
+    scene, _logic, node = slicer_node()
+    node.AddControlPoint(vtk.vtkVector3d(1, 2, 3), "nasion")
+    node.SetNthControlPointPositionMissing(0)
+    path = tmp_path / "F.mrk.json"
+    storage(scene, path).WriteData(node)
+    with pytest.raises(InputError, match='point 1 "nasion" is not placed'):
+        read_markups(path)
+
+
+def test_a_file_without_coordinate_system_is_read_as_lps_and_mm(tmp_path):
+    content = document()
+    del content["markups"][0]["coordinateSystem"], content["markups"][0]["coordinateUnits"]
+    point_list = read_markups(written(tmp_path / "a.mrk.json", content))
+    np.testing.assert_array_equal(point_list.points, [[-1, -2, 3]])
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("not json", "not JSON"),
+        ([], "not a markups file"),
+        ({"markups": []}, "not a markups file"),
+        ({"@schema": SCHEMA}, "exactly one point list"),
+        ({"@schema": SCHEMA, "markups": [{}, {}]}, "exactly one point list"),
+        (document(type="Line"), "must be a point list"),
+        (document(coordinateUnits="um"), "must be in mm"),
+        (document(coordinateSystem="IJK"), "must be LPS or RAS"),
+        (document(coordinateSystem=["RAS"]), "must be LPS or RAS"),
+        (document(controlPoints=[]), "holds no points"),
+        (document(controlPoints=[3]), "point 1 must be an object"),
+        (document(controlPoints=[{"label": 3, "position": [1, 2, 3]}]), "label of point 1"),
+        (document(controlPoints=[{"position": [1, 2]}]), "position of point 1"),
+        (document(controlPoints=[{"position": [1, 2, True]}]), "position of point 1"),
+        (document(controlPoints=[{"position": [1, 2, 10**400]}]), "position of point 1"),
+        (document(controlPoints=[{"position": [1, 2, "3"]}]), "position of point 1"),
+        ('{"@schema": "markups-schema-v1.0.0", "markups": [NaN]}', "not JSON"),
+        (document(controlPoints=[{"label": "1", "position": [1, 2, 3]}] * 2), "two points"),
+    ],
+)
+def test_other_files_are_refused_with_one_sentence_that_names_the_file(content, words, tmp_path):
+    path = written(tmp_path / "bad.mrk.json", content)
+    with pytest.raises(InputError, match=words) as caught:
+        read_markups(path)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
