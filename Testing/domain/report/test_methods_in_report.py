@@ -14,7 +14,7 @@ from rastrainer.report.method_comparison import (
     method_comparison,
 )
 from rastrainer.report.report import report_html
-from rastrainer.statistics.intervals import mean_interval
+from rastrainer.statistics.intervals import mean
 from rastrainer.statistics.paired import compare_paired
 from rastrainer.study.study_data import StudyData, TrialRow
 from Testing.domain.report.test_report import cohort, words_of
@@ -66,7 +66,7 @@ def test_each_method_has_n_residual_expected_and_true_error_with_intervals():
             assert f"{title} 12 12" not in words
             continue
         true = np.array([t.values["true_tre_mm"] for t in data.trials if t.method == method])
-        low, high = mean_interval(true)
+        low, high = mean(true).interval
         told = f"{true.mean():.2f} [{low:.2f}, {high:.2f}]"
         residual = 0.5 if method == "surface" else 1.5
         assert f"{title} 12 12 {residual:.2f} [{residual:.2f}, {residual:.2f}]" in words

@@ -256,8 +256,8 @@ def test_the_feedback_sentences_are_in_order():
         NORMALS,
         {"idle_time_s": 40.0},
         recording(),
-        progress_of(history, history[1].trial_id, 55.0),
     )
+    feedback = replace(feedback, progress=progress_of(history, history[1].trial_id, 55.0))
     assert feedback.worst.label == "4"
     assert feedback.worst.replay_s == pytest.approx([5.98, 7.98])
     sentences = feedback.sentences

@@ -268,24 +268,17 @@ def path_efficiency(actual_mm: float, shortest_mm: float) -> float:
     return shortest_mm / actual_mm
 
 
-def idle_time(
-    speed_mm_s: np.ndarray,
-    rate_hz: float,
-    threshold_mm_s: float = IDLE_SPEED_MM_S,
-    shortest_s: float = IDLE_DURATION_S,
-) -> float:
-    """Return the total time in s of rests: below the threshold for longer than `shortest_s`.
+def idle_time(speed_mm_s: np.ndarray, rate_hz: float) -> float:
+    """Return the total time in s of rests: slower than 1 mm/s for longer than 0.3 s.
 
     Args:
         speed_mm_s: (n,) float, evenly sampled.
         rate_hz: Sampling rate.
-        threshold_mm_s: Speed below which the tool rests.
-        shortest_s: Shorter rests are ignored.
     """
-    resting = np.concatenate([[False], np.asarray(speed_mm_s) < threshold_mm_s, [False]])
+    resting = np.concatenate([[False], np.asarray(speed_mm_s) < IDLE_SPEED_MM_S, [False]])
     changes = np.flatnonzero(np.diff(resting.astype(int)))
     durations = (changes[1::2] - changes[0::2]) / rate_hz
-    return float(durations[durations > shortest_s].sum())
+    return float(durations[durations > IDLE_DURATION_S].sum())
 
 
 SPARC_CUTOFF_HZ = 10.0

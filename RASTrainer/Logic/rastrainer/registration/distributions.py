@@ -8,6 +8,10 @@ from functools import lru_cache
 
 import numpy as np
 
+TERMS = 200
+"""Of the continued fraction."""
+DIRECTIONS = 12
+"""Of a quadrature over an octant, each way."""
 MAX_STEPS = 40
 """Of the search for a bracket; the bisection does what they leave."""
 
@@ -41,10 +45,10 @@ def incomplete_beta(a: float, b: float, x: float) -> float:
     return math.exp(log_front) / (a * _continued_fraction(a, b, x))
 
 
-def _continued_fraction(a: float, b: float, x: float, terms: int = 200) -> float:
+def _continued_fraction(a: float, b: float, x: float) -> float:
     """Return 1 + d₁/(1 + d₂/(1 + …)) of DLMF 8.17.22, evaluated from its last term backwards."""
     value = 1.0
-    for n in range(terms, 0, -1):
+    for n in range(TERMS, 0, -1):
         m = n // 2
         if n % 2:
             d = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
@@ -187,14 +191,14 @@ def _inverse_chi_square(dof: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=1)
-def _octant(count: int = 12) -> tuple[np.ndarray, np.ndarray]:
+def _octant() -> tuple[np.ndarray, np.ndarray]:
     """Return the squared coordinates of directions in an octant, (m, 3), and their shares of it."""
-    roots, root_weights = np.polynomial.legendre.leggauss(count)
-    height, turn = 0.5 * (roots + 1.0), (np.arange(count) + 0.5) * math.pi / (2 * count)
+    roots, root_weights = np.polynomial.legendre.leggauss(DIRECTIONS)
+    height, turn = 0.5 * (roots + 1.0), (np.arange(DIRECTIONS) + 0.5) * math.pi / (2 * DIRECTIONS)
     across = 1.0 - height[:, None] ** 2
     squares = [across * np.cos(turn) ** 2, across * np.sin(turn) ** 2]
     squares.append(np.broadcast_to(height[:, None] ** 2, squares[0].shape))
-    areas = np.repeat(root_weights / (2 * count), count)
+    areas = np.repeat(root_weights / (2 * DIRECTIONS), DIRECTIONS)
     return np.stack(squares, axis=-1).reshape(-1, 3), areas
 
 

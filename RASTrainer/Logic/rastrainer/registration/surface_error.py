@@ -19,7 +19,6 @@ from rastrainer.registration.fits import RIGID, motions
 from rastrainer.registration.surface_match import SurfaceMatch
 from rastrainer.registration.target_error import (
     COMMON_BIAS_SD_MM,
-    CONFIDENCE,
     TargetError,
     error_of_covariance,
 )
@@ -101,7 +100,6 @@ def knowledge_so_far(
 def surface_target_error(
     knowledge: PoseKnowledge,
     target: np.ndarray,
-    confidence: float = CONFIDENCE,
     common_bias_sd_mm: float = COMMON_BIAS_SD_MM,
 ) -> TargetError:
     """Return the error to expect at a target (3,), RAS mm, with its interval.
@@ -116,7 +114,6 @@ def surface_target_error(
         knowledge.at_targets(np.reshape(target, (1, 3)))[0],
         fle_mm=knowledge.noise_mm,
         degrees_of_freedom=knowledge.degrees_of_freedom,
-        confidence=confidence,
         common_bias_sd_mm=common_bias_sd_mm,
     )
 

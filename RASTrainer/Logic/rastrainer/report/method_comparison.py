@@ -27,7 +27,7 @@ from rastrainer.report.markup import (
 from rastrainer.report.mode_comparison import Series, grouped_bars
 from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.few_subjects import what_it_shows
-from rastrainer.statistics.intervals import mean_interval
+from rastrainer.statistics.intervals import mean
 from rastrainer.study.outcomes import Outcome
 from rastrainer.study.study_data import StudyData, TrialRow
 
@@ -164,10 +164,10 @@ def _mean_text(trials: Sequence[TrialRow], outcome: Outcome) -> str:
     if not own:
         return "–"
     means = np.array([float(np.mean(values)) for values in own.values()])
-    interval = mean_interval(means)
-    if interval is None:
+    if len(means) < 2:
         return outcome.text(float(means.mean()))
-    return interval_text(float(means.mean()), interval, outcome.digits)
+    estimate = mean(means)
+    return interval_text(estimate.value, estimate.interval, outcome.digits)
 
 
 def _picture(by_method: StudyData, methods: Sequence[str]) -> str:

@@ -66,33 +66,29 @@ def lc_cusum(failures: Sequence[bool], adequate: float, inadequate: float, limit
 
 
 @functools.lru_cache(maxsize=32)
-def lc_cusum_limit(
-    adequate: float, inadequate: float, trials: int, false_discovery: float = FALSE_DISCOVERY
-) -> float:
+def lc_cusum_limit(adequate: float, inadequate: float, trials: int) -> float:
     """Return the least limit that an incompetent trainee reaches too rarely.
 
     Args:
         adequate: Failure rate of a competent trainee.
         inadequate: Failure rate of one who is not.
         trials: How many trials the training has.
-        false_discovery: Largest probability that an inadequate trainee is called competent.
 
     Raises:
         InputError: as `lc_cusum`, or so few trials cannot show competence at that risk.
     """
     success, _ = _steps(adequate, inadequate)
-    if signal_probability(inadequate, trials, adequate, inadequate, trials * success) > (
-        false_discovery
-    ):
+    least = signal_probability(inadequate, trials, adequate, inadequate, trials * success)
+    if least > FALSE_DISCOVERY:
         raise InputError(
-            f"{trials} trials cannot show competence at a risk of {percent(false_discovery)}: even "
+            f"{trials} trials cannot show competence at a risk of {percent(FALSE_DISCOVERY)}: even "
             "successes alone are too likely by chance."
         )
     low, high = 0.0, trials * success
     while high - low > 1e-6:
         middle = (low + high) / 2
         risk = signal_probability(inadequate, trials, adequate, inadequate, middle)
-        low, high = (low, middle) if risk <= false_discovery else (middle, high)
+        low, high = (low, middle) if risk <= FALSE_DISCOVERY else (middle, high)
     return high
 
 

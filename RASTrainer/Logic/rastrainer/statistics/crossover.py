@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.statistics.intervals import CONFIDENCE, scipy_module
+from rastrainer.statistics.intervals import CONFIDENCE, coefficient, scipy_module
 
 MIN_SUBJECTS = 4
 """Difference and period take two; one degree of freedom for the variance is not enough."""
@@ -125,21 +125,19 @@ def compare_sequences(
     """
     if fit.later is None or fit.later_error is None:
         raise ValueError("The effect of the period is not separated.")
-    stats = scipy_module("stats")
-    reach = float(stats.t.ppf((1 + CONFIDENCE) / 2, fit.dof) * fit.later_error)
-    later = float(fit.later)
+    later = coefficient(float(fit.later), float(fit.later_error), fit.dof)
     means = (first + second) / 2
     groups = means[order < 0], means[order > 0]
     between, between_interval = None, None
     if min(map(len, groups)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
         between = float(groups[0].mean() - groups[1].mean())
-        limits = stats.ttest_ind(*groups).confidence_interval(CONFIDENCE)
+        limits = scipy_module("stats").ttest_ind(*groups).confidence_interval(CONFIDENCE)
         between_interval = (float(limits.low), float(limits.high))
     return Sequences(
         first_first=len(groups[1]),
         second_first=len(groups[0]),
-        later=later,
-        later_interval=(later - reach, later + reach),
+        later=later.value,
+        later_interval=later.interval,
         between=between,
         between_interval=between_interval,
     )

@@ -35,6 +35,7 @@ def scipy_module(name: str) -> ModuleType:
 
 
 CONFIDENCE = 0.95
+TAIL = (1 - CONFIDENCE) / 2
 
 
 def small_sample_factor(dof: float) -> float | None:
@@ -48,17 +49,14 @@ def small_sample_factor(dof: float) -> float | None:
     return math.exp(log) / math.sqrt(dof / 2)
 
 
-def noncentrality_interval(
-    t: float, dof: float, confidence: float = CONFIDENCE
-) -> tuple[float, float]:
+def noncentrality_interval(t: float, dof: float) -> tuple[float, float]:
     """Return the noncentralities between which an observed t is not surprising.
 
     (Steiger and Fouladi 1997: at each end, t is the quantile of its tail.) Divided by √n they are
     the limits of the population's effect size itself. They are not multiplied by Hedges' J, which
     corrects the estimate: with it they would cover too rarely.
     """
-    tail = (1 - confidence) / 2
-    return _noncentrality(t, dof, 1 - tail), _noncentrality(t, dof, tail)
+    return _noncentrality(t, dof, 1 - TAIL), _noncentrality(t, dof, TAIL)
 
 
 def _noncentrality(t: float, dof: float, probability: float) -> float:
@@ -79,57 +77,41 @@ def _noncentrality(t: float, dof: float, probability: float) -> float:
     return float(scipy_module("optimize").brentq(excess, low, high, xtol=1e-12))
 
 
-def mean_interval(values: np.ndarray, confidence: float = CONFIDENCE) -> tuple[float, float] | None:
-    """Return the interval of the mean of (n,) float values (Student's t); None for one value."""
-    n = len(values)
-    if n < 2:
-        return None
-    error = float(np.std(values, ddof=1)) / math.sqrt(n)
-    reach = float(scipy_module("stats").t.ppf((1 + confidence) / 2, n - 1)) * error
-    mean = float(np.mean(values))
-    return mean - reach, mean + reach
-
-
 ALPHA = 0.05
 TARGET_POWER = 0.8
 MAX_SUBJECTS = 10_000
 
 
-def paired_power(
-    effect_dz: float, n: int, alpha: float = ALPHA, with_period: bool = False
-) -> float:
-    """Return the probability that n subjects show an effect (two-sided paired t-test).
+def paired_power(effect_dz: float, n: int, with_period: bool = False) -> float:
+    """Return the probability that n subjects show an effect (two-sided paired t-test, 5 %).
 
     Args:
         effect_dz: True mean difference over the true standard deviation of the differences (of
             subjects with the same order, where the period is separated).
         n: Subjects, at least 2; 3 with the period.
-        alpha: Level of the test.
         with_period: Whether the effect of the period is separated, which takes a degree of
             freedom; the orders are taken as balanced.
     """
     stats = scipy_module("stats")
     dof = n - 1 - with_period
-    critical, shift = stats.t.ppf(1 - alpha / 2, dof), effect_dz * math.sqrt(n)
+    critical, shift = stats.t.ppf(1 - ALPHA / 2, dof), effect_dz * math.sqrt(n)
     if shift == 0:
-        return alpha
+        return ALPHA
     shift = abs(shift)
     above, below = stats.nct.sf(critical, dof, shift), stats.nct.cdf(-critical, dof, shift)
     # Far out in a tail, scipy gives no number: there, all or nothing lies beyond.
     return float(np.nan_to_num(above, nan=1.0) + np.nan_to_num(below, nan=0.0))
 
 
-def subjects_needed(
-    effect_dz: float, power: float = TARGET_POWER, alpha: float = ALPHA, with_period: bool = False
-) -> int:
-    """Return the least number of subjects with this power; arguments as of `paired_power`.
+def subjects_needed(effect_dz: float, with_period: bool = False) -> int:
+    """Return the least number of subjects with `TARGET_POWER`; arguments as of `paired_power`.
 
     Raises:
         InputError: the effect is so small that more than 10 000 were needed.
     """
     low = 1 + with_period
     high = low + 1
-    while paired_power(effect_dz, high, alpha, with_period) < power:
+    while paired_power(effect_dz, high, with_period) < TARGET_POWER:
         low, high = high, 2 * high
         if high > MAX_SUBJECTS:
             raise InputError(
@@ -138,20 +120,18 @@ def subjects_needed(
             )
     while high - low > 1:
         middle = (low + high) // 2
-        if paired_power(effect_dz, middle, alpha, with_period) < power:
+        if paired_power(effect_dz, middle, with_period) < TARGET_POWER:
             low = middle
         else:
             high = middle
     return high
 
 
-def detectable_effect(
-    n: int, power: float = TARGET_POWER, alpha: float = ALPHA, with_period: bool = False
-) -> float:
-    """Return the effect d_z that n subjects show with this power; others as of `paired_power`."""
+def detectable_effect(n: int, with_period: bool = False) -> float:
+    """Return the effect d_z that n subjects show with `TARGET_POWER`; as of `paired_power`."""
 
     def missing(effect: float) -> float:
-        return paired_power(effect, n, alpha, with_period) - power
+        return paired_power(effect, n, with_period) - TARGET_POWER
 
     high = 1.0
     while missing(high) < 0:
@@ -217,9 +197,6 @@ def proportion(count: int, total: int) -> Proportion:
     """
     interval = scipy_module("stats").binomtest(count, total).proportion_ci(0.95, "wilson")
     return Proportion(count, total, (float(interval.low), float(interval.high)))
-
-
-TAIL = (1 - CONFIDENCE) / 2
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from rastrainer.statistics.crossover import (
 )
 from rastrainer.statistics.intervals import (
     CONFIDENCE,
+    coefficient,
     noncentrality_interval,
     scipy_module,
     small_sample_factor,
@@ -87,17 +88,15 @@ def compare_paired(
         raise InputError("All subjects differ by the same amount: no test can be computed.")
     error = float(fit.standard_error)
     t, dof = mean / error, fit.dof
-    students = scipy_module("stats").t
-    reach = float(students.ppf((1 + CONFIDENCE) / 2, dof)) * error
     gz, gz_interval = _effect_size(mean, sd, error, dof)
     return PairedComparison(
         n=n,
         mean_difference=mean,
         standard_error=error,
         dof=dof,
-        interval=(mean - reach, mean + reach),
+        interval=coefficient(mean, error, dof).interval,
         t=t,
-        p=float(2 * students.sf(abs(t), dof)),
+        p=float(2 * scipy_module("stats").t.sf(abs(t), dof)),
         hedges_gz=gz,
         gz_interval=gz_interval,
         ranks=rank_test(differences, order),

@@ -19,7 +19,7 @@ from enum import Enum
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.intervals import CONFIDENCE, scipy_module
+from rastrainer.statistics.intervals import mean, scipy_module
 
 ALPHA = 0.05
 MIN_TRIALS = 4
@@ -177,11 +177,8 @@ def cohort_trend(series: Sequence[Sequence[float]], better: int) -> CohortTrend 
     verdicts = Counter(falling_trend(toward * own).verdict for own in long)
     change = interval = p = None
     if len(rows) > 1:
-        changes = rows @ change_weights(common)
-        change = float(changes.mean())
-        error = float(changes.std(ddof=1)) / np.sqrt(len(rows))
-        reach = float(scipy_module("stats").t.ppf((1 + CONFIDENCE) / 2, len(rows) - 1)) * error
-        interval = (change - reach, change + reach)
+        changes = mean(rows @ change_weights(common))
+        change, interval = changes.value, changes.interval
         p = cohort_trend_p(toward * rows)
     return CohortTrend(len(rows), tuple(rows.mean(axis=0).tolist()), change, interval, p, verdicts)
 

@@ -197,7 +197,7 @@ class TrialFeedback:
     touches: tuple[TouchFinding, ...]
     worst: TouchFinding
     advice: tuple[Advice, ...]
-    progress: TraineeProgress | None
+    progress: TraineeProgress | None = None
     paused_s: float = 0.0
     skin: Sentence | None = None
 
@@ -263,7 +263,6 @@ def trial_feedback(
     normals: np.ndarray | None = None,
     motion: Mapping[str, float] | None = None,
     trajectory: Trajectory | None = None,
-    progress: TraineeProgress | None = None,
     bias: CommonBias | None = None,
 ) -> TrialFeedback:
     """Return the feedback on a trial; what is not known is left out.
@@ -274,7 +273,6 @@ def trial_feedback(
         normals: (n, 3) float, outward unit normals of the skin at the fiducials, RAS.
         motion: Motion metrics; with `path_efficiency`, detours are advised on too.
         trajectory: Of the trial, from its journal.
-        progress: Of the trainee.
         bias: That all touches share.
     """
     findings = touch_findings(registration, normals, trajectory)
@@ -283,7 +281,6 @@ def trial_feedback(
         touches=findings,
         worst=max(findings, key=lambda finding: finding.residual_mm),
         advice=advise(score, findings, motion or {}, bias),
-        progress=progress,
         paused_s=(motion or {}).get("pause_time_s", 0.0),
     )
 
