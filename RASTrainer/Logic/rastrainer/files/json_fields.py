@@ -1,10 +1,12 @@
-"""Read untrusted JSON files: each field with its type and range, and an error that names it."""
+"""Untrusted JSON as fields, each with type and range, or as dataclasses; errors name the key."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -36,6 +38,14 @@ class Fields:
         unknown = sorted(set(self._values) - set(known))
         if unknown:
             raise self.error(unknown[0][:40], f"left out; {what} has {', '.join(known)}")
+
+    def with_defaults(self, defaults: Mapping[str, Any]) -> Fields:
+        """Return the fields and, for those that are missing, defaults; also within objects."""
+        values = {**defaults, **self._values}
+        for name, inner in defaults.items():
+            if isinstance(inner, Mapping) and isinstance(values[name], dict):
+                values[name] = {**inner, **values[name]}
+        return Fields(values, self._file, self._path)
 
     def check_format(self, version: int) -> None:
         """Raise `InputError` if `formatVersion` is not the version that is read."""
@@ -164,3 +174,44 @@ def known_keys(value: Any, keys: Mapping[str, json_checks.Argument], what: str) 
             f"{what}: there is no {printable_name(unknown[0])}; use {', '.join(keys)}."
         )
     return checked
+
+
+def json_object(record: Any) -> dict[str, Any]:
+    """Return a dataclass as a JSON object: its fields in their order, named in camel case."""
+    return {_camel_case(each.name): _plain(getattr(record, each.name)) for each in fields(record)}
+
+
+def from_json_object(
+    kind: type[T], value: object, checks: Mapping[str, json_checks.Argument], what: str
+) -> T:
+    """Return the dataclass that a decoded JSON object holds; unknown keys are ignored.
+
+    Args:
+        kind: the dataclass.
+        value: the object, as of `json_object`.
+        checks: how each key is checked.
+        what: begins the sentence of an error.
+
+    Raises:
+        InputError: a key is missing or holds something else than it should.
+    """
+    names = {_camel_case(each.name): each.name for each in fields(cast("Any", kind))}
+    checked = json_checks.checked_keys(value, {key: checks[key] for key in names}, what)
+    return kind(**{names[key]: item for key, item in checked.items()})
+
+
+def _camel_case(name: str) -> str:
+    first, *others = name.split("_")
+    return first + "".join(word.capitalize() for word in others)
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "to_json"):
+        return value.to_json()
+    if is_dataclass(value):
+        return json_object(value)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, Mapping):
+        return dict(value)
+    return [_plain(item) for item in value] if isinstance(value, (tuple, list)) else value

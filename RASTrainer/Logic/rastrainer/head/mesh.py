@@ -5,6 +5,7 @@ The file is a binary PLY in RAS mm.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -106,8 +107,7 @@ class HeadMesh:
     @cached_property
     def vertex_normals(self) -> np.ndarray:
         """(n, 3) float: outward unit normals, means of the triangles' weighted by their areas."""
-        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
-        weighted = np.tile(np.cross(b - a, c - a), (3, 1))
+        weighted = np.tile(self._crosses, (3, 1))
         corners, count = self.triangles.T.ravel(), len(self.vertices)
         # Faster than `np.add.at`, which sums in the same order.
         normals = np.stack([np.bincount(corners, along, count) for along in weighted.T], axis=1)
@@ -117,10 +117,19 @@ class HeadMesh:
     @cached_property
     def triangle_normals(self) -> np.ndarray:
         """(m, 3) float: outward unit normals; zero where a triangle has no area."""
-        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
-        normals = np.cross(b - a, c - a)
+        normals = self._crosses
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         return np.asarray(normals / np.where(lengths > 0, lengths, 1.0))
+
+    @property
+    def _crosses(self) -> np.ndarray:
+        """(m, 3) float: outward normals as long as twice the triangles' areas."""
+        a, b, c = self._corners()
+        return np.cross(b - a, c - a)
+
+    def _corners(self) -> Iterator[np.ndarray]:
+        """Return the first, the second and the third corners of all triangles, each (m, 3)."""
+        return (self.vertices[self.triangles[:, corner]] for corner in range(3))
 
     @cached_property
     def triangle_spheres(self) -> tuple[np.ndarray, np.ndarray]:
@@ -145,7 +154,7 @@ class HeadMesh:
     @property
     def centroid(self) -> np.ndarray:
         """(3,) float: the center of mass of the closed body, RAS mm."""
-        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        a, b, c = self._corners()
         volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
         return volumes @ (a + b + c) / (4.0 * volumes.sum())
 

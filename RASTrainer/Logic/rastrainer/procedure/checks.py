@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from rastrainer.files.json_fields import json_object
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh
 from rastrainer.procedure.geometry import (
     BoneAhead,
@@ -56,14 +57,7 @@ class LineMeasures:
 
     def to_json(self) -> dict[str, Any]:
         """Return the measures, ready for JSON."""
-        return {
-            "name": self.name,
-            "lengthMm": self.length_mm,
-            "skullAngleDeg": self.skull_angle_deg,
-            "noGoMm": dict(self.no_go_mm),
-            "nearestLine": self.nearest_line,
-            "nearestLineMm": self.nearest_line_mm,
-        }
+        return json_object(self)
 
 
 def measure_lines(procedure: Procedure, meshes: ProcedureMeshes) -> list[LineMeasures]:

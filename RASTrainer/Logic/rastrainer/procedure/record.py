@@ -10,6 +10,7 @@ import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
+from rastrainer.files.json_fields import from_json_object, json_object
 from rastrainer.head.mesh import RAS_LIMIT_MM
 from rastrainer.json_checks import Argument, checked_keys
 from rastrainer.procedure.plan import DIAMETERS_MM, MAX_TRAJECTORIES, ProcedureKind
@@ -60,10 +61,6 @@ class RegisteredTouch:
     label: str
     position_mm: tuple[float, float, float]
 
-    def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `ProcedureRecord.from_json` reads."""
-        return {"label": self.label, "positionMm": list(self.position_mm)}
-
 
 @dataclass(frozen=True)
 class UsedRegistration:
@@ -84,14 +81,6 @@ class UsedRegistration:
         """(4, 4) float, mm, from World to MRI RAS."""
         return np.reshape(self.matrix, (4, 4))
 
-    def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `ProcedureRecord.from_json` reads."""
-        return {
-            "matrix": list(self.matrix),
-            "freMm": self.fre_mm,
-            "expectedTreMm": self.expected_tre_mm,
-        }
-
 
 @dataclass(frozen=True)
 class RecordedAttempt:
@@ -107,15 +96,6 @@ class RecordedAttempt:
     touches: tuple[RegisteredTouch, ...]
     registration: UsedRegistration | None
     checkpoints: tuple[TouchedCheckpoint, ...]
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `ProcedureRecord.from_json` reads."""
-        used = self.registration
-        return {
-            "touches": [touch.to_json() for touch in self.touches],
-            "registration": None if used is None else used.to_json(),
-            "checkpoints": [checkpoint.to_json() for checkpoint in self.checkpoints],
-        }
 
 
 @dataclass(frozen=True)
@@ -153,23 +133,6 @@ class PlacedInstrument:
     def at_depth(self, depth_mm: float) -> np.ndarray:
         """Return the point on the guide's axis at a depth beyond its tip, (3,) float, World, mm."""
         return np.array(self.guide_tip_mm) + depth_mm * np.array(self.guide_direction)
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the JSON object that `ProcedureRecord.from_json` reads."""
-        return {
-            "trajectory": self.trajectory,
-            "entryRas": list(self.entry_ras),
-            "targetRas": list(self.target_ras),
-            "diameterMm": self.diameter_mm,
-            "guideTipMm": list(self.guide_tip_mm),
-            "guideDirection": list(self.guide_direction),
-            "alignments": self.alignments,
-            "drillDepthMm": self.drill_depth_mm,
-            "instrumentDepthMm": self.instrument_depth_mm,
-            "selfAligned": self.self_aligned,
-            "timesS": dict(self.times_s),
-            "feed": dict(self.feed),
-        }
 
 
 @dataclass(frozen=True)
@@ -213,33 +176,17 @@ class ProcedureRecord:
         Raises:
             InputError: a key is missing or invalid.
         """
-        keys = checked_keys(value, _RECORD_KEYS, "The procedure's record")
-        if keys["attempts"][-1].registration is None:
+        record = from_json_object(cls, value, _RECORD_KEYS, "The procedure's record")
+        if record.attempts[-1].registration is None:
             raise InputError("The procedure's record must end with an accepted registration.")
-        return cls(
-            procedure=keys["procedure"],
-            kind=ProcedureKind(keys["kind"]),
-            sha256=keys["sha256"],
-            duration_s=keys["durationS"],
-            attempts=keys["attempts"],
-            instruments=keys["instruments"],
-            phase_times_s=keys["phaseTimesS"],
-        )
+        return record
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON object that `from_json` reads."""
-        return {
-            "procedure": self.procedure,
-            "kind": self.kind.value,
-            "sha256": self.sha256,
-            "durationS": self.duration_s,
-            "attempts": [attempt.to_json() for attempt in self.attempts],
-            "instruments": [instrument.to_json() for instrument in self.instruments],
-            "phaseTimesS": dict(self.phase_times_s),
-        }
+        return json_object(self)
 
 
-def rigid_matrix(value: Any) -> tuple[float, ...]:
+def _rigid_matrix(value: Any) -> tuple[float, ...]:
     """Accept 16 numbers, row by row, of a rigid 4×4 transform in mm.
 
     Raises:
@@ -269,70 +216,52 @@ def _list_of(
     return check
 
 
-def _numbers_by_name(
-    names: tuple[str, ...] | None, most: int, limit: float
-) -> Callable[[Any], dict[str, float]]:
-    check_name = json_checks.text() if names is None else json_checks.one_of(*names)
-    check_number = json_checks.number(0, limit)
-
-    def check(value: Any) -> dict[str, float]:
-        try:
-            if isinstance(value, Mapping) and len(value) <= most:
-                return {check_name(name): check_number(item) for name, item in value.items()}
-        except ValueError:
-            pass
-        allowed = "" if names is None else f" for some of {', '.join(names)}"
-        raise ValueError(f"an object of at most {most} numbers from 0 to {limit:g}{allowed}")
-
-    return check
-
-
 def _checkpoint(value: Any) -> TouchedCheckpoint:
     keys = checked_keys(value, _CHECKPOINT_KEYS, "Each checkpoint of the procedure's record")
     return TouchedCheckpoint(keys["name"], keys["positionMm"], keys["errorMm"], keys["simTime"])
 
 
 def _touch(value: Any) -> RegisteredTouch:
-    keys = checked_keys(value, _TOUCH_KEYS, "Each touch of the procedure's record")
-    return RegisteredTouch(keys["label"], keys["positionMm"])
+    what = "Each touch of the procedure's record"
+    return from_json_object(RegisteredTouch, value, _TOUCH_KEYS, what)
 
 
 def _registration(value: Any) -> UsedRegistration | None:
     if value is None:
         return None
-    keys = checked_keys(value, _REGISTRATION_KEYS, "Each registration of the procedure's record")
-    return UsedRegistration(keys["matrix"], keys["freMm"], keys["expectedTreMm"])
+    what = "Each registration of the procedure's record"
+    return from_json_object(UsedRegistration, value, _REGISTRATION_KEYS, what)
 
 
 def _attempt(value: Any) -> RecordedAttempt:
-    keys = checked_keys(value, _ATTEMPT_KEYS, "Each attempt of the procedure's record")
-    return RecordedAttempt(keys["touches"], keys["registration"], keys["checkpoints"])
+    what = "Each attempt of the procedure's record"
+    return from_json_object(RecordedAttempt, value, _ATTEMPT_KEYS, what)
 
 
 def _instrument(value: Any) -> PlacedInstrument:
-    keys = checked_keys(value, _INSTRUMENT_KEYS, "Each instrument of the procedure's record")
-    return PlacedInstrument(
-        trajectory=keys["trajectory"],
-        entry_ras=keys["entryRas"],
-        target_ras=keys["targetRas"],
-        diameter_mm=keys["diameterMm"],
-        guide_tip_mm=keys["guideTipMm"],
-        guide_direction=keys["guideDirection"],
-        alignments=keys["alignments"],
-        drill_depth_mm=keys["drillDepthMm"],
-        instrument_depth_mm=keys["instrumentDepthMm"],
-        self_aligned=keys["selfAligned"],
-        times_s=keys["timesS"],
-        feed=keys["feed"],
-    )
+    what = "Each instrument of the procedure's record"
+    return from_json_object(PlacedInstrument, value, _INSTRUMENT_KEYS, what)
 
 
+def _kind(value: Any) -> ProcedureKind:
+    return ProcedureKind(_KIND_NAME(value))
+
+
+_KIND_NAME = json_checks.one_of(*(kind.value for kind in ProcedureKind))
 _PHASES = tuple(phase.value for phase in (Phase.RUNNING, *PROCEDURE_PHASES))
 _WORLD_POINT = Argument(json_checks.numbers(3, WORLD_LIMIT_MM, "mm"))
 _RAS_POINT = Argument(json_checks.numbers(3, RAS_LIMIT_MM, "mm"))
 _LENGTH = Argument(json_checks.number(0, 1e6, "mm"))
 _DEPTH = Argument(json_checks.number(0, DEPTH_LIMIT_MM, "mm"))
-_TIMES = Argument(_numbers_by_name(_PHASES, len(_PHASES), _TIME_LIMIT_S), {})
+_TIMES = Argument(
+    json_checks.mapping(
+        len(_PHASES),
+        f"numbers from 0 to {_TIME_LIMIT_S:g} for some of {', '.join(_PHASES)}",
+        json_checks.number(0, _TIME_LIMIT_S),
+        json_checks.one_of(*_PHASES),
+    ),
+    {},
+)
 _CHECKPOINT_KEYS = {
     "name": Argument(json_checks.text()),
     "positionMm": _WORLD_POINT,
@@ -341,7 +270,7 @@ _CHECKPOINT_KEYS = {
 }
 _TOUCH_KEYS = {"label": Argument(json_checks.text()), "positionMm": _WORLD_POINT}
 _REGISTRATION_KEYS = {
-    "matrix": Argument(rigid_matrix),
+    "matrix": Argument(_rigid_matrix),
     "freMm": _LENGTH,
     "expectedTreMm": _LENGTH,
 }
@@ -362,11 +291,16 @@ _INSTRUMENT_KEYS = {
     "instrumentDepthMm": _DEPTH,
     "selfAligned": Argument(json_checks.yes_or_no, False),
     "timesS": _TIMES,
-    "feed": Argument(_numbers_by_name(None, MAX_FEED_METRICS, 1e9), {}),
+    "feed": Argument(
+        json_checks.mapping(
+            MAX_FEED_METRICS, "numbers from 0 to 1e+09", json_checks.number(0, 1e9)
+        ),
+        {},
+    ),
 }
 _RECORD_KEYS = {
     "procedure": Argument(json_checks.text(40)),
-    "kind": Argument(json_checks.one_of(*(kind.value for kind in ProcedureKind))),
+    "kind": Argument(_kind),
     "sha256": Argument(json_checks.text(64)),
     "durationS": Argument(json_checks.number(0, _TIME_LIMIT_S, "s")),
     "attempts": Argument(_list_of(_attempt, 1, MAX_ATTEMPTS, "attempts")),

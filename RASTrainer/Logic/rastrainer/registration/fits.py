@@ -43,19 +43,6 @@ def symmetric_scale(moving: np.ndarray, fixed: np.ndarray) -> float:
     return float(np.linalg.norm(_centered(fixed)) / np.linalg.norm(_centered(moving)))
 
 
-def leave_one_out(
-    moving: np.ndarray, fixed: np.ndarray, kind: str, weights: np.ndarray | None = None
-) -> np.ndarray:
-    """Return how far each point lies from where a fit to all the others puts it, (n,) float, mm."""
-    distances = np.empty(len(moving))
-    for i in range(len(moving)):
-        others = np.arange(len(moving)) != i
-        kept = None if weights is None else weights[others]
-        matrix = fit(moving[others], fixed[others], kind, kept)
-        distances[i] = np.linalg.norm(transforms.apply(matrix, moving[i]) - fixed[i])
-    return distances
-
-
 def motions(kind: str, points: np.ndarray) -> np.ndarray:
     """Return how points move with the parameters of a fit of a kind, (n, 3, parameters) float.
 

@@ -24,7 +24,6 @@ from rastrainer.registration.fits import (
     SIMILARITY,
     extents,
     fit,
-    leave_one_out,
 )
 from rastrainer.registration.warnings import RegistrationWarning, find_warnings
 
@@ -91,15 +90,19 @@ class Registration:
             InputError: without one of them, too few points are left or they lie on a line (for an
                 affine registration: in a plane).
         """
-        for i in range(len(self.labels)):
-            kept = np.arange(len(self.labels)) != i
-            check_points(
-                self.moving_mm[kept],
-                self.fixed_mm[kept],
-                self.kind,
-                [label for j, label in enumerate(self.labels) if j != i],
+        rows = np.arange(len(self.labels))
+        distances = np.empty(len(rows))
+        for left_out in rows:
+            others = rows != left_out
+            labels = [self.labels[row] for row in rows[others]]
+            moving, fixed, _ = check_points(
+                self.moving_mm[others], self.fixed_mm[others], self.kind, labels
             )
-        return leave_one_out(self.moving_mm, self.fixed_mm, self.kind, self.weights)
+            weights = None if self.weights is None else self.weights[others]
+            matrix = fit(moving, fixed, self.kind, weights)
+            there = transforms.apply(matrix, self.moving_mm[left_out])
+            distances[left_out] = np.linalg.norm(there - self.fixed_mm[left_out])
+        return distances
 
 
 def register(

@@ -214,7 +214,7 @@ def _load(folder: Path) -> Scenario:
         target_name=target.text("name", 60),
         target_position=target.point("positionRas", RAS_LIMIT_MM),
         head_to_world=_rigid(fields, "headToWorld"),
-        perturbation=_perturbation(fields.fields("perturbation")),
+        perturbation=read_perturbation(fields),
         tasks=_tasks(fields),
         cameras={name: _camera(fields.fields("cameras").fields(name)) for name in CAMERAS},
         furniture=_furniture(fields),
@@ -250,11 +250,17 @@ def _tasks(fields: Fields) -> tuple[Task, ...]:
     return tuple(tasks.values())
 
 
-def _perturbation(fields: Fields) -> Perturbation:
+def read_perturbation(fields: Fields) -> Perturbation:
+    """Return the field `perturbation`.
+
+    Raises:
+        InputError: it is missing or invalid.
+    """
+    limits = fields.fields("perturbation")
     return Perturbation(
-        fields.number("translationMm", 0, MAX_PERTURBATION.translation_mm),
-        fields.number("yawDeg", 0, MAX_PERTURBATION.yaw_deg),
-        fields.number("tiltDeg", 0, MAX_PERTURBATION.tilt_deg),
+        limits.number("translationMm", 0, MAX_PERTURBATION.translation_mm),
+        limits.number("yawDeg", 0, MAX_PERTURBATION.yaw_deg),
+        limits.number("tiltDeg", 0, MAX_PERTURBATION.tilt_deg),
     )
 
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import Fields, read_fields
+from rastrainer.files.json_fields import json_object, read_fields
 from rastrainer.files.writing import write_json
-from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
+from rastrainer.head.trial_head import Perturbation
 from rastrainer.protocol import WORLD_LIMIT_MM
-from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Camera, Furniture
+from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Camera, Furniture, read_perturbation
 
 FAR_EYE_MM, FAR_FOCUS_MM = (240.0, -2050.0, 1050.0), (240.0, 0.0, 430.0)
 CLOSE_UP_FROM_HEAD_MM, FOCUS_FROM_HEAD_MM = (0.0, -600.0, 220.0), (0.0, 0.0, 5.0)
@@ -90,33 +91,21 @@ def read_setup(path: Path) -> SetUp:
     Raises:
         InputError: the file is unusable; the message names the field.
     """
-    fields, default = read_fields(Path(path)), SetUp()
+    fields = read_fields(Path(path))
     known = ("head", "perturbation", "table", "stand", "robotBaseMm")
     unknown = [name for name in fields.names() if name not in known]
     if unknown:
         raise InputError(f"{path}: a set-up has no {unknown[0]!r}; it has {', '.join(known)}.")
-    head, table, stand = (_part(fields, name) for name in ("head", "table", "stand"))
-    limits = _part(fields, "perturbation")
+    fields = fields.with_defaults(_content(SetUp()))
+    head, table = fields.fields("head"), fields.fields("table")
     return SetUp(
-        _point(head, "centerMm", default.head_center),
-        _number(head, "yawDeg", -180.0, 180.0, default.head_yaw_deg),
-        Perturbation(
-            _number(
-                limits,
-                "translationMm",
-                0.0,
-                MAX_PERTURBATION.translation_mm,
-                default.perturbation.translation_mm,
-            ),
-            _number(limits, "yawDeg", 0.0, MAX_PERTURBATION.yaw_deg, default.perturbation.yaw_deg),
-            _number(
-                limits, "tiltDeg", 0.0, MAX_PERTURBATION.tilt_deg, default.perturbation.tilt_deg
-            ),
-        ),
-        _point(table, "centerMm", default.table_center),
-        _point(table, "sizeMm", default.table_size),
-        _number(stand, "diameterMm", *STAND_DIAMETERS_MM, default.stand_diameter),
-        _point(fields, "robotBaseMm", default.robot_base),
+        tuple(head.numbers("centerMm", 3, WORLD_LIMIT_MM)),
+        head.number("yawDeg", -180.0, 180.0),
+        read_perturbation(fields),
+        tuple(table.numbers("centerMm", 2, WORLD_LIMIT_MM)),
+        tuple(table.numbers("sizeMm", 3, WORLD_LIMIT_MM)),
+        fields.fields("stand").number("diameterMm", *STAND_DIAMETERS_MM),
+        tuple(fields.numbers("robotBaseMm", 2, WORLD_LIMIT_MM)),
     )
 
 
@@ -126,33 +115,14 @@ def write_setup(path: Path, setup: SetUp) -> None:
     Raises:
         InputError: the file cannot be written.
     """
-    content = {
+    write_json(path, _content(setup))
+
+
+def _content(setup: SetUp) -> dict[str, Any]:
+    return {
         "head": {"centerMm": setup.head_center, "yawDeg": setup.head_yaw_deg},
-        "perturbation": {
-            "translationMm": setup.perturbation.translation_mm,
-            "yawDeg": setup.perturbation.yaw_deg,
-            "tiltDeg": setup.perturbation.tilt_deg,
-        },
+        "perturbation": json_object(setup.perturbation),
         "table": {"centerMm": setup.table_center, "sizeMm": setup.table_size},
         "stand": {"diameterMm": setup.stand_diameter},
         "robotBaseMm": setup.robot_base,
     }
-    write_json(path, content)
-
-
-def _part(fields: Fields, name: str) -> Fields | None:
-    return fields.fields(name) if name in fields.names() else None
-
-
-def _point(fields: Fields | None, name: str, default: tuple[float, ...]) -> tuple[float, ...]:
-    if fields is None or name not in fields.names():
-        return default
-    return tuple(fields.numbers(name, len(default), WORLD_LIMIT_MM))
-
-
-def _number(
-    fields: Fields | None, name: str, lowest: float, highest: float, default: float
-) -> float:
-    if fields is None or name not in fields.names():
-        return default
-    return fields.number(name, lowest, highest)

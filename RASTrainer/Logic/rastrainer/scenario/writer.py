@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.files.json_fields import read_fields
+from rastrainer.files.json_fields import json_object, read_fields
 from rastrainer.files.point_list import PointList, write_markups
 from rastrainer.files.writing import make_private_folder, write_json
 from rastrainer.head.mesh import HeadMesh, read_head_mesh, write_head_mesh
@@ -110,7 +110,7 @@ def scenario_json(
     scenario: Scenario, has_skull: bool, volume: HeadVolume | None = None
 ) -> dict[str, Any]:
     """Return the content of a scenario's `scenario.json`."""
-    limits, furniture, provenance = scenario.perturbation, scenario.furniture, scenario.provenance
+    furniture = scenario.furniture
     content: dict[str, Any] = {
         "formatVersion": FORMAT_VERSION,
         "name": scenario.name,
@@ -118,11 +118,7 @@ def scenario_json(
         "head": HEAD_NAME,
         "target": _named_point(scenario.target_name, scenario.target_position),
         "headToWorld": _listed(scenario.head_to_world.ravel(), 9),
-        "perturbation": {
-            "translationMm": limits.translation_mm,
-            "yawDeg": limits.yaw_deg,
-            "tiltDeg": limits.tilt_deg,
-        },
+        "perturbation": json_object(scenario.perturbation),
         "tasks": [_task_entry(task) for task in scenario.tasks],
         "cameras": {name: _camera(camera) for name, camera in scenario.cameras.items()},
         "table": {
@@ -130,11 +126,7 @@ def scenario_json(
             "sizeMm": _listed(furniture.table_size),
         },
         "stand": {"diameterMm": furniture.stand_diameter},
-        "provenance": {
-            "source": provenance.source,
-            "method": provenance.method,
-            "license": provenance.license,
-        },
+        "provenance": json_object(scenario.provenance),
     }
     if has_skull:
         kind = SKULL_KINDS[1 if scenario.is_skull_approximate else 0]

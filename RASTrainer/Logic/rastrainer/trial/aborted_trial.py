@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rastrainer import json_checks
+from rastrainer.files.json_fields import from_json_object, json_object
 from rastrainer.json_checks import Argument
 from rastrainer.protocol import (
     FIDUCIAL_COUNT,
@@ -25,10 +26,9 @@ from rastrainer.trial.record import (
     SHARED_CHECKS,
     TIME_LIMIT_S,
     TouchedPoint,
+    check_points,
     played_method,
     points_up_to_all,
-    record_from_json,
-    record_to_json,
     utc_time,
 )
 
@@ -115,18 +115,18 @@ class AbortedTrial:
         Raises:
             InputError: a key is missing or invalid.
         """
-        return record_from_json(cls, value, _CHECKS, "The record of an aborted trial")
+        record = from_json_object(cls, value, _CHECKS, "The record of an aborted trial")
+        check_points(record.points)
+        return record
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON object that `from_json` reads."""
-        values = record_to_json(self)
         # Records of touched fiducials stay as they were before there was anything else.
-        del values["method"], values["traced"]
-        if self.method is not RegistrationMethod.FIDUCIALS:
-            values["method"] = self.method.value
-        if self.traced:
-            values["traced"] = self.traced
-        return values
+        is_left_out = {
+            "method": self.method is RegistrationMethod.FIDUCIALS,
+            "traced": not self.traced,
+        }
+        return {key: item for key, item in json_object(self).items() if not is_left_out.get(key)}
 
 
 _CHECKS = {

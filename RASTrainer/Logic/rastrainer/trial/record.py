@@ -6,14 +6,15 @@ import contextlib
 import itertools
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import dataclass, field
 from datetime import datetime, timedelta
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import Any
 
 import numpy as np
 
 from rastrainer import json_checks
 from rastrainer.errors import InputError
+from rastrainer.files.json_fields import from_json_object, json_object
 from rastrainer.head.trial_head import UNMOVED, SkinShift
 from rastrainer.json_checks import Argument, checked_keys
 from rastrainer.procedure.record import ProcedureRecord
@@ -64,19 +65,6 @@ class TouchedPoint:
             "simTime": self.sim_time_s,
             "utc": self.utc,
         }
-
-
-class DeliveredRecord(Protocol):
-    """A dataclass of what the simulator delivers of a trial."""
-
-    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
-
-    @property
-    def points(self) -> tuple[TouchedPoint, ...]:
-        """The kept touches, in their order."""
-
-
-Record = TypeVar("Record", bound=DeliveredRecord)
 
 
 @dataclass(frozen=True)
@@ -162,25 +150,22 @@ class TrialRecord:
         Raises:
             InputError: a key is missing or holds something else than it should.
         """
-        record = record_from_json(cls, value, _CHECKS, "The trial record")
+        record = from_json_object(cls, value, _CHECKS, "The trial record")
+        check_points(record.points)
         _check_method(record)
         return record
 
     def to_json(self) -> dict[str, Any]:
         """Return the JSON object that `from_json` reads."""
-        values = record_to_json(self)
+        values = json_object(self) | {"skin": self.skin.amounts}
         # Records of touched fiducials alone stay as they were before there was anything else.
-        for added in ("procedure", "method", "trace", "skin"):
-            del values[added]
-        if self.procedure is not None:
-            values["procedure"] = self.procedure.to_json()
-        if self.method is not RegistrationMethod.FIDUCIALS:
-            values["method"] = self.method.value
-        if self.trace:
-            values["trace"] = [list(point) for point in self.trace]
-        if not self.skin.is_none:
-            values["skin"] = self.skin.amounts
-        return values
+        is_left_out = {
+            "procedure": self.procedure is None,
+            "method": self.method is RegistrationMethod.FIDUCIALS,
+            "trace": not self.trace,
+            "skin": self.skin.is_none,
+        }
+        return {key: item for key, item in values.items() if not is_left_out.get(key)}
 
 
 def utc_time(value: Any) -> str:
@@ -266,23 +251,6 @@ def played_method(value: Any) -> RegistrationMethod:
     return RegistrationMethod(_METHOD_NAME(value))
 
 
-def _mapping(
-    limit: int, words: str, check: Callable[[Any], Any]
-) -> Callable[[Any], dict[str, Any]]:
-    """Accept an object of at most `limit` names with checked values; `words` describes them."""
-    check_name = json_checks.text()
-
-    def check_mapping(value: Any) -> dict[str, Any]:
-        try:
-            if isinstance(value, Mapping) and len(value) <= limit:
-                return {check_name(name): check(item) for name, item in value.items()}
-        except ValueError:
-            pass
-        raise ValueError(f"an object of at most {limit} {words}")
-
-    return check_mapping
-
-
 def _text_or_number(value: Any) -> str | float:
     check = json_checks.text() if isinstance(value, str) else json_checks.number(0, 1e9)
     return check(value)
@@ -292,42 +260,7 @@ def _optional(check: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return lambda value: None if value is None else check(value)
 
 
-def record_from_json(
-    record_class: type[Record], value: object, checks: Mapping[str, Argument], what: str
-) -> Record:
-    """Return the record that a decoded JSON object holds; unknown keys are ignored.
-
-    Args:
-        record_class: `TrialRecord`, or another dataclass with `points`. The keys are its fields in
-            camel case, in their order.
-        value: the object.
-        checks: how each key is checked.
-        what: begins the sentence of an error.
-
-    Raises:
-        InputError: a key is missing or holds something else than it should.
-    """
-    names = {_key(field): field.name for field in fields(record_class)}
-    checked = checked_keys(value, {key: checks[key] for key in names}, what)
-    record = record_class(**{names[key]: item for key, item in checked.items()})
-    _check_points(record.points)
-    return record
-
-
-def record_to_json(record: DeliveredRecord) -> dict[str, Any]:
-    """Return the JSON object that `record_from_json` reads."""
-    values = {_key(field): getattr(record, field.name) for field in fields(record)}
-    return {
-        key: dict(item) if isinstance(item, Mapping) else item for key, item in values.items()
-    } | {"points": [point.to_json() for point in record.points]}
-
-
-def _key(field: Field[Any]) -> str:
-    first, *others = field.name.split("_")
-    return first + "".join(word.capitalize() for word in others)
-
-
-def _check_points(points: tuple[TouchedPoint, ...]) -> None:
+def check_points(points: tuple[TouchedPoint, ...]) -> None:
     """Raise `InputError` if a label is repeated or the points are not in order of time."""
     seen: set[str] = set()
     for point in points:
@@ -362,7 +295,7 @@ SHARED_CHECKS = {
     "rejectedTouches": Argument(json_checks.whole_number(0, TOUCH_LIMIT)),
     "undoneTouches": Argument(json_checks.whole_number(0, TOUCH_LIMIT)),
     "versions": Argument(
-        _mapping(VERSIONS_LIMIT, "names with their versions as text", json_checks.text())
+        json_checks.mapping(VERSIONS_LIMIT, "names with their versions as text", json_checks.text())
     ),
     "touchRule": Argument(json_checks.one_of(*(rule.value for rule in TouchRule))),
 }
@@ -377,10 +310,14 @@ _CHECKS = {
     # Records older than this key are of the paper's rule.
     "touchRule": Argument(SHARED_CHECKS["touchRule"].check, TouchRule.WITHIN_RADIUS.value),
     "motion": Argument(
-        _mapping(MOTION_LIMIT, "names with finite numbers", json_checks.number(-1e9, 1e9)), {}
+        json_checks.mapping(
+            MOTION_LIMIT, "names with finite numbers", json_checks.number(-1e9, 1e9)
+        ),
+        {},
     ),
     "display": Argument(
-        _mapping(DISPLAY_LIMIT, "names with texts or finite numbers", _text_or_number), {}
+        json_checks.mapping(DISPLAY_LIMIT, "names with texts or finite numbers", _text_or_number),
+        {},
     ),
     "procedure": Argument(_optional(ProcedureRecord.from_json), None),
     "method": Argument(played_method, RegistrationMethod.FIDUCIALS),
