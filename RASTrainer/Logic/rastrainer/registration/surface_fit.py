@@ -61,17 +61,23 @@ class SurfaceFit:
         return SurfaceFit(*(np.concatenate(list(pair)) for pair in pairs))
 
 
-def plane_normals(mesh: HeadMesh, fit: SurfaceFit, points: np.ndarray) -> np.ndarray:
-    """Return the unit directions (s, n, 3) in which the distances grow.
+def plane_normals(
+    mesh: HeadMesh, offsets: np.ndarray, distances: np.ndarray, triangles: np.ndarray
+) -> np.ndarray:
+    """Return the unit directions (…, 3) in which the distances grow.
 
     It is the line from the nearest point; for a point on the surface, the triangle's normal.
+
+    Args:
+        mesh: The surface.
+        offsets: (…, 3) float, mm, of points from the nearest ones of the surface.
+        distances: (…) float, their lengths.
+        triangles: (…) int, on which the nearest points lie.
     """
-    offsets = transforms.apply_each(fit.matrices, points) - fit.nearest_mm
-    distances = fit.distances_mm[..., None]
-    normals = offsets / np.where(distances > 0.0, distances, 1.0)
-    close = np.nonzero(fit.distances_mm < 1e-6)
+    normals = offsets / np.where(distances > 0.0, distances, 1.0)[..., None]
+    close = np.nonzero(distances < 1e-6)
     if len(close[0]):
-        normals[close] = mesh.triangle_normals[fit.triangles[close]]
+        normals[close] = mesh.triangle_normals[triangles[close]]
     return normals
 
 
@@ -116,7 +122,8 @@ def whole_step(
     arms = places - center[:, None]
     # Rotations are counted in mm at the trace's own extent, so that all parameters are alike.
     extent = np.sqrt(np.mean(np.sum(arms**2, axis=2), axis=1))
-    normals = plane_normals(mesh, here, points)
+    offsets = places - here.nearest_mm
+    normals = plane_normals(mesh, offsets, here.distances_mm, here.triangles)
     rows = np.concatenate(
         [normals, transforms.cross_products(arms, normals) / extent[:, None, None]], axis=2
     )
@@ -356,10 +363,11 @@ def _moved(
     places = transforms.apply_each(fit.matrices, points)[0]
     center = places.mean(axis=0)
     extent = float(np.sqrt(np.mean(np.sum((places - center) ** 2, axis=1))))
-    normals = plane_normals(mesh, fit, points)[0][counts]
+    offsets, distances = places - fit.nearest_mm[0], fit.distances_mm[0]
+    normals = plane_normals(mesh, offsets, distances, fit.triangles[0])[counts]
     rows = np.concatenate([normals, np.cross(places[counts] - center, normals) / extent], axis=1)
     curvature, axes = np.linalg.eigh(rows.T @ rows)
-    variance = np.mean(fit.distances_mm[0][counts] ** 2) / np.maximum(curvature, 1e-9)
+    variance = np.mean(distances[counts] ** 2) / np.maximum(curvature, 1e-9)
     sizes = np.minimum(np.resize(NEARBY_SD, (NEARBY, 1)) * np.sqrt(variance), NEARBY_MM)
     steps = (default_rng([seed, 1]).normal(size=(NEARBY, 6)) * sizes) @ axes.T
     moved = np.tile(np.eye(4), (NEARBY, 1, 1))

@@ -225,15 +225,8 @@ def _match(
     matrix = fit.matrices[0]
     places = transforms.apply(matrix, trace)
     nearest = mesh.tree.nearest(places)
-    of_all = SurfaceFit(
-        matrix[None],
-        nearest.distances[None],
-        nearest.positions[None],
-        nearest.triangles[None],
-        fit.converged[:1],
-        fit.iterations[:1],
-    )
-    normals = plane_normals(mesh, of_all, trace)[0]
+    residuals = places - nearest.positions
+    normals = plane_normals(mesh, residuals, nearest.distances, nearest.triangles)
     is_inlier = nearest.distances <= gate
     rms = float(np.sqrt(np.mean(nearest.distances[is_inlier] ** 2)))
     measures = MatchMeasures(
@@ -253,7 +246,7 @@ def _match(
         matrix=matrix,
         trace_mm=trace,
         nearest_mm=nearest.positions,
-        residual_vectors_mm=places - nearest.positions,
+        residual_vectors_mm=residuals,
         residuals_mm=nearest.distances,
         normals=normals,
         is_inlier=is_inlier,
