@@ -14,7 +14,7 @@ from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.curriculum.standing import CountedTrial, standing_in
 from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.end_to_end.simulator_process import ViewedSimulator

@@ -17,7 +17,7 @@ from rastrainer.procedure.record import ProcedureRecord, RecordedAttempt, UsedRe
 from rastrainer.registration.registration import register
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.export.slicer_files import write_slicer_files
+from rastrainer_simulator.export.trial_files import write_slicer_files
 from Testing.domain.procedure.made_up_procedure import (
     VESSEL_CENTER,
     made_up_meshes,

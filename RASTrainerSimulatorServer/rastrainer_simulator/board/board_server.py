@@ -18,7 +18,6 @@ from rastrainer.json_checks import accepted, one_of, text
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.assets import NOT_BUILT, page_folder
 from rastrainer_simulator.board.class_table import ClassWatch
-from rastrainer_simulator.board.live_view import SEAT_PATH, LiveView
 from rastrainer_simulator.board.seat_client import RefusedError, SeatClient
 from rastrainer_simulator.board.seat_list import (
     SeatEntry,
@@ -26,7 +25,7 @@ from rastrainer_simulator.board.seat_list import (
     checked_address,
     checked_fingerprint,
 )
-from rastrainer_simulator.board.watched_seat import WatchedSeat
+from rastrainer_simulator.board.watched_seat import SEAT_PATH, LiveView, WatchedSeat
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views.gate import ROLE, PairingCode
 from rastrainer_simulator.net.views.limited_server import GuardedServer

@@ -30,8 +30,7 @@ from rastrainer_simulator.cli.record_store_settings import (
     home_page_url,
     read_record_store_settings,
 )
-from rastrainer_simulator.export.motion_bids import write_motion_bids
-from rastrainer_simulator.export.slicer_files import write_slicer_files
+from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
 
 FORMATS = ("csv", "bids", "xapi", "slicer")

@@ -15,7 +15,7 @@ from rastrainer.protocol import (
     Phase,
     StepKind,
 )
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.flow.arm_screen import BACK_WITHIN, FARTHEST, ArmScreen, PathArc
 from rastrainer_simulator.flow.pages.session_page import stick_hints
 from rastrainer_simulator.flow.pages.start import StartPage

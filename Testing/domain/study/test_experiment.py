@@ -14,6 +14,7 @@ from rastrainer.protocol import ALL_DONE, CommandName
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.steps import (
     StepKind,
+    StudyStep,
     mode_order,
     steps_for,
     task_order,
@@ -26,7 +27,6 @@ from rastrainer.study.protocol.study_protocol import (
     read_study_protocol,
     study_protocol_from_json,
 )
-from rastrainer.study.protocol.study_step import StudyStep
 from rastrainer.trial.scoring import PASS_MARK, SCORE_VERSION
 from Testing.domain.trial.trial_records import make_record
 
@@ -158,7 +158,7 @@ def test_every_step_survives_the_study_step_command(study):
     progress.enroll("T001")
     kinds = set()
     while True:
-        step = StudyStep.of("T001", progress.progress("T001"), NOW)
+        step = progress.progress("T001").study_step("T001", NOW)
         checked = check_arguments(CommandName.STUDY_STEP, json.loads(json.dumps(step.arguments())))
         assert StudyStep.from_arguments(checked) == step
         kinds.add(step.kind)
@@ -197,7 +197,7 @@ def test_a_protocol_may_set_the_guidance_to_the_next_point_and_a_ghost(study):
     progress.set_protocol(own)
     progress.enroll("T001")
     progress.skip("T001", "hmd/before/ssq", "questionnaire sheets were missing")
-    step = StudyStep.of("T001", progress.progress("T001"), datetime.now(timezone.utc))
+    step = progress.progress("T001").study_step("T001", datetime.now(timezone.utc))
     assert (step.kind, step.guidance, step.ghost) == ("trial-run", "arrow", "")
     ghosts = {step.ghost for step in steps_for(own, 0) if step.kind is StepKind.TRIAL}
     assert ghosts == {"own best"}

@@ -12,7 +12,6 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.steps import StepKind
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
-from rastrainer.study.protocol.study_step import StudyStep
 from Testing.domain.study.played_study import STUDIES
 from Testing.domain.trial.trial_records import make_aborted, make_record
 
@@ -59,11 +58,11 @@ def test_an_aborted_trial_is_repeated_only_with_a_reason(study):
     standing = progress.progress("A")
     with pytest.raises(InputError, match="aborted with 15 of 15 points touched"):
         standing.check_start("desktop", "task-1")
-    assert StudyStep.of("A", standing, datetime.now(timezone.utc)).kind == REPEAT
+    assert standing.study_step("A", datetime.now(timezone.utc)).kind == REPEAT
     progress.explain_repeat("A", f"  {REASON} ")
     standing = progress.progress("A")
     assert standing.check_start("desktop", "task-1")
-    assert StudyStep.of("A", standing, datetime.now(timezone.utc)).kind == StepKind.TRIAL.value
+    assert standing.study_step("A", datetime.now(timezone.utc)).kind == StepKind.TRIAL.value
     (stored,) = AbortedTrials(study).of("A")
     assert (stored.step, stored.repeat_reason) == ("desktop/1/task-1", REASON)
 

@@ -7,7 +7,7 @@ from rastrainer.files.point_list import read_markups, read_point_cloud
 from rastrainer.registration.registration import register
 from rastrainer.study.database.values import StoredRegistration, StoredTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.export.slicer_files import write_slicer_files
+from rastrainer_simulator.export.trial_files import write_slicer_files
 from Testing.simulator.record.test_recorded_trace import record_of
 
 LANDMARKS = np.array([[0.0, 90.0, -30.0], [50.0, 60.0, -40.0], [-50.0, 60.0, -40.0]])

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from rastrainer.protocol import MAX_ASSIGNMENTS, Phase
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.study.ratings import FORMS
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (

@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer.protocol import TRIAL_RUN, AssignmentState, GoalKind
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.flow.pages.result import FinishedPage
 from rastrainer_simulator.flow.session.curricula import MAX_TRAINEES, Curricula
 from rastrainer_simulator.flow.session.session import REACHED_S

@@ -10,7 +10,7 @@ import pytest
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.journal.recording import read_track
 from rastrainer.protocol import OPEN_PHASES
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation

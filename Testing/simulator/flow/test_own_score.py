@@ -10,7 +10,7 @@ import pytest
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import Phase
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.recording import read_track
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter

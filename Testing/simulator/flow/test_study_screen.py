@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.protocol import RegistrationMethod
-from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
+from rastrainer.study.protocol.steps import StepAnswers, StudyStep
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
 from rastrainer_simulator.flow.session.study_steps import ANSWERED, MAX_TRAINEES, StudySteps
 

@@ -21,8 +21,11 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.export.motion_bids import participant_labels, write_motion_bids
-from rastrainer_simulator.export.slicer_files import transform_text
+from rastrainer_simulator.export.trial_files import (
+    participant_labels,
+    transform_text,
+    write_motion_bids,
+)
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
 
 VALIDATOR = Path(sys.executable).with_name("bids-validator-deno")

@@ -9,7 +9,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer_simulator.flow.pages.assignments import AssignmentsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage

@@ -9,7 +9,7 @@ from typing import Any, TypeGuard
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.trial_feedback import MAX_SHORT
 from rastrainer_simulator.flow.pages.errors import GOOD_MM, POOR_MM, ErrorsPage

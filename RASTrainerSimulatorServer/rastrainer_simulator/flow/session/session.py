@@ -15,7 +15,7 @@ from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, CommandName, Mode, RegistrationMethod
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer.study.protocol.study_step import StudyStep
+from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.flow.session.curricula import AssignmentWords, newly_reached
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from rastrainer.protocol import FREE, StepKind
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
-from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
+from rastrainer.study.protocol.steps import StepAnswers, StudyStep
 from rastrainer_simulator.ops.texts.texts import Texts
 
 MAX_TRAINEES = 1000

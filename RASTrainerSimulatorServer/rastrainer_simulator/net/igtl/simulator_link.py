@@ -15,7 +15,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.content import Command, Transform
 from rastrainer.igtl.message import Message
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName, DeviceName, Phase, Rate
-from rastrainer.study.protocol.study_step import StepAnswers
+from rastrainer.study.protocol.steps import StepAnswers
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.net.igtl.command_handler import CommandHandler

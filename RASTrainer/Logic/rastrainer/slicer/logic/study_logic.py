@@ -19,10 +19,9 @@ from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.progress import Progress
-from rastrainer.study.protocol.steps import Step, StepKind
+from rastrainer.study.protocol.steps import Step, StepAnswers, StepKind, StudyStep
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
-from rastrainer.study.protocol.study_step import StepAnswers, StudyStep
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
 
@@ -260,7 +259,7 @@ class StudyLogic:
                 return
             progress = study.progress(answers.trainee)
             step = progress.next_step
-            isAsked = answers.belong_to(StudyStep.of(answers.trainee, progress, self._now()))
+            isAsked = answers.belong_to(progress.study_step(answers.trainee, self._now()))
             if isAsked and step is not None:
                 study.finish(answers.trainee, step.name, {"answers": answers.answers})
         except InputError as error:
@@ -310,7 +309,7 @@ class StudyLogic:
         """
         progress = StudyProgress(self._trainees.study).count_played(name)
         self._noteBreak(name, progress)
-        step = StudyStep.of(name, progress, self._now())
+        step = progress.study_step(name, self._now())
         if self._sentSteps.get(name) != step:
             self._sentSteps[name] = step
             self._send(step)

@@ -13,14 +13,14 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_number
-from rastrainer.protocol import RegistrationMethod
+from rastrainer.protocol import ALL_DONE, REPEAT, RegistrationMethod
 from rastrainer.study.database.aborted_trials import unexplained
 from rastrainer.study.database.database import Connection
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded
 from rastrainer.study.database.values import moment
 from rastrainer.study.protocol.questionnaires import find_questionnaire
-from rastrainer.study.protocol.steps import Step, StepKind
+from rastrainer.study.protocol.steps import Step, StepKind, StudyStep
 from rastrainer.trial.aborted_trial import AbortedTrial
 
 DONE, SKIPPED = "done", "skipped"
@@ -138,6 +138,29 @@ class Progress:
         return (
             f"This trial was aborted with {last.done}. It can be repeated only with a reason, "
             "which goes into the report."
+        )
+
+    def study_step(self, trainee: str, now: datetime) -> StudyStep:
+        """Return the next step as the simulator is told of it."""
+        step, count = self.next_step, len(self.steps)
+        if step is None:
+            return StudyStep(trainee, ALL_DONE, count, count)
+        return StudyStep(
+            trainee=trainee,
+            kind=REPEAT if self.unexplained else step.kind.value,
+            number=len(self.entries) + 1,
+            count=count,
+            task=step.task,
+            mode=step.mode,
+            questionnaire=step.questionnaire,
+            minutes=step.minutes,
+            over=min(self.minutes_over(now), step.minutes),
+            guidance=step.guidance,
+            ghost=step.ghost,
+            procedure=step.procedure,
+            tutorial=step.tutorial,
+            method="" if step.method == RegistrationMethod.FIDUCIALS.value else step.method,
+            skin=step.skin,
         )
 
     def check_start(self, mode: str, task: str) -> Step:
