@@ -69,7 +69,7 @@ class RASTrainer(ScriptedLoadableModule):
 def registerSampleData():
     """Add the MRI that comes with this module to the module Sample Data."""
     from rastrainer.panels.application import assetsFolder
-    from rastrainer.panels.sample_data import registerSampleData as register
+    from rastrainer.panels.application import registerSampleData as register
 
     register(assetsFolder(Path(__file__)))
 
@@ -263,8 +263,9 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
 
     def test_theFitOfPointsInTheSceneIsExact(self):
         import numpy as np
-        from rastrainer.slicer.scene.control_points import setPoints, worldPoints
-        from rastrainer.slicer.scene.registration_nodes import registerNodes, showRegistration
+        from rastrainer.slicer.scene.nodes import setPoints, worldPoints
+        from rastrainer.registration.registration import register
+        from rastrainer.slicer.scene.registration_nodes import Choices, readPairs, showRegistration
 
         fixedPoints = np.array([[0.0, 0, 0], [90, 0, 0], [0, 70, 0], [0, 0, 50], [30, 30, 30]])
         movingPoints = fixedPoints[:, [1, 2, 0]] + [500.0, 20.0, 300.0]
@@ -272,13 +273,14 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         moving = slicer.mrmlScene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Moving")
         setPoints(fixed, tuple("12345"), fixedPoints)
         setPoints(moving, tuple("12345"), movingPoints)
-        registration = registerNodes(moving, fixed)
+        pairs = readPairs(moving, fixed, Choices())
+        registration = register(pairs.moving, pairs.fixed, labels=pairs.labels)
         self.assertLess(registration.fre_mm, 1e-6)
         showRegistration(slicer.mrmlScene, registration, moving, fixed)
         self.assertLess(np.abs(worldPoints(moving) - fixedPoints).max(), 1e-6)
 
     def test_anAbsentSimulatorIsReportedAndTheSceneMayBeCleared(self):
-        from rastrainer.slicer.link.heartbeat import LinkState
+        from rastrainer.slicer.link.link_status import LinkState
 
         logic = RASTrainerLogic()
         link = logic.session.link

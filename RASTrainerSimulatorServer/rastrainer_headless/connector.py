@@ -21,15 +21,10 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.content import Command, CommandReply, Status
 from rastrainer.igtl.message import Header, Message, crc64, pack, unpack
 from rastrainer.slicer.link.connection import ConnectorKit
-from rastrainer.slicer.scene.link_nodes import ORIGINAL_NAME, decodedText
+from rastrainer.slicer.scene.nodes import ORIGINAL_NAME, decodedText
 from rastrainer_headless.command import HeadlessCommand, OutgoingCommand
 from rastrainer_headless.peer_sockets import PeerSockets, recordCrash
-from rastrainer_headless.scene import (
-    NODE_CLASS,
-    adoptOrCreateNode,
-    asSlicerHas,
-    updateNode,
-)
+from rastrainer_headless.scene import NODE_CLASS, adoptOrCreateNode, asSlicerHas, updateNode
 
 _INCOMING = "incoming"
 _CRASHING_TYPE = re.compile(r"(GET|STT|STP|RTS)_")

@@ -30,15 +30,14 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.link.heartbeat import LinkStatus
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.link.link_status import LinkStatus
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
-from rastrainer.slicer.scene.control_points import labelsOf, localPoints
-from rastrainer.slicer.scene.scenario_nodes import showScenario
-from rastrainer.slicer.scene.scenario_volume import VolumeLoader
+from rastrainer.slicer.scene.nodes import labelsOf, localPoints
+from rastrainer.slicer.scene.scenario_nodes import VolumeLoader, showScenario
 from rastrainer.study.database.study import STUDY_FILE, Study
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import read_trials

@@ -24,8 +24,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run and return the exit status."""
     arguments = _parser().parse_args(argv)
     try:
-        from rastrainer.slicer.head.head_body import HeadSettings
         from rastrainer.slicer.head.head_draft import makeDraft
+        from rastrainer.slicer.head.volume import HeadSettings
         from rastrainer_headless.volume_files import readAnyVolume
     except ImportError as error:
         print(

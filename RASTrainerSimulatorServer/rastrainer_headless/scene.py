@@ -17,7 +17,7 @@ import vtk
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message
-from rastrainer.slicer.scene.link_nodes import ORIGINAL_NAME
+from rastrainer.slicer.scene.nodes import ORIGINAL_NAME
 
 SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
 """Slicer's own slice views and how they are cut."""

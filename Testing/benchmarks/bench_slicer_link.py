@@ -14,7 +14,7 @@ from PySide6 import QtCore
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link_status import LinkState
 from Testing.benchmarks.row import row
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.host.host import Host

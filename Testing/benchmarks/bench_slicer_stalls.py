@@ -13,8 +13,7 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord

@@ -15,10 +15,9 @@ from vtk.util.numpy_support import numpy_to_vtk
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.points import LABELS
-from rastrainer.slicer.head import scenario_build
 from rastrainer.slicer.head.segment import SEGMENT_NAME
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.logic import scenario_maker
+from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import add_volume, fiducials, vtk_matrix
@@ -86,7 +85,7 @@ def test_a_scenario_that_is_canceled_while_its_head_is_found_leaves_nothing_behi
 ):
     is_canceled = threading.Event()
     # The head is not finished before, however late it is canceled.
-    monkeypatch.setattr(scenario_build, "write_draft", lambda *_draft: is_canceled.wait(120))
+    monkeypatch.setattr(scenario_maker, "write_draft", lambda *_draft: is_canceled.wait(120))
     with cancels(host, "makeScenarioButton"):
         host.press("makeScenarioButton")
     is_canceled.set()

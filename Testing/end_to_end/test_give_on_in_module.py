@@ -8,8 +8,7 @@ import pytest
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.library import unpack, user_library
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.control_points import setPoints, worldPoints
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.nodes import Role, findNode, setPoints, worldPoints
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.simulator.authoring.heads import egg
 from Testing.simulator.authoring.test_export import written

@@ -10,8 +10,7 @@ from rastrainer.scenario.library import user_library
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.head.volume import Volume
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.end_to_end.module.story import Story, unfold
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import fiducials

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link_status import LinkState
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 

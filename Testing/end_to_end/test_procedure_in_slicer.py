@@ -13,8 +13,8 @@ from rastrainer.protocol import DEFAULT_HOST, PROCEDURE_PHASES, CommandName, Pha
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.module_session import ModulePaths, ModuleSession
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
+from rastrainer.slicer.scene.nodes import Role, nodesOf, nodesOfClass
 from rastrainer.slicer.scene.procedure_lines import LINE
-from rastrainer.slicer.scene.scene import Role, nodesOf, nodesOfClass
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene

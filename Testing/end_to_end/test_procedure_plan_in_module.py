@@ -7,8 +7,8 @@ import numpy as np
 from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.control_points import setPoints, worldPoints
-from rastrainer.slicer.scene.procedure_plan_nodes import instrumentOf, noGoNodes, planLines
+from rastrainer.slicer.scene.nodes import setPoints, worldPoints
+from rastrainer.slicer.scene.procedure_lines import instrumentOf, noGoNodes, planLines
 from Testing.end_to_end.module.story import Story
 from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 

@@ -7,7 +7,7 @@ import slicer
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import PROTOCOL_VERSION, CommandName
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link_status import LinkState
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.slicer.host.fixtures import host, module_widget  # noqa: F401
 

@@ -11,8 +11,9 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
+from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_scenario
-from rastrainer.slicer.head.scenario_build import HEAD_SHARE, buildScenario
+from rastrainer.slicer.logic.scenario_maker import HEAD_SHARE, planScenario
 from rastrainer_simulator.authoring.make import head_process
 from rastrainer_simulator.cli.main import main
 from Testing.domain.head.spheres import sphere_mesh
@@ -125,13 +126,13 @@ def test_warnings_of_the_planner_are_shown_beside_those_of_the_head(tmp_path):
     with new_folder(made) as folder:
         write_scenario(folder, made_up_scenario(), ball_head())
     (tmp_path / "planner.py").write_text(PLANNER.format(made=str(made)))
-    scenario, warnings = buildScenario(
+    warnings = planScenario(
         lambda _tell: (HeadDraft(ball_head(), "made up"), ["The slices are far apart."]),
         tmp_path / "built",
         (),
         [sys.executable, str(tmp_path / "planner.py")],
     )
-    assert scenario.folder == tmp_path / "built"
+    assert load_scenario(tmp_path / "built").folder == tmp_path / "built"
     assert warnings == ["The slices are far apart.", "The tumor lies too deep."]
 
 
@@ -145,7 +146,7 @@ def test_a_build_that_is_cancelled_leaves_nothing(tmp_path):
     vertices = np.maximum(sphere.vertices, [-np.inf, -np.inf, -70.0])
     draft = HeadDraft(HeadMesh(vertices, sphere.triangles), "made up")
     with pytest.raises(CancelledError):
-        buildScenario(
+        planScenario(
             lambda _tell: (draft, []), tmp_path / "made", (), RASTRAINER, progress=progress
         )
     # The process that plans clears away what it has half made, and ends.

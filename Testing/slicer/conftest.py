@@ -10,11 +10,26 @@ from rastrainer.head.mesh import HeadMesh, write_head_mesh
 from rastrainer.scenario.points import LABELS, Task
 from rastrainer.scenario.scenario import Perturbation, Scenario
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.program.own_process import OwnProcess, runHere
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.host.fixtures import host, module_widget, start_slicer  # noqa: F401
 from Testing.slicer.simulator_double import SimulatorDouble
 from Testing.slicer.training_room import Room
+
+
+@pytest.fixture
+def own_processes():
+    """Asked for by tests of what the module does in processes of Slicer's Python."""
+
+
+@pytest.fixture(autouse=True)
+def _work_in_threads(request, monkeypatch):
+    """Do such work in a thread, which takes a fraction of the time, wherever it is not tested."""
+    if "own_processes" not in request.fixturenames:
+        monkeypatch.setattr(
+            OwnProcess, "__call__", lambda _self, *work, **named: runHere(*work, **named)
+        )
 
 
 @pytest.fixture

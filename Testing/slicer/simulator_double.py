@@ -42,10 +42,7 @@ class SimulatorDouble:
     """
 
     def __init__(
-        self,
-        responder: Responder | None = None,
-        port: int = 0,
-        version: int = PROTOCOL_VERSION,
+        self, responder: Responder | None = None, port: int = 0, version: int = PROTOCOL_VERSION
     ) -> None:
         self.beats = True
         self.heartbeat = Message(DeviceName.SIM_SERVER, Status(Status.OK, subcode=version))

@@ -15,6 +15,8 @@ from rastrainer_simulator.assets import asset_path
 from Testing.slicer.host.opened_journals import OpenedJournals
 from Testing.slicer.recorded_trial import write_recorded_trial
 
+pytestmark = pytest.mark.usefixtures("own_processes")
+
 SEED = 3
 TRIAL = str(uuid.UUID(int=9))
 

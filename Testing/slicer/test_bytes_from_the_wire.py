@@ -9,10 +9,9 @@ from rastrainer.files.point_list import PointList
 from rastrainer.igtl.content import Command, CommandReply, Point, Points, String
 from rastrainer.igtl.message import HEADER_BYTES, Message, crc64, pack, read_header, unpack
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.scene.control_points import labelsOf
-from rastrainer.slicer.scene.link_nodes import decodedText, shownText
+from rastrainer.slicer.link.link_status import LinkState
+from rastrainer.slicer.scene.nodes import decodedText, labelsOf, shownText
 from rastrainer.slicer.signal import ErrorGuard, Signal
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.simulator_double import run_link_until

@@ -154,10 +154,7 @@ def test_the_name_of_the_kinematics_is_shown(program):
 
 def test_stop_ends_the_simulator_and_its_window_and_says_so(program, tmp_path):
     program.stop()
-    assert (program.state, program.sentence) == (
-        ProgramState.STOPPING,
-        "The simulator is ending.",
-    )
+    assert (program.state, program.sentence) == (ProgramState.STOPPING, "The simulator is ending.")
     wait_until(lambda: program.state is ProgramState.STOPPED, program.process, LONG_S)
     ends(tmp_path / "pid")
     ends(tmp_path / "window")

@@ -15,11 +15,9 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic import head_preview
 from rastrainer.slicer.logic.replay_logic import SLICES_A_TURN
 from rastrainer.slicer.logic.scenario_maker import NewScenarioOptions
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
+from rastrainer.slicer.scene.robot import readArmChain
 from rastrainer.slicer.scene.trial_replay import STATES_A_SLICE, showReplay
-from rastrainer.slicer.scene.urdf import readArmChain
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import URDF, store_trial_on_colin, write_recorded_trial
 

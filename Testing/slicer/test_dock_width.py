@@ -3,8 +3,6 @@
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import pytest
-
 UI = Path(__file__).parents[2] / "RASTrainer" / "Resources" / "UI"
 DOCK_WIDTH = 472
 """Pixels; a module that asks for more widens the dock and takes the room of the views."""
@@ -26,14 +24,14 @@ SECTIONS, GROUPS = named("ctkCollapsibleButton"), named("ctkCollapsibleGroupBox"
 PATHS = named("ctkPathLineEdit")
 
 
-@pytest.mark.parametrize("opened", SECTIONS)
-def test_a_section_opened_with_all_its_groups_does_not_widen_the_dock(host, opened):
+def test_a_section_opened_with_all_its_groups_does_not_widen_the_dock(host):
     host.open()
-    for section in SECTIONS:
-        host.find(section).collapsed = section != opened
     for group in GROUPS:
         host.find(group).collapsed = False
-    assert host.minimum_width() <= LIMIT
+    for opened in SECTIONS:
+        for section in SECTIONS:
+            host.find(section).collapsed = section != opened
+        assert host.minimum_width() <= LIMIT, opened
 
 
 def test_all_sections_at_once_do_not_widen_the_dock(host):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.control_points import handPlacedLists, setPoints
-from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE
+from rastrainer.slicer.logic.scenario_maker import handPlacedLists
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, setPoints
 
 
 def add_list(scene, name, count=15, labels=None):

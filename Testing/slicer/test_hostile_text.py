@@ -15,8 +15,7 @@ from rastrainer.panels.plain_text import LONGEST_TEXT, toolTip
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.simulator_double import connect_module
 
@@ -124,7 +123,7 @@ def test_no_label_grows_with_a_long_word(open_module):
     assert host.minimum_width() == before
 
 
-def test_the_state_of_the_trial_is_read_from_the_simulator(connected, simulator):
+def test_the_state_of_the_trial_and_a_question_about_its_trainee(connected, simulator):
     host = connected
     state = dict.fromkeys(("instruction", "trainee", "task", "phase", "nextPoint"), HOSTILE)
     state |= {"trialId": "", "mode": HOSTILE, "proximity": HOSTILE, "clearanceMm": 1.0}
@@ -134,6 +133,12 @@ def test_the_state_of_the_trial_is_read_from_the_simulator(connected, simulator)
     for name in ("trainingText", "instructionText", "phaseText", "nextPointText", "clearanceText"):
         shows_as_it_stands(host, name)
     shows_as_it_stands(host, "trialText", HTML)
+    state = {"trialId": "", "phase": "running", "trainee": HTML, "task": "task-1"}
+    simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
+    host.wait_until(lambda: host.find("abortButton").enabled, "a trial runs")
+    host.answer("Abort the trial", "No")
+    host.press("abortButton")
+    assert "&lt;b&gt;bold" in host.messages[-1].text
 
 
 def test_why_the_simulator_refuses_a_trial(connected, simulator):
@@ -164,11 +169,25 @@ def test_whether_the_robot_can_carry_out_a_plan(connected, simulator):
     assert host.find("reachableLight").textFormat == RICH
 
 
-def test_a_host_name_that_is_none(open_module):
+def test_names_of_a_host_a_node_and_a_task(open_module, tmp_path):
     host = open_module
     host.find("hostLineEdit").text = HTML
     host.press("probeButton")
     shows_as_it_stands(host, "stateText", HTML)
+    model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", HOSTILE)
+    host.choose("headModelComboBox", model)
+    host.press("useHeadButton")
+    host.wait_until(lambda: host.messages or "bold" in host.text("otherHeadText"), "it is told")
+    assert host.minimum_width() <= DOCK_WIDTH
+    host.answer("Save the scenario", str(tmp_path / "copy.zip"))
+    host.press("exportScenarioButton")
+    assert host.minimum_width() <= DOCK_WIDTH
+    colin = load_scenario(asset_path("scenarios", "colin27"))
+    task = replace(colin.task("task-1"), title=HOSTILE)
+    host.widget.logic.session.chooseTask(task, colin)
+    assert host.text("startTaskButton").startswith("Start <b>bold</b>")
+    assert len(host.text("startTaskButton")) < 80
+    assert host.minimum_width() <= DOCK_WIDTH
 
 
 def test_how_the_simulators_program_ends_and_pairs(open_module, tmp_path):
@@ -191,28 +210,6 @@ def test_how_the_simulators_program_ends_and_pairs(open_module, tmp_path):
     shows_as_it_stands(host, "programText", HTML)
 
 
-def test_a_node_with_a_name_that_is_html(open_module):
-    host = open_module
-    model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", HOSTILE)
-    host.choose("headModelComboBox", model)
-    host.press("useHeadButton")
-    host.wait_until(lambda: host.messages or "bold" in host.text("otherHeadText"), "it is told")
-    assert host.minimum_width() <= DOCK_WIDTH
-
-
-def test_a_scenario_with_a_long_title(open_module, tmp_path):
-    host = open_module
-    host.answer("Save the scenario", str(tmp_path / "copy.zip"))
-    host.press("exportScenarioButton")
-    assert host.minimum_width() <= DOCK_WIDTH
-    colin = load_scenario(asset_path("scenarios", "colin27"))
-    task = replace(colin.task("task-1"), title=HOSTILE)
-    host.widget.logic.session.chooseTask(task, colin)
-    assert host.text("startTaskButton").startswith("Start <b>bold</b>")
-    assert len(host.text("startTaskButton")) < 80
-    assert host.minimum_width() <= DOCK_WIDTH
-
-
 # Tool tips and questions
 
 
@@ -221,13 +218,3 @@ def test_a_tool_tip_is_never_taken_for_html():
     assert toolTip("<b>bold</b>") == "<qt>&lt;b&gt;bold&lt;/b&gt;</qt>"
     assert toolTip("&lt;") == "<qt>&amp;lt;</qt>"
     assert len(toolTip(HTML * 1000)) < 40_000
-
-
-def test_a_question_about_a_trainee_shows_the_name_unchanged(connected, simulator):
-    host = connected
-    state = {"trialId": "", "phase": "running", "trainee": HTML, "task": "task-1"}
-    simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
-    host.wait_until(lambda: host.find("abortButton").enabled, "a trial runs")
-    host.answer("Abort the trial", "No")
-    host.press("abortButton")
-    assert "&lt;b&gt;bold" in host.messages[-1].text

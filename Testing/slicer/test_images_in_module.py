@@ -15,13 +15,13 @@ from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.head.volume import volumeFromNode
-from rastrainer.slicer.link.heartbeat import LinkState
-from rastrainer.slicer.scene.scenario_volume import VOLUME
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.link.link_status import LinkState
+from rastrainer.slicer.scene.nodes import Role, findNode
+from rastrainer.slicer.scene.scenario_nodes import VOLUME
 from rastrainer_simulator.assets import asset_path
 from Testing.domain.igtl.sent_pose import transform_of
 from Testing.slicer.host.host import Host
-from Testing.slicer.test_slice_follower import place
+from Testing.slicer.test_views import place
 
 COLIN27 = load_scenario(asset_path("scenarios", "colin27"))
 ANSWERS = {"ListTasks": {"scenario": "colin27", "title": "Colin27 head", "tasks": []}}
@@ -83,13 +83,20 @@ def test_a_target_is_placed_on_the_mri_and_lies_where_it_was_placed(host):
     assert 40 < volume.values[i, j, k] < 200
 
 
-def test_showing_the_scenario_again_brings_the_mri_back_where_other_images_are_shown(host):
+def test_the_button_brings_the_mri_back_where_others_are_shown_or_the_scene_was_cleared(host):
     show_scenario(host)
     other = host.scene.AddNewNodeByClass(VOLUME, "Another MRI")
     slicer.util.setSliceViewerLayers(background=other)
     host.press("showScenarioButton")
     composite = slicer.app.layoutManager().sliceWidget("Red").mrmlSliceCompositeNode()
     assert composite.GetBackgroundVolumeID() == images(host).GetID()
+    host.clear_scene()
+    assert images(host) is None
+    host.press("showScenarioButton")
+    wait_for_images(host)
+    # It is not taken for a scan to make a scenario of.
+    host.unfold("scanComboBox")
+    assert host.find("scanComboBox").currentNode() is None
 
 
 def test_unusable_images_are_reported_beside_the_scenario(host):
@@ -110,14 +117,6 @@ def test_unusable_images_are_reported_beside_the_scenario(host):
     assert host.messages == []
 
 
-def test_a_cleared_scene_gets_the_mri_again_by_the_button(host):
-    show_scenario(host)
-    host.clear_scene()
-    assert images(host) is None
-    host.press("showScenarioButton")
-    wait_for_images(host)
-
-
 def test_a_scene_cleared_as_soon_as_the_mri_is_there_gets_it_again(host):
     host.open()
     host.unfold("showScenarioButton")
@@ -133,12 +132,6 @@ def test_a_scene_cleared_as_soon_as_the_mri_is_there_gets_it_again(host):
     host.press("showScenarioButton")
     host.wait_until(lambda: cleared, "the images are there")
     wait_for_images(host)
-
-
-def test_the_scenario_s_own_mri_is_not_taken_for_a_scan_to_make_a_scenario_of(host):
-    show_scenario(host)
-    host.unfold("scanComboBox")
-    assert host.find("scanComboBox").currentNode() is None
 
 
 def test_without_a_main_window_the_mri_is_in_the_scene(tmp_path):

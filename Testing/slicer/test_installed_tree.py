@@ -162,11 +162,7 @@ def test_as_a_part_of_a_larger_application_all_lies_beside_the_module(with_wheel
 
 def test_the_module_opens_from_the_installed_tree(tree, tmp_path):
     command = [sys.executable, "-m", "Testing.slicer.installed_module", str(tree / "RASTrainer.py")]
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(tree / "Logic"),
-        "QT_QPA_PLATFORM": "offscreen",
-    }
+    environment = {**os.environ, "PYTHONPATH": str(tree / "Logic"), "QT_QPA_PLATFORM": "offscreen"}
     done = subprocess.run(
         [*command, str(tmp_path / "slicer")],
         capture_output=True,

@@ -15,9 +15,13 @@ from Testing.slicer.host.opened_journals import OpenedJournals
 from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
 from Testing.slicer.simulator_double import wait_until
 
-pytestmark = pytest.mark.skipif(
-    not sys.platform.startswith("linux"), reason="the launcher's double is a script, FIFOs block"
-)
+pytestmark = [
+    pytest.mark.skipif(
+        not sys.platform.startswith("linux"),
+        reason="the launcher's double is a script, FIFOs block",
+    ),
+    pytest.mark.usefixtures("own_processes"),
+]
 TRIAL = str(uuid.UUID(int=1))
 REPLAY = "Replay of T-001, task-1"
 TOOL = "T-001, task-1: tool model"

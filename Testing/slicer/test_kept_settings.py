@@ -9,15 +9,7 @@ from rastrainer.slicer import settings
 from rastrainer.slicer.settings import PORT, STUDY_ADDRESS, Setting
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 
-SECTIONS = (
-    "setup",
-    "simulator",
-    "trainees",
-    "scenario",
-    "training",
-    "registration",
-    "procedure",
-)
+SECTIONS = ("setup", "simulator", "trainees", "scenario", "training", "registration", "procedure")
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.content import Point, Points, Status, String
 from rastrainer.igtl.message import Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
-from rastrainer.slicer.link.heartbeat import RECONNECT_AFTER_S, LinkState
 from rastrainer.slicer.link.link import POSES_HZ, Link
-from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role
+from rastrainer.slicer.link.link_status import RECONNECT_AFTER_S, LinkState
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until
 
 
@@ -60,12 +60,7 @@ def test_each_state_is_emitted_once(link, simulator, clock):
     link.statusChanged.connect(lambda status: states.append(status.state))
     connect(link, simulator)
     link.disconnect()
-    assert states == [
-        LinkState.LOOKING,
-        LinkState.GREETING,
-        LinkState.CONNECTED,
-        LinkState.OFF,
-    ]
+    assert states == [LinkState.LOOKING, LinkState.GREETING, LinkState.CONNECTED, LinkState.OFF]
 
 
 def test_silence_is_reported_and_a_long_one_ends_the_half_open_connection(link, simulator, clock):

@@ -32,13 +32,10 @@ def test_one_button_connects_and_disconnects(host, simulator):
     assert (host.text("connectButton"), host.text("trainingText")) == ("Connect", "")
 
 
-def test_an_empty_host_is_reported_in_one_sentence(host):
+def test_an_empty_host_is_reported_and_host_and_port_outlive_the_scene(host):
     host.type("hostLineEdit", " ")
     host.press("connectButton")
     assert "Enter the host of the simulator" in host.messages[-1].text
-
-
-def test_host_and_port_outlive_the_scene(host):
     host.type("hostLineEdit", "10.0.0.7")
     host.type("portSpinBox", "18999")
     host.clear_scene()
@@ -95,23 +92,23 @@ def test_sample_data_come_into_the_scene_and_the_slices(host):
     assert host.find("scanComboBox").currentNode() is volume
 
 
-@pytest.mark.parametrize("uri", ["http://127.0.0.1:9/sample.nrrd", "file:///nowhere/sample.nrrd"])
-def test_without_a_network_sample_data_are_a_sentence_and_leave_nothing(host, uri):
-    logic = slicer.util.getModuleLogic("SampleData")
-    logic.uri = uri
-    nodes = host.scene.GetNumberOfNodes()
-    host.press("sampleDataButton")
-    assert "Connect this computer to the Internet" in host.messages[-1].text
-    assert logic.attempts == 0
-    assert host.scene.GetNumberOfNodes() == nodes
-    assert host.text("makeScenarioButton") == "Make scenario"
-    assert host.find("sampleDataButton").enabled
-
-
-def test_a_sample_that_does_not_come_though_there_is_a_network_is_reported(host, monkeypatch):
-    logic = slicer.util.getModuleLogic("SampleData")
+def test_without_a_network_sample_data_are_a_sentence_and_leave_nothing(host, monkeypatch):
+    logic, nodes = slicer.util.getModuleLogic("SampleData"), host.scene.GetNumberOfNodes()
+    usual = logic.uri
+    for uri in ("http://127.0.0.1:9/sample.nrrd", "file:///nowhere/sample.nrrd"):
+        logic.uri = uri
+        host.press("sampleDataButton")
+        assert "Connect this computer to the Internet" in host.messages[-1].text
+        assert logic.attempts == 0
+        assert host.scene.GetNumberOfNodes() == nodes
+        assert host.text("makeScenarioButton") == "Make scenario"
+        assert host.find("sampleDataButton").enabled
+    assert len(host.messages) == 2
+    # Nor may a sample come though there is a network.
+    logic.uri = usual
     monkeypatch.setattr(logic, "downloadSamples", lambda _name: [None])
     host.press("sampleDataButton")
+    assert len(host.messages) == 3
     assert "could not be downloaded" in host.messages[-1].text
 
 

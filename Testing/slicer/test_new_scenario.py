@@ -13,16 +13,13 @@ from rastrainer.head.trial_head import Perturbation
 from rastrainer.scenario.library import pack, unpack, user_library
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
-from rastrainer.slicer.head import scenario_build
 from rastrainer.slicer.head.extraction import findHead
-from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.segment import forSegment, volumeOfSegment
-from rastrainer.slicer.head.volume import Volume
-from rastrainer.slicer.logic import scenario_logic
+from rastrainer.slicer.head.volume import HeadSettings, Volume
+from rastrainer.slicer.logic import head_preview, scenario_logic, scenario_maker
 from rastrainer.slicer.logic.head_preview import HeadPreview
 from rastrainer.slicer.program.own_process import OwnProcess
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom
 from Testing.slicer.head.placed import add_transform, add_volume
@@ -53,6 +50,17 @@ def unfold(host, *names):
 def nodes(host):
     """Return the IDs of all nodes in the scene."""
     return [host.scene.GetNthNode(index).GetID() for index in range(host.scene.GetNumberOfNodes())]
+
+
+def found_once(find):
+    """Return a function that finds the same head each time, which takes long only once."""
+    found = []
+
+    def find_once(*arguments):
+        found[:] = found or [find(*arguments)]
+        return found[0]
+
+    return find_once
 
 
 def ignore(_step, _share):
@@ -170,7 +178,9 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     host, monkeypatch
 ):
     made = host.widget.logic.session.scenario.find("colin27")
-    monkeypatch.setattr(scenario_build, "buildScenario", lambda *_arguments: (made, []))
+    monkeypatch.setattr(scenario_maker, "planScenario", lambda *_arguments: [])
+    monkeypatch.setattr(scenario_maker, "load_scenario", lambda _folder: made)
+    monkeypatch.setattr(head_preview, "findSkin", found_once(head_preview.findSkin))
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "phantom")
     rendering = host.scene.AddNode(slicer.vtkMRMLCPURayCastVolumeRenderingDisplayNode())
     volume.AddAndObserveDisplayNodeID(rendering.GetID())
@@ -193,6 +203,7 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
 
 
+@pytest.mark.usefixtures("own_processes")
 def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 5.0), size=SIZE), "MRI")
     volume.SetAndObserveTransformNodeID(add_transform(host.scene, [0.0, 0.0, 100.0]).GetID())
@@ -217,6 +228,7 @@ def test_the_threshold_that_is_typed_is_the_one_that_the_head_is_looked_for_with
     assert findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_PREVIEW) is None
 
 
+@pytest.mark.usefixtures("own_processes")
 def test_a_canceled_preview_leaves_nothing_behind(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
@@ -231,6 +243,7 @@ def test_a_canceled_preview_leaves_nothing_behind(host):
     assert nodes(host) == before
 
 
+@pytest.mark.usefixtures("own_processes")
 def test_a_canceled_search_for_another_head_leaves_the_one_that_is_shown(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     host.press("showScenarioButton")

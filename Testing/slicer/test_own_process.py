@@ -11,13 +11,20 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.head_draft import findSkin
-from rastrainer.slicer.head.volume import Volume
+from rastrainer.slicer.head.extraction import findHead
+from rastrainer.slicer.head.volume import HeadSettings
 from rastrainer.slicer.program.own_process import LOGIC, OwnProcess, runHere
 from Testing.slicer.head.phantoms import phantom
 
-FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
+pytestmark = pytest.mark.usefixtures("own_processes")
+
+FIND_HEAD = "rastrainer.slicer.head.extraction:findHead"
 PYTHON = Path(sys.executable)
+REFUSES = """
+from rastrainer.errors import InputError
+def work(progress):
+    raise InputError("“µ” cannot be used.")
+"""
 WHOSE = "import os\ndef work(progress):\n    return os.getpid()\n"
 
 
@@ -26,26 +33,21 @@ def ignore(_step, _share):
 
 
 def test_the_head_is_the_one_that_is_made_here():
-    scan = phantom(spacing=(3.0, 3.0, 3.0), size=0.75)
+    scan, settings = phantom(spacing=(3.0, 3.0, 3.0), size=0.4), HeadSettings()
     told = []
-    body, skin, warnings = OwnProcess(PYTHON)(
-        FIND_SKIN, lambda *step: told.append(step), scan, None
-    )
-    expected, expected_skin, expected_warnings = findSkin(scan)
-    assert body.baseMm == expected.baseMm
-    np.testing.assert_array_equal(body.body, expected.body)
-    np.testing.assert_array_equal(skin.vertices, expected_skin.vertices)
-    assert warnings == expected_warnings
-    assert told[-1] == ("Done", 1.0)
+    found = OwnProcess(PYTHON)(FIND_HEAD, lambda *step: told.append(step), scan, settings)
+    expected = findHead(scan, settings, ignore)
+    assert (found.baseMm, found.threshold) == (expected.baseMm, expected.threshold)
+    np.testing.assert_array_equal(found.level, expected.level)
+    np.testing.assert_array_equal(found.body, expected.body)
+    assert told[-1] == ("Closing tunnels", 0.7)
 
 
-def test_what_cannot_be_used_is_refused_in_the_same_words():
-    nothing = Volume(np.zeros((30, 30, 30), np.int16), np.eye(4))
-    with pytest.raises(InputError) as here:
-        findSkin(nothing)
-    with pytest.raises(InputError) as there:
-        OwnProcess(PYTHON)(FIND_SKIN, ignore, nothing, None)
-    assert str(there.value) == str(here.value)
+def test_what_cannot_be_used_is_refused_in_the_same_words(tmp_path, monkeypatch):
+    (tmp_path / "refusing.py").write_text(REFUSES, encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(InputError, match=r"^“µ” cannot be used\.$"):
+        OwnProcess(PYTHON)("refusing:work", ignore)
 
 
 def test_a_process_that_ends_before_it_is_done_is_reported(tmp_path, monkeypatch):
@@ -110,8 +112,8 @@ def test_showing_a_head_imports_no_scipy_and_finding_it_neither_slicer_nor_qt():
     program = (
         "import sys; sys.modules['slicer'] = sys.modules['qt'] = None\n"
         f"sys.path.insert(0, {str(LOGIC)!r})\n"
-        "import rastrainer.slicer.head.segment, rastrainer.slicer.head.head_body\n"
-        "import rastrainer.slicer.head.scenario_build, rastrainer.slicer.program.own_process\n"
+        "import rastrainer.slicer.head.segment, rastrainer.slicer.head.volume\n"
+        "import rastrainer.slicer.program.own_process\n"
         "assert 'scipy' not in sys.modules\n"
         "import rastrainer.slicer.head.head_draft"
     )

@@ -17,9 +17,7 @@ from rastrainer.panels.plain_text import toolTip
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
@@ -132,7 +130,12 @@ def test_a_trainee_is_created_chosen_archived_and_brought_back(panels, study_pat
         assert len(study.trainees()) == 1
 
 
-def test_a_taken_pseudonym_is_reported(panels):
+def test_what_cannot_be_done_with_a_trainee_is_explained(panels):
+    for name in ("archiveButton", "exportTraineeButton", "deleteTraineeButton"):
+        with pytest.raises(AssertionError, match="Choose a trainee first"):
+            panels.press(name)
+    with pytest.raises(AssertionError, match="Connect to the simulator first"):
+        panels.press("startTaskButton")
     for _ in range(2):
         panels.type("pseudonymLineEdit", "Blue")
         panels.press("createTraineeButton")
@@ -157,14 +160,6 @@ def test_a_study_locked_by_another_program_is_reported_and_shown_again_by_itself
     panels.wait_until(lambda: "nother program" not in panels.text("traineeText"), "it is shown")
     panels.choose("traineeComboBox", "T-007")
     assert panels.find("historyTable").rowCount == 1
-
-
-def test_buttons_without_a_trainee_say_why_they_are_disabled(panels):
-    for name in ("archiveButton", "exportTraineeButton", "deleteTraineeButton"):
-        with pytest.raises(AssertionError, match="Choose a trainee first"):
-            panels.press(name)
-    with pytest.raises(AssertionError, match="Connect to the simulator first"):
-        panels.press("startTaskButton")
 
 
 def test_a_trainee_is_deleted_only_after_a_yes(panels, add_trial, study_path):
@@ -250,7 +245,7 @@ def test_an_address_that_cannot_be_used_is_refused_without_repeating_its_passwor
 # Scenario
 
 
-def test_head_fiducials_and_robot_are_shown(panels):
+def test_head_fiducials_and_robot_are_shown_and_another_model_can_be_the_head(panels):
     panels.choose("taskComboBox", "Task 2")
     panels.press("showScenarioButton")
     assert panels.text("startTaskButton") == "Start Task 2"
@@ -260,12 +255,6 @@ def test_head_fiducials_and_robot_are_shown(panels):
     for role in (Role.HEAD_MODEL, *(f"{Role.ROBOT} link {number}" for number in range(8))):
         model = findNode(panels.scene, "vtkMRMLModelNode", role)
         assert panels.sees(model), role
-    panels.clear_scene()
-    panels.wait_until(lambda: not panels.find("robotCheckBox").checked, "the box follows")
-
-
-def test_a_model_of_the_scene_can_be_the_head(panels):
-    panels.press("showScenarioButton")
     former = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     mine = panels.scene.AddNewNodeByClass("vtkMRMLModelNode", "Mine")
     mine.SetAndObservePolyData(former.GetPolyData())
@@ -273,12 +262,14 @@ def test_a_model_of_the_scene_can_be_the_head(panels):
     panels.press("useHeadButton")
     assert findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is mine
     assert not former.GetDisplayVisibility()
+    panels.clear_scene()
+    panels.wait_until(lambda: not panels.find("robotCheckBox").checked, "the box follows")
 
 
 # Registration
 
 
-def test_fits_residuals_and_the_error_to_expect_are_shown_with_their_units(panels, touched):
+def test_fits_and_errors_are_shown_with_their_units_and_a_fit_is_chosen(panels, touched):
     touch(panels, touched)
     rows = cells(panels, "fitsTable")
     assert [row[0] for row in rows] == ["Rigid", "Similarity", "Affine"]
@@ -287,6 +278,12 @@ def test_fits_residuals_and_the_error_to_expect_are_shown_with_their_units(panel
     tips = (panels.find("treText").toolTip, panels.find("fitsTable").item(0, 3).toolTip())
     assert tips == (toolTip(INTERVAL_NOTE),) * 2
     assert len(cells(panels, "residualsTable")) == 15
+    transform = findNode(panels.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
+    rigid = slicer.util.arrayFromTransformMatrix(transform)
+    panels.choose("kindComboBox", "Similarity")
+    similar = slicer.util.arrayFromTransformMatrix(transform)
+    assert np.linalg.det(rigid[:3, :3]) == pytest.approx(1.0)
+    assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
 
 
 def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touched):
@@ -309,19 +306,6 @@ def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touch
     )
     panels.press("undoButton")
     assert cells(panels, "residualsTable") == before
-
-
-def test_a_warning_has_a_button_that_mends_it_and_undo_brings_it_back(panels, touched):
-    touched[6] += [9.0, -6.0, 5.0]
-    touch(panels, touched)
-    assert "Point 7 lies" in panels.text("warning0Text")
-    panels.press("remedy0Button")
-    assert panels.find("residualsTable").rowCount == 14
-    assert "Left out: 7" in panels.text("registrationText")
-    panels.press("undoButton")
-    panels.process_events()
-    assert panels.find("residualsTable").rowCount == 15
-    assert panels.text("remedy0Button") == "Leave out 7"
 
 
 def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched, colin):
@@ -359,16 +343,6 @@ def test_another_target_is_chosen_and_the_head_colored(panels, touched):
     panels.check("headColoredCheckBox")
     head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     assert head.GetDisplayNode().GetScalarVisibility()
-
-
-def test_the_choice_of_a_fit_changes_the_transform(panels, touched):
-    touch(panels, touched)
-    transform = findNode(panels.scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
-    rigid = slicer.util.arrayFromTransformMatrix(transform)
-    panels.choose("kindComboBox", "Similarity")
-    similar = slicer.util.arrayFromTransformMatrix(transform)
-    assert np.linalg.det(rigid[:3, :3]) == pytest.approx(1.0)
-    assert np.linalg.det(similar[:3, :3]) != pytest.approx(1.0, abs=1e-6)
 
 
 def test_one_small_legend_is_drawn_in_the_3d_view_alone(panels, touched, tmp_path):
@@ -474,16 +448,14 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     assert "consent to research: 1." in panels.text("scoreMessageText")
 
 
-def test_a_study_without_consenting_trainees_has_no_report(panels, add_trial, tmp_path):
-    add_trial(1, "T-001")
+def test_the_report_of_those_who_consent_is_written_and_opened(
+    panels, add_trial, study_path, tmp_path
+):
+    for number in (1, 2, 3):
+        add_trial(number, "T-001", mode="hmd" if number == 3 else "desktop")
     panels.answer("Folder for the report", str(tmp_path / "report"))
     panels.press("reportButton")
     assert "consented to research" in panels.messages[-1].text
-
-
-def test_the_report_of_the_study_is_written_and_opened(panels, add_trial, study_path, tmp_path):
-    for number in (1, 2, 3):
-        add_trial(number, "T-001", mode="hmd" if number == 3 else "desktop")
     with Study.open(study_path) as study:
         study.set_consent("T-001", True)
     panels.answer("Folder for the report", str(tmp_path / "report"))
@@ -589,7 +561,7 @@ def bytes_below(*folders):
 # Simulator
 
 
-def test_the_simulator_must_be_set_up_before_it_is_started(panels):
+def test_the_simulator_must_be_set_up_before_it_is_started(panels, tmp_path):
     assert "press Set up, once" in panels.text("setupText")
     assert "not set up yet" in panels.text("programText")
     panels.answer("not set up on this computer yet", "Cancel")
@@ -599,6 +571,9 @@ def test_the_simulator_must_be_set_up_before_it_is_started(panels):
     panels.process_events()
     panels.press("startSimulatorButton")
     assert "There is no program" in panels.messages[-1].text
+    panels.find("wheelsPathLineEdit").currentPath = str(tmp_path)
+    panels.press("setupButton")
+    assert "There are no wheels" in panels.messages[-1].text
 
 
 def test_how_a_headset_is_paired_is_shown_while_the_simulator_runs(panels, tmp_path):
@@ -613,9 +588,3 @@ def test_how_a_headset_is_paired_is_shown_while_the_simulator_runs(panels, tmp_p
     panels.wait_until(lambda: wanted in panels.text("pairingText"), "it is told")
     panels.press("stopSimulatorButton")
     assert panels.text("pairingText") == ""
-
-
-def test_a_set_up_that_cannot_begin_is_reported(panels, tmp_path):
-    panels.find("wheelsPathLineEdit").currentPath = str(tmp_path)
-    panels.press("setupButton")
-    assert "There are no wheels" in panels.messages[-1].text

@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from rastrainer.slicer.link.heartbeat import LinkState
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.link.pending_commands import MAX_AT_ONCE, SENDING_S
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.peer_sockets import takeCrashes

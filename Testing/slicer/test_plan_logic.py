@@ -13,12 +13,10 @@ from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.plan_logic import PlanLogic, targetsOf
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.scene.control_points import setPoints, worldPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.logic.views import jumpTo
+from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing, stopPlacing
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
-from rastrainer.slicer.scene.scene import Role, findNode
-from rastrainer.slicer.scene.views import jumpTo
 from rastrainer.trial.analysis import RevealedTruth
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until

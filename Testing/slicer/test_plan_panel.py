@@ -7,8 +7,7 @@ from rastrainer import transforms
 from rastrainer.protocol import CommandName
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.simulator_double import SimulatorDouble, connect_module
 

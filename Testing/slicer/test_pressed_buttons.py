@@ -13,9 +13,8 @@ from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.link.heartbeat import LinkState
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.link.link_status import LinkState
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.simulator_double import SimulatorDouble, run_until_received
 

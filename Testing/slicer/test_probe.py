@@ -8,7 +8,7 @@ import pytest
 from rastrainer.igtl.content import String, Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer.link.peer import Peer, ProbeResult
+from rastrainer.slicer.link.link_status import Peer, ProbeResult
 from rastrainer.slicer.link.probe import ANSWER_S, LOOKUP_S, Probe
 from Testing.free_port import free_port
 from Testing.slicer.simulator_double import SimulatorDouble, wait_until

@@ -6,22 +6,16 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 from rastrainer import transforms
 from rastrainer.procedure.errors import analyze_procedure
-from rastrainer.slicer.scene.control_points import worldPoints
+from rastrainer.slicer.scene.nodes import Role, findNode, nodesOf, worldPoints
 from rastrainer.slicer.scene.procedure_lines import (
     LINE,
     MODEL,
-    TABLE,
     showPlannedLines,
     showProcedureErrors,
 )
-from rastrainer.slicer.scene.scene import Role, findNode, nodesOf
 from rastrainer_simulator.desktop.panels.theme import TONES
 from rastrainer_simulator.flow.session.plan_marks import PLACED, PLANNED, SHOWN
-from Testing.domain.procedure.made_up_procedure import (
-    made_up_meshes,
-    made_up_procedure,
-    trajectory,
-)
+from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure, trajectory
 from Testing.domain.procedure.procedure_records import recorded, rotation
 
 ROLES = (Role.PLANNED_LINE, Role.REGISTERED_LINE, Role.TRUE_LINE)
@@ -50,7 +44,7 @@ def lines(scene, role):
 
 
 def column(scene, name):
-    table = findNode(scene, TABLE, Role.PROCEDURE_ERRORS).GetTable()
+    table = findNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS).GetTable()
     return vtk_to_numpy(table.GetColumnByName(name))
 
 
@@ -122,7 +116,7 @@ def test_another_plan_takes_the_place_of_lines_and_errors(headless_scene, analys
     showPlannedLines(scene, other)
     assert [node.GetName() for node in nodesOf(scene, LINE, Role.PLANNED_LINE)] == ["Only"]
     assert lines(scene, Role.TRUE_LINE) == []
-    assert findNode(scene, TABLE, Role.PROCEDURE_ERRORS) is None
+    assert findNode(scene, "vtkMRMLTableNode", Role.PROCEDURE_ERRORS) is None
     showPlannedLines(scene, procedure)
     assert len(lines(scene, Role.PLANNED_LINE)) == 2
     showPlannedLines(scene, None)

@@ -8,7 +8,7 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.igtl.content import String
-from rastrainer.protocol import DeviceName
+from rastrainer.protocol import CommandName, DeviceName
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
@@ -117,18 +117,8 @@ def test_what_fails_once_the_procedure_has_gone_on_is_not_said(theater):
 
 def test_each_step_sends_its_command(theater):
     procedure = theater.procedure
-    steps = {
-        "AcceptRegistration": procedure.accept,
-        "RegisterAgain": procedure.registerAgain,
-        "AlignGuide": procedure.align,
-        "LockGuide": procedure.lock,
-        "RetractDrill": procedure.retractDrill,
-        "StartInsertion": procedure.startInsertion,
-        "ReleaseInstrument": procedure.release,
-    }
-    for command, do in steps.items():
-        do()
-        theater.run_until(lambda command=command: theater.sent(command))
+    procedure.command(CommandName.LOCK_GUIDE)
+    theater.run_until(lambda: theater.sent("LockGuide"))
     procedure.feed(True)
     procedure.feed(False)
     theater.run_until(lambda: len(theater.sent("Feed")) == 2)

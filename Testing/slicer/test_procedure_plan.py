@@ -8,10 +8,13 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import MAX_NO_GO_TRIANGLES
-from rastrainer.slicer.logic.no_go_structures import noGoMeshes
-from rastrainer.slicer.logic.procedure_plan_logic import PlanDescription, ProcedurePlanLogic
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.procedure_plan_nodes import (
+from rastrainer.slicer.logic.procedure_plan_logic import (
+    PlanDescription,
+    ProcedurePlanLogic,
+    noGoMeshes,
+)
+from rastrainer.slicer.scene.nodes import setPoints
+from rastrainer.slicer.scene.procedure_lines import (
     instrumentOf,
     isNoGo,
     newPlanLine,

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.scenario.points import LABELS
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.slicer.scene.trial_replay import findReplay
 from Testing.slicer.recorded_trial import store_trial_on_colin, write_recorded_trial
 
@@ -23,7 +22,7 @@ def at_work(host, make_record):
     host.process_events()
     record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
     touched = store_trial_on_colin(host, record, 5)
-    write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"], 16.0)
+    write_recorded_trial(Path.home() / "RASTrainer" / "trials", record["trialId"], 11.0)
     host.press("createTraineeButton")
     host.choose("traineeComboBox", "T001")
     host.press("showScenarioButton")

@@ -3,7 +3,7 @@
 import time
 
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link_status import LinkState
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.peer_sockets import RETRY_PERIOD_S, takeCrashes
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, wait_until

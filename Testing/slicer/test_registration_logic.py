@@ -15,19 +15,17 @@ from rastrainer.registration.target_error import target_error
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.scene.control_points import setPoints, worldPoints
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
-from rastrainer.slicer.scene.registration_input import Choices
+from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.registration_nodes import (
     FIXED_REFERENCE,
+    Choices,
     isApplied,
     matrixOf,
     movingNode,
     setApplied,
 )
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
-from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.transforms import MM_PER_M
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"

@@ -6,10 +6,11 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
+from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
 from rastrainer.slicer.scene import registration_nodes
-from rastrainer.slicer.scene.control_points import labelsOf, localPoints, setPoints, worldPoints
-from rastrainer.slicer.scene.registration_nodes import registerNodes, showRegistration
+from rastrainer.slicer.scene.nodes import labelsOf, localPoints, setPoints, worldPoints
+from rastrainer.slicer.scene.registration_nodes import Choices, readPairs, showRegistration
 from rastrainer.slicer.scene.tables import showFits, showResiduals
 
 LABELS = tuple(str(i + 1) for i in range(15))
@@ -60,8 +61,14 @@ def landmark_transform(moving, fixed):
     return slicer.util.arrayFromVTKMatrix(transform.GetMatrix())
 
 
+def registered(moving, fixed, kind="rigid"):
+    """Return the registration of two lists of the scene."""
+    pairs = readPairs(moving, fixed, Choices())
+    return register(pairs.moving, pairs.fixed, kind, pairs.labels)
+
+
 def test_the_registration_is_that_of_vtk_landmark_transform(scene, moving, fixed):
-    registration = registerNodes(moving, fixed)
+    registration = registered(moving, fixed)
     node = showRegistration(scene, registration, moving, fixed)
     expected = landmark_transform(localPoints(moving), localPoints(fixed))
     np.testing.assert_allclose(registration_nodes.matrixOf(node), expected, atol=1e-6)
@@ -71,12 +78,12 @@ def test_points_are_paired_by_label_whatever_their_order(scene, moving, fixed, p
     order = np.random.default_rng(7).permutation(15)
     shuffled = markups(scene, "Shuffled", [LABELS[i] for i in order], points[order])
     np.testing.assert_allclose(
-        registerNodes(moving, shuffled).matrix, registerNodes(moving, fixed).matrix, atol=1e-9
+        registered(moving, shuffled).matrix, registered(moving, fixed).matrix, atol=1e-9
     )
 
 
 def test_applying_the_result_shows_the_touches_on_the_head(scene, moving, fixed, points):
-    registration = registerNodes(moving, fixed)
+    registration = registered(moving, fixed)
     node = showRegistration(scene, registration, moving, fixed)
     assert registration_nodes.isApplied(node)
     residuals = np.linalg.norm(worldPoints(moving) - points, axis=1)
@@ -87,9 +94,9 @@ def test_applying_the_result_shows_the_touches_on_the_head(scene, moving, fixed,
 
 
 def test_registering_again_gives_the_same_whether_applied_or_not(scene, moving, fixed):
-    first = registerNodes(moving, fixed)
+    first = registered(moving, fixed)
     node = showRegistration(scene, first, moving, fixed)
-    np.testing.assert_array_equal(registerNodes(moving, fixed).matrix, first.matrix)
+    np.testing.assert_array_equal(registered(moving, fixed).matrix, first.matrix)
     registration_nodes.setApplied(node, False)
     assert showRegistration(scene, first, moving, fixed) is node
     assert not registration_nodes.isApplied(node)
@@ -98,7 +105,7 @@ def test_registering_again_gives_the_same_whether_applied_or_not(scene, moving, 
 def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
     headless_scene, moving, fixed, tmp_path
 ):
-    node = showRegistration(headless_scene.scene, registerNodes(moving, fixed), moving, fixed)
+    node = showRegistration(headless_scene.scene, registered(moving, fixed), moving, fixed)
     assert registration_nodes.movingNode(node) is moving
     headless_scene.save(tmp_path / "trial.mrb")
     headless_scene.load(tmp_path / "trial.mrb")
@@ -109,7 +116,7 @@ def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
 
 
 def test_deleted_lists_are_no_trouble(scene, moving, fixed):
-    node = showRegistration(scene, registerNodes(moving, fixed), moving, fixed)
+    node = showRegistration(scene, registered(moving, fixed), moving, fixed)
     scene.RemoveNode(moving)
     assert registration_nodes.movingNode(node) is None
     assert not registration_nodes.isApplied(node)
@@ -126,11 +133,11 @@ def test_deleted_lists_are_no_trouble(scene, moving, fixed):
 def test_labels_that_do_not_pair_get_a_sentence(scene, fixed, points, labels, words):
     touched = markups(scene, "Touched", labels, points)
     with pytest.raises(InputError, match=words):
-        registerNodes(touched, fixed)
+        registered(touched, fixed)
 
 
 def test_the_residual_table_has_a_row_a_fiducial_and_units_in_its_columns(scene, moving, fixed):
-    registration = registerNodes(moving, fixed)
+    registration = registered(moving, fixed)
     table = showResiduals(scene, registration)
     assert [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())] == [
         "fiducial",
@@ -148,7 +155,7 @@ def test_the_residual_table_has_a_row_a_fiducial_and_units_in_its_columns(scene,
 
 
 def test_the_fits_are_compared_side_by_side(scene, moving, fixed):
-    fits = [registerNodes(moving, fixed, kind) for kind in ("rigid", "similarity", "affine")]
+    fits = [registered(moving, fixed, kind) for kind in ("rigid", "similarity", "affine")]
     errors = [target_error(fit, np.array([10.0, 20.0, -30.0])) for fit in fits]
     table = showFits(scene, fits, errors)
     fre = slicer.util.arrayFromTableColumn(table, "FRE (mm)")

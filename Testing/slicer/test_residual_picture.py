@@ -13,8 +13,14 @@ from rastrainer.slicer.scene.error_colors import (
     magnification,
     showResidualArrows,
 )
-from rastrainer_headless.picture_layout import chooseTwoViews, outwardDirections, placeLabels
-from rastrainer_headless.residual_picture import HEIGHT, WIDTH, writeResidualPicture
+from rastrainer_headless.residual_picture import (
+    HEIGHT,
+    WIDTH,
+    chooseTwoViews,
+    outwardDirections,
+    placeLabels,
+    writeResidualPicture,
+)
 
 
 @pytest.fixture

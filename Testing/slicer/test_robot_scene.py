@@ -7,9 +7,9 @@ import pytest
 import slicer
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import followPlacement, setApplied, showPlannedPlace
-from rastrainer.slicer.scene.robot_scene import robotNode, setRobotVisible, showRobot
+from rastrainer.slicer.scene.robot import robotNode, setRobotVisible, showRobot
 from rastrainer.slicer.scene.scenario_nodes import showTask
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path

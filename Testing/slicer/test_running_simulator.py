@@ -10,16 +10,16 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import STARTED_BY, read_holder
-from rastrainer.slicer.program import running_simulator
+from rastrainer.slicer.logic import simulator_logic
+from rastrainer.slicer.logic.simulator_logic import RunningSimulator
 from rastrainer.slicer.program.child_process import OPTIONS
-from rastrainer.slicer.program.running_simulator import RunningSimulator
 from rastrainer_simulator.record.journal import RecordsFolder
 from Testing.slicer.simulator_double import wait_until
 
 LONG_S = 60.0
 SIMULATOR = """
 import pathlib, signal, subprocess, sys, time
-from rastrainer_simulator.record.journal import RecordsFolder
+from rastrainer_simulator.record.records_folder import RecordsFolder
 if "stubborn" in sys.argv:
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
 records = RecordsFolder(pathlib.Path(sys.argv[1]))
@@ -95,7 +95,7 @@ def test_what_was_left_behind_is_found_and_connected_to(left_behind, running):
 
 @pytest.mark.parametrize("words", [(), ("stubborn",)])
 def test_what_was_left_behind_is_ended_with_its_window(left_behind, running, monkeypatch, words):
-    monkeypatch.setattr(running_simulator, "KILL_AFTER_S", 0.2)
+    monkeypatch.setattr(simulator_logic, "KILL_AFTER_S", 0.2)
     process = left_behind(*words)
     running.look()
     running.connect()

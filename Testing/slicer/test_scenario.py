@@ -11,9 +11,8 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import write_head_mesh
 from rastrainer.scenario.points import PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.scene import scenario_nodes as shown
-from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
+from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
-from rastrainer.slicer.scene.scene import Role, findNode
 from Testing.domain.scenario.made_up_scenario import ball_head
 
 FIDUCIALS = "vtkMRMLMarkupsFiducialNode"

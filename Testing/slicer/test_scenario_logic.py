@@ -1,17 +1,14 @@
 """Any model or volume of the scene can be the head that is looked at."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.logic.scenario_logic import ScenarioLogic
-from rastrainer.slicer.program.own_process import OwnProcess
+from rastrainer.slicer.program.own_process import runHere
+from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.registration_nodes import isApplied
-from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer_simulator.assets import asset_path
 
 
@@ -25,8 +22,7 @@ class Cache:
 
 @pytest.fixture
 def logic(scene, scenario):
-    run = OwnProcess(Path(sys.executable))
-    return ScenarioLogic(scene, Cache(scenario), asset_path("robots", "iiwa7"), run)
+    return ScenarioLogic(scene, Cache(scenario), asset_path("robots", "iiwa7"), runHere)
 
 
 def volume(scene, values, spacing):
@@ -70,10 +66,7 @@ def test_the_skin_of_a_volume_becomes_the_head(scene, logic):
     [
         pytest.param(np.full((60, 60, 60), np.nan, np.float32), "not numbers", id="NaN"),
         pytest.param(
-            np.ones((1, 200, 200), np.float32),
-            "needs a 3D volume",
-            id="2D",
-            marks=pytest.mark.soak,
+            np.ones((1, 200, 200), np.float32), "needs a 3D volume", id="2D", marks=pytest.mark.soak
         ),
         pytest.param(
             np.zeros((60, 60, 60), np.float32),

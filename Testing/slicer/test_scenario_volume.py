@@ -8,10 +8,9 @@ import slicer
 
 from rastrainer.head.volume import VolumeFile, write_head_volume
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.scene import scenario_volume
-from rastrainer.slicer.scene.scenario_nodes import showScenario
-from rastrainer.slicer.scene.scenario_volume import VOLUME, VolumeLoader, showImages
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene import scenario_nodes
+from rastrainer.slicer.scene.nodes import Role, findNode
+from rastrainer.slicer.scene.scenario_nodes import VOLUME, VolumeLoader, showImages, showScenario
 from rastrainer_headless.scene import HeadlessScene
 from Testing.domain.scenario.made_up_scenario import ball_volume
 
@@ -85,7 +84,7 @@ def test_nothing_is_read_before_the_loader_runs_nor_in_its_thread(
         raise AssertionError("read on the main thread")
 
     with monkeypatch.context() as patch:
-        patch.setattr(scenario_volume, "read_nrrd", read)
+        patch.setattr(scenario_nodes, "read_nrrd", read)
         showScenario(scene, imaged)
         assert loading.node.GetImageData() is None
     loading.loader.process()

@@ -25,11 +25,6 @@ def setup(host, tmp_path):
     return setup
 
 
-def set_up(host):
-    host.press("setupButton")
-    host.wait_until(lambda: "is set up in" in host.text("setupText"), "it is set up")
-
-
 def test_source_size_and_folder_are_reported_before_anything_is_fetched(host, monkeypatch):
     setup = host.open().logic.session.simulator.setup
     monkeypatch.setattr("sys.platform", "linux")
@@ -47,25 +42,28 @@ def test_source_size_and_folder_are_reported_before_anything_is_fetched(host, mo
     assert "comes from the folder /media/wheels" in host.text("setupText")
 
 
-def test_the_progress_is_shown_in_packages(host, setup):
+def test_the_simulator_is_set_up_package_by_package_and_removed_when_the_user_confirms(host, setup):
     shown = []
     setup.progressed.connect(
         lambda _line: shown.append(
             (host.find("setupProgressBar").value, host.find("setupProgressBar").maximum)
         )
     )
-    set_up(host)
+    with pytest.raises(AssertionError, match="There is nothing to remove"):
+        host.press("removeSetupButton")
+    host.press("setupButton")
+    host.wait_until(lambda: "is set up in" in host.text("setupText"), "it is set up")
     assert {(1, 2), (2, 2), (0, 0)} <= set(shown)
     assert not host.find("setupProgressBar").visible
     assert "Installing collected packages" in host.find("setupLogEdit").plainText
-
-
-def test_the_simulator_is_removed_when_the_user_confirms(host, setup):
-    with pytest.raises(AssertionError, match="There is nothing to remove"):
-        host.press("removeSetupButton")
-    set_up(host)
     assert host.find("setupCollapsibleButton").collapsed
+    host.press("startSimulatorButton")
     host.find("setupCollapsibleButton").collapsed = False
+    for name in ("removeSetupButton", "setupButton"):
+        with pytest.raises(AssertionError, match="Stop the simulator first"):
+            host.press(name)
+    host.press("stopSimulatorButton")
+    host.wait_until(lambda: host.find("removeSetupButton").enabled, "the simulator has ended")
     host.answer("Remove the simulator", "No")
     host.press("removeSetupButton")
     assert setup.isCurrent
@@ -73,18 +71,7 @@ def test_the_simulator_is_removed_when_the_user_confirms(host, setup):
     host.press("removeSetupButton")
     assert not setup.folder.exists()
     assert "press Set up, once" in host.text("setupText")
-    assert "not set up yet" in host.text("programText")
-
-
-def test_the_simulator_is_not_removed_while_it_runs(host, setup):
-    set_up(host)
-    host.press("startSimulatorButton")
-    host.find("setupCollapsibleButton").collapsed = False
-    with pytest.raises(AssertionError, match="Stop the simulator first"):
-        host.press("removeSetupButton")
-    with pytest.raises(AssertionError, match="Stop the simulator first"):
-        host.press("setupButton")
-    assert setup.isCurrent
+    assert "The simulator was stopped." in host.text("programText")
 
 
 def test_a_module_without_its_simulator_says_to_install_it_anew(host, setup, tmp_path):

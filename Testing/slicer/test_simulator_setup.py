@@ -127,23 +127,24 @@ def replaced(wheel, text):
 
 
 def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_network(setup, source):
-    assert (setup.isCurrent, setup.isInstalled) == (False, False)
+    left = setup.folder.with_name("simulator.removed-0123")
+    left.mkdir(parents=True)
+    (left / "library.so").touch()
+    counts = []
+    setup.progressed.connect(lambda _line: counts.append(setup.progress.done))
+    assert (setup.isCurrent, setup.isInstalled, setup.progress.count) == (False, False, 0)
     lines, error = run_setup(setup, source)
     assert error == "", lines
     assert (setup.installedVersion, setup.isCurrent) == (__version__, True)
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
     assert (setup.folder / "bolt.py").is_file()
     assert setup.installedMB == 0
-
-
-def test_a_set_up_counts_the_packages_of_this_platform(setup, source):
-    counts = []
-    setup.progressed.connect(lambda _line: counts.append(setup.progress.done))
-    assert setup.progress.count == 0
-    run_setup(setup, source)
+    # Of the packages in the lock, those for this platform were counted.
     assert (setup.progress.done, setup.progress.count) == (2, 2)
     assert sorted(set(counts)) == [0, 1, 2]
     assert setup.progress.isInstalling
+    # What an interrupted removal had left is gone.
+    assert left_beside(setup) == ["simulator"]
 
 
 def test_nothing_is_installed_whose_hash_the_module_does_not_know(setup, source, bolt):
@@ -242,14 +243,6 @@ def test_removing_the_simulator_leaves_nothing(installed):
     assert (changes, installed.isCurrent, installed.isInstalled) == ([False], False, False)
     assert left_beside(installed) == []
     installed.remove()
-
-
-def test_what_an_interrupted_removal_has_left_goes_at_the_next_set_up(setup, source):
-    left = setup.folder.with_name("simulator.removed-0123")
-    left.mkdir(parents=True)
-    (left / "library.so").touch()
-    run_setup(setup, source)
-    assert left_beside(setup) == ["simulator"]
 
 
 def test_an_installed_simulator_starts_reports_its_port_and_stops(installed):

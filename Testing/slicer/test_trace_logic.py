@@ -12,9 +12,8 @@ from rastrainer import transforms
 from rastrainer.scenario.points import Landmark
 from rastrainer.scenario.scenario import Camera
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.logic.trace_logic import TraceLogic
-from rastrainer.slicer.scene.scene import Role
-from rastrainer.slicer.scene.trace_nodes import DISTANCE_SCALARS, MODEL
+from rastrainer.slicer.logic.trace_logic import DISTANCE_SCALARS, MODEL, TraceLogic
+from rastrainer.slicer.scene.nodes import Role
 from Testing.slicer.simulator_double import run_logic_until, run_until_received
 from Testing.slicer.training_room import TRIAL, Room
 

@@ -11,7 +11,7 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
-from rastrainer.slicer.scene.scene import Role, findNode
+from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.score_board import (
     Row,
     ctpsRows,
@@ -22,7 +22,7 @@ from rastrainer.slicer.scene.score_board import (
     showStandings,
     standings,
 )
-from rastrainer.slicer.scene.study_plots import showCalibration, showHistory, showLearningCurve
+from rastrainer.slicer.scene.tables import showCalibration, showHistory, showLearningCurve
 from rastrainer.study.database.study import Study
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from Testing.domain.report.studied_procedures import outcome

@@ -7,9 +7,8 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import Role, capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import isApplied, isPlanned, matrixOf
-from rastrainer.slicer.scene.scene import Role
 from Testing.slicer.training_room import TRIAL
 
 

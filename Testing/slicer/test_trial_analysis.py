@@ -176,8 +176,7 @@ def test_the_results_are_json_with_finite_numbers(scenario, record):
 
 
 @pytest.mark.parametrize(
-    "answer",
-    [{}, {"headToWorld": [1.0] * 16}, {"headToWorld": [1.0] * 15, "trueTreMm": 1.0}],
+    "answer", [{}, {"headToWorld": [1.0] * 16}, {"headToWorld": [1.0] * 15, "trueTreMm": 1.0}]
 )
 def test_a_truth_that_is_none_gets_a_sentence(answer):
     with pytest.raises(InputError, match="must hold headToWorld"):

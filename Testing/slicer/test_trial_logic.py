@@ -16,8 +16,8 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic import trial_delivery, trial_logic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.registration_nodes import isApplied
-from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.study.database.database import LockWait, StudyUnreachableError
 from rastrainer.study.database.study import Study
 from rastrainer.study.trial_review import review

@@ -8,6 +8,7 @@ import vtk
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import find_track
+from rastrainer.slicer.scene.robot import ArmChain, readArmChain
 from rastrainer.slicer.scene.trial_replay import (
     STATES_A_SLICE,
     findReplay,
@@ -16,7 +17,6 @@ from rastrainer.slicer.scene.trial_replay import (
     removeReplay,
     showReplay,
 )
-from rastrainer.slicer.scene.urdf import ArmChain, readArmChain
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.recorded_trial import URDF, write_recorded_trial
 

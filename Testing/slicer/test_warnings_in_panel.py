@@ -6,8 +6,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.scenario.points import LABELS
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 
@@ -62,46 +61,57 @@ def onto(row, other):
     return lambda points: np.where((np.arange(15) == row)[:, None], points[other], points)
 
 
-@pytest.mark.parametrize(
-    ("change", "named", "button"),
-    [
-        (rows(0, 1, 3, 2, *range(4, 15)), "Points 3 and 4 seem to be exchanged", "Put in order"),
-        (rows(*range(14, -1, -1)), f"({ALL}) are in reverse order", "Put in order"),
-        (rows(*range(1, 15), 0), f"({ALL}) start elsewhere", "Put in order"),
-        (onto(9, 4), "Points 5 and 10 of the moving points", "Leave out 10"),
-        (moved(6, [9.0, -6.0, 5.0]), "Point 7 lies", "Leave out 7"),
-    ],
-    ids=["exchanged", "reversed", "begun elsewhere", "one place twice", "one bad touch"],
-)
-def test_one_click_mends_it_at_once_and_undo_brings_it_back(panel, touches, change, named, button):
-    touch(panel, change(touches))
-    assert named in " ".join(warnings(panel))
-    number = next(n for n, text in enumerate(warnings(panel)) if named in text)
-    assert panel.text(f"remedy{number}Button") == button
-    panel.press(f"remedy{number}Button")
-    assert named not in " ".join(warnings(panel))
-    panel.press("undoButton")
-    assert named in " ".join(warnings(panel))
+MENDED = {
+    "exchanged": (
+        rows(0, 1, 3, 2, *range(4, 15)),
+        "Points 3 and 4 seem to be exchanged",
+        "Put in order",
+    ),
+    "reversed": (rows(*range(14, -1, -1)), f"({ALL}) are in reverse order", "Put in order"),
+    "begun elsewhere": (rows(*range(1, 15), 0), f"({ALL}) start elsewhere", "Put in order"),
+    "one place twice": (onto(9, 4), "Points 5 and 10 of the moving points", "Leave out 10"),
+    "one bad touch": (moved(6, [9.0, -6.0, 5.0]), "Point 7 lies", "Leave out 7"),
+}
 
 
-@pytest.mark.parametrize(
-    ("change", "named", "advice"),
-    [
-        (lambda points: points * [1, 1, -1], f"({ALL}) are a mirror image", "check the sign"),
-        (lambda points: points / MM_PER_M, f"({ALL}) are 998.9 times", "must be in millimeters"),
-        (lambda points: points[0] + ONE_LINE, f"({ALL})", "one line"),
-        (lambda points: points[:2], "", "at least 3"),
-    ],
-    ids=["mirrored", "in meters", "on one line", "too few"],
-)
-def test_a_warning_without_a_remedy_names_its_points(panel, touches, change, named, advice):
-    touch(panel, change(touches))
-    told = " ".join([*warnings(panel), panel.text("registrationText")])
-    assert named in told
-    assert advice in told
+def test_one_click_mends_it_at_once_and_undo_brings_it_back(panel, touches):
+    for case, (change, named, button) in MENDED.items():
+        touch(panel, change(touches))
+        assert named in " ".join(warnings(panel)), case
+        number = next(n for n, text in enumerate(warnings(panel)) if named in text)
+        assert panel.text(f"remedy{number}Button") == button, case
+        panel.press(f"remedy{number}Button")
+        assert named not in " ".join(warnings(panel)), case
+        left = button.removeprefix("Leave out ")
+        assert (f"Left out: {left};" in panel.text("registrationText")) == (left != button), case
+        assert panel.find("residualsTable").rowCount == (15 if left == button else 14), case
+        panel.press("undoButton")
+        assert named in " ".join(warnings(panel)), case
+        assert panel.find("residualsTable").rowCount == 15, case
 
 
-def test_good_touches_raise_no_warning(panel, touches):
+UNMENDED = {
+    "mirrored": (
+        lambda points: points * [1, 1, -1],
+        f"({ALL}) are a mirror image",
+        "check the sign",
+    ),
+    "in meters": (
+        lambda points: points / MM_PER_M,
+        f"({ALL}) are 998.9 times",
+        "must be in millimeters",
+    ),
+    "on one line": (lambda points: points[0] + ONE_LINE, f"({ALL})", "one line"),
+    "too few": (lambda points: points[:2], "", "at least 3"),
+}
+
+
+def test_a_warning_without_a_remedy_names_its_points_and_good_touches_raise_none(panel, touches):
+    for case, (change, named, advice) in UNMENDED.items():
+        touch(panel, change(touches))
+        told = " ".join([*warnings(panel), panel.text("registrationText")])
+        assert named in told, case
+        assert advice in told, case
     touch(panel, touches)
     assert warnings(panel) == []
     assert panel.find("residualsTable").rowCount == 15

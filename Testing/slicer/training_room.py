@@ -7,7 +7,7 @@ from rastrainer.igtl.content import Status, String
 from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import TrainingLogic
-from rastrainer.slicer.scene.scene import findNode
+from rastrainer.slicer.scene.nodes import findNode
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, run_until_received
 

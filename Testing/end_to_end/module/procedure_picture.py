@@ -16,7 +16,7 @@ from rastrainer.procedure.record import UsedRegistration
 from rastrainer.procedure.score import ProcedureMeasures, reference_duration_s, score_procedure
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.scene.views import AlongInstrument
+from rastrainer.slicer.logic.views import AlongInstrument
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.virtual_procedure import (

@@ -6,7 +6,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from rastrainer.slicer.scene.views import jumpTo
+from rastrainer.slicer.logic.views import jumpTo
 from Testing.end_to_end.module.few_colors import reduce_colors
 from Testing.end_to_end.module.story import PLAN_MM, Story
 from Testing.slicer.host.host import Host

@@ -15,9 +15,8 @@ from rastrainer.scenario.library import unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import write_scenario
 from rastrainer.slicer.head.extraction import findHead
-from rastrainer.slicer.head.head_body import HeadSettings
 from rastrainer.slicer.head.mask import squaredDistances
-from rastrainer.slicer.head.volume import Volume
+from rastrainer.slicer.head.volume import HeadSettings, Volume
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.authoring.export import Grid, without_face_in
 from rastrainer_simulator.authoring.face_removal import (

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_headless import dicom_series
-from rastrainer_headless.dicom_series import isCutDicom
+from rastrainer_headless import volume_files
+from rastrainer_headless.volume_files import isCutDicom
 from Testing.slicer.head.dicom_series import element, slice_file
 
 SLICE = slice_file(np.zeros((8, 8), np.int16), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), "1.2.3", 0)
@@ -63,9 +63,9 @@ ENDS = plain(END_OF_ITEM) + plain(END_OF_SEQUENCE)
 def test_what_announces_more_than_the_file_has_is_refused_unread(content, tmp_path, monkeypatch):
     path = tmp_path / "a.dcm"
     path.write_bytes(content)
-    monkeypatch.setattr(dicom_series.slicer, "vtkITKArchetypeImageSeriesScalarReader", None)
+    monkeypatch.setattr(volume_files.slicer, "vtkITKArchetypeImageSeriesScalarReader", None)
     with pytest.raises(InputError, match=r"a\.dcm is cut short or damaged"):
-        dicom_series.readDicomFolder(tmp_path)
+        volume_files.readDicomFolder(tmp_path)
 
 
 @pytest.mark.parametrize(

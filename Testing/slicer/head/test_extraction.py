@@ -7,8 +7,7 @@ from scipy import ndimage
 from rastrainer.errors import InputError
 from rastrainer.progress import no_progress
 from rastrainer.slicer.head.extraction import findHead, skinOf
-from rastrainer.slicer.head.head_body import HeadSettings
-from rastrainer.slicer.head.volume import Volume, onRasGrid
+from rastrainer.slicer.head.volume import HeadSettings, Volume, onRasGrid
 from Testing.slicer.head.phantoms import DOUBLE_OBLIQUE, SAGITTAL
 
 SEMI_AXES = np.array([33.0, 38.0, 36.0])

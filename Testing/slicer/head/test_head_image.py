@@ -7,10 +7,8 @@ import slicer
 from rastrainer.files.nrrd import MAX_FILE_BYTES, write_nrrd
 from rastrainer.head.volume import KEPT_MM
 from rastrainer.slicer.head.extraction import findHead, skinOf
-from rastrainer.slicer.head.head_body import HeadSettings
-from rastrainer.slicer.head.head_draft import makeDraft
-from rastrainer.slicer.head.images_and_skull import HOUNSFIELD, imageOf
-from rastrainer.slicer.head.volume import Volume
+from rastrainer.slicer.head.head_draft import HOUNSFIELD, imageOf
+from rastrainer.slicer.head.volume import HeadSettings, Volume
 from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.phantoms import CT, DOUBLE_OBLIQUE, MRI, depth_mm, phantom
 
@@ -93,13 +91,3 @@ def test_slicer_reads_the_file_as_it_was_written(tmp_path):
     node = slicer.vtkMRMLScene().AddNewNodeByClass("vtkMRMLScalarVolumeNode")
     assert storage.ReadData(node)
     assert np.array_equal(slicer.util.arrayFromVolume(node).T, made.values)
-
-
-def test_the_draft_has_the_images_unless_they_are_not_wanted():
-    scan = phantom(spacing=(3.0, 3.0, 3.0), size=0.75)
-    draft, _warnings = makeDraft(scan, hasSkull=False)
-    assert draft.volume is not None
-    assert "Images: MRI, 1 mm" in draft.method
-    bare, _warnings = makeDraft(scan, hasSkull=False, hasVolume=False)
-    assert bare.volume is None
-    assert "Images" not in bare.method

@@ -5,7 +5,7 @@ import pytest
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.head_draft import checkVolume, makeDraft
-from rastrainer_headless.dicom_series import readDicomFolder
+from rastrainer_headless.volume_files import readDicomFolder
 from Testing.slicer.head.broken_volumes import HEADLESS, UNUSABLE, block
 from Testing.slicer.head.dicom_series import write_series
 

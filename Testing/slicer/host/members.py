@@ -57,9 +57,7 @@ def members_of(class_name: str) -> Members:
     if entry["widget"] and class_name != "QWidget":
         base = members_of("QWidget")
         own = Members(
-            own.properties | base.properties,
-            own.signals | base.signals,
-            own.methods | base.methods,
+            own.properties | base.properties, own.signals | base.signals, own.methods | base.methods
         )
     return _add(own, EXTRA_MEMBERS.get(class_name, ""))
 

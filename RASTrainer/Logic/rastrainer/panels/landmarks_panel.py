@@ -8,16 +8,16 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
-from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
+    chosenScenario,
     fillComboBox,
     fillTable,
     setSentence,
     setUsable,
 )
 from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
-from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.translation import _
 
@@ -61,7 +61,7 @@ class LandmarksPanel:
     def propose(self) -> None:
         """Replace the landmarks by proposed ones on the chosen head."""
         with slicer.util.tryWithErrorDisplay(_("No landmarks could be proposed.")):
-            scenario = self._scenario()
+            scenario = chosenScenario(self._ui, self._session)
             said = self._work.run(lambda report: self._logic.propose(scenario, report))
             if said is not None:
                 self._showMessage(said)
@@ -69,7 +69,7 @@ class LandmarksPanel:
     def show(self) -> None:
         """Replace the landmarks by those of the chosen scenario."""
         with slicer.util.tryWithErrorDisplay(_("The landmarks cannot be shown.")):
-            scenario = self._scenario()
+            scenario = chosenScenario(self._ui, self._session)
             if not scenario.landmarks:
                 raise InputError(_("{title} has no landmarks.").format(title=scenario.title))
             self._logic.points.show(scenario.landmarks)
@@ -94,7 +94,7 @@ class LandmarksPanel:
     def check(self) -> None:
         """Check the landmarks on the head of the chosen scenario, and the robot's reach."""
         with slicer.util.tryWithErrorDisplay(_("The landmarks were not checked.")):
-            scenario = self._scenario()
+            scenario = chosenScenario(self._ui, self._session)
             said = self._work.run(lambda report: self._logic.check(scenario, report))
             if said is not None:
                 self._showMessage(said)
@@ -103,7 +103,7 @@ class LandmarksPanel:
         """Copy the chosen scenario with these landmarks and use the copy."""
         with slicer.util.tryWithErrorDisplay(_("The landmarks were not saved.")):
             title = self._ui.landmarksTitleLineEdit.text.strip()
-            scenario = self._scenario()
+            scenario = chosenScenario(self._ui, self._session)
             saved = self._work.run(lambda report: self._logic.save(scenario, title, report))
             if saved is not None:
                 text = _("{title} was made and is chosen above.")
@@ -152,12 +152,6 @@ class LandmarksPanel:
         entries = [(NAMES[name], name) for name in FACE_LANDMARKS]
         chosen = missing[0] if missing else FACE_LANDMARKS[0]
         fillComboBox(self._ui.landmarkNameComboBox, entries, chosen)
-
-    def _scenario(self) -> Scenario:
-        name = chosenData(self._ui.scenarioComboBox)
-        if not name:
-            raise InputError(_("Choose a scenario that can be used."))
-        return self._session.scenario.find(name)
 
     def _showProgress(self, step: str, _share: float) -> None:
         if step:

@@ -8,10 +8,8 @@ import qt
 import slicer
 
 from rastrainer.head.trial_head import MAX_PERTURBATION, Perturbation
-from rastrainer.panels.application import fitThreeDViews
-from rastrainer.panels.cancelable_work import CancelableWork
-from rastrainer.panels.sample_data import downloadSample
-from rastrainer.panels.widgets import setSentence, setUsable
+from rastrainer.panels.application import downloadSample, fitThreeDViews
+from rastrainer.panels.widgets import CancelableWork, setSentence, setUsable
 from rastrainer.protocol import WORLD_LIMIT_MM
 from rastrainer.scenario.scenario import STAND_DIAMETERS_MM, Scenario
 from rastrainer.scenario.setup import SetUp

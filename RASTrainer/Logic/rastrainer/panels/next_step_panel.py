@@ -19,7 +19,7 @@ from rastrainer.panels.widgets import (
     setUsable,
 )
 from rastrainer.protocol import OPEN_PHASES, TRIAL_RUN, Phase
-from rastrainer.slicer.link.heartbeat import LinkState, notInstalled
+from rastrainer.slicer.link.link_status import LinkState, notInstalled
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.next_step import NextAction, NextStep, Section, WorkflowState, nextStep
 from rastrainer.slicer.signal import Listening

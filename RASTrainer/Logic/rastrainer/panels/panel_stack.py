@@ -9,14 +9,13 @@ import slicer
 
 from rastrainer.panels.curriculum_panel import CurriculumPanel
 from rastrainer.panels.landmarks_panel import LandmarksPanel
-from rastrainer.panels.methods_panel import MethodsPanel
 from rastrainer.panels.new_scenario_panel import NewScenarioPanel
 from rastrainer.panels.next_step_panel import NextStepPanel
 from rastrainer.panels.plan_panel import PlanPanel
 from rastrainer.panels.procedure_panel import ProcedurePanel
 from rastrainer.panels.procedure_plan_panel import ProcedurePlanPanel
 from rastrainer.panels.registration_panel import RegistrationPanel
-from rastrainer.panels.scenario_panel import ScenarioPanel
+from rastrainer.panels.scenario_panel import MethodsPanel, ScenarioPanel
 from rastrainer.panels.score_panel import ScorePanel
 from rastrainer.panels.setup_panel import SetupPanel
 from rastrainer.panels.simulator_panel import RunningSimulatorPanel, SimulatorPanel
@@ -44,10 +43,7 @@ SECTIONS = (
 """In the order of the work."""
 NESTED = (CurriculumPanel, LandmarksPanel, MethodsPanel)
 """Whose widgets are in the files of other sections."""
-PANELS = (
-    NextStepPanel,
-    *SECTIONS,
-)
+PANELS = (NextStepPanel, *SECTIONS)
 """From above to below."""
 
 

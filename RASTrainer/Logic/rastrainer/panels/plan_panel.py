@@ -8,12 +8,12 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
-from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
     GRAY,
     GREEN,
     RED,
+    CancelableWork,
     chosenData,
     fillComboBox,
     millimeters,
@@ -23,11 +23,11 @@ from rastrainer.panels.widgets import (
 )
 from rastrainer.progress import no_progress
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
-from rastrainer.slicer.scene.registration_input import snapshot
+from rastrainer.slicer.scene.registration_nodes import snapshot
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 

@@ -8,16 +8,10 @@ from typing import Any, NamedTuple
 import slicer
 
 from rastrainer.number_text import fixed
-from rastrainer.panels.widgets import (
-    fillTable,
-    keepChecked,
-    setSentence,
-    setText,
-    setUsable,
-)
+from rastrainer.panels.widgets import fillTable, keepChecked, setSentence, setText, setUsable
 from rastrainer.procedure.errors import TrajectoryErrors
-from rastrainer.protocol import Phase
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.protocol import CommandName, Phase
+from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic, ProcedureStatus
 from rastrainer.slicer.settings import SLICES_LIE_ALONG
@@ -35,25 +29,32 @@ class _Step(NamedTuple):
     tip: str
 
 
+def _sends(name: str) -> Callable[[ProcedureLogic], None]:
+    return lambda logic: logic.command(name)
+
+
 _VERIFY, _ALIGN = (Phase.VERIFYING,), (Phase.ALIGNING,)
 _DRILL, _INSERT = (Phase.DRILLING,), (Phase.INSERTING,)
 STEPS = (
     _Step(
         "acceptButton",
         _VERIFY,
-        ProcedureLogic.accept,
+        _sends(CommandName.ACCEPT_REGISTRATION),
         _("Continue with the registration in use; what comes next depends on it."),
     ),
     _Step(
-        "registerAgainButton", _VERIFY, ProcedureLogic.registerAgain, _("Touch all points again.")
+        "registerAgainButton",
+        _VERIFY,
+        _sends(CommandName.REGISTER_AGAIN),
+        _("Touch all points again."),
     ),
     _Step(
         "alignButton",
         _ALIGN,
-        ProcedureLogic.align,
+        _sends(CommandName.ALIGN_GUIDE),
         _("Let the robot bring the guide onto the planned line."),
     ),
-    _Step("lockButton", _ALIGN, ProcedureLogic.lock, _("Lock the guide where it is.")),
+    _Step("lockButton", _ALIGN, _sends(CommandName.LOCK_GUIDE), _("Lock the guide where it is.")),
     _Step(
         "advanceButton",
         (*_DRILL, *_INSERT),
@@ -69,16 +70,21 @@ STEPS = (
     _Step(
         "retractDrillButton",
         _DRILL,
-        ProcedureLogic.retractDrill,
+        _sends(CommandName.RETRACT_DRILL),
         _("Take the drill out and align the guide again; only before it has cut bone."),
     ),
     _Step(
         "startInsertionButton",
         _DRILL,
-        ProcedureLogic.startInsertion,
+        _sends(CommandName.START_INSERTION),
         _("Replace the drill by the instrument."),
     ),
-    _Step("releaseButton", _INSERT, ProcedureLogic.release, _("Leave the instrument where it is.")),
+    _Step(
+        "releaseButton",
+        _INSERT,
+        _sends(CommandName.RELEASE_INSTRUMENT),
+        _("Leave the instrument where it is."),
+    ),
 )
 WHEN = {
     Phase.VERIFYING: _("while the registration is verified"),

@@ -7,11 +7,11 @@ from typing import Any
 
 import slicer
 
-from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
-from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
+    chosenScenario,
     fillComboBox,
     fillTable,
     setSentence,
@@ -21,10 +21,9 @@ from rastrainer.panels.widgets import (
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.procedure_plan_logic import CheckedLine, CheckedPlan, PlanDescription
-from rastrainer.slicer.scene.control_points import worldPoints
-from rastrainer.slicer.scene.plan_points import startPlacing
-from rastrainer.slicer.scene.procedure_plan_nodes import (
-    FIDUCIALS,
+from rastrainer.slicer.scene.nodes import Role, findNode, worldPoints
+from rastrainer.slicer.scene.plan_points import LIST, startPlacing
+from rastrainer.slicer.scene.procedure_lines import (
     RemovedLine,
     checkpointList,
     instrumentOf,
@@ -39,7 +38,6 @@ from rastrainer.slicer.scene.procedure_plan_nodes import (
     setInstrument,
     setNoGo,
 )
-from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.slicer.translation import _
 
 KINDS = (
@@ -91,7 +89,8 @@ class ProcedurePlanPanel:
         """Bring the chosen procedure into the scene, in the place of the plan there."""
         with slicer.util.tryWithErrorDisplay(_("The procedure cannot be edited.")):
             ui = self._ui
-            procedure = self._logic.edit(self._scenario(), chosenData(ui.procedurePlanComboBox))
+            scenario = chosenScenario(ui, self._session)
+            procedure = self._logic.edit(scenario, chosenData(ui.procedurePlanComboBox))
             self._checked, self._problem, self._removed = None, "", []
             self._name = "" if procedure is None else procedure.name
             if procedure is not None:
@@ -99,7 +98,7 @@ class ProcedurePlanPanel:
                 ui.procedureSourceLineEdit.text = procedure.source
                 ui.procedureSourceLineEdit.cursorPosition = 0
                 fillComboBox(ui.procedureKindComboBox, KINDS, procedure.kind.value)
-            checkpoints = findNode(slicer.mrmlScene, FIDUCIALS, Role.CHECKPOINTS)
+            checkpoints = findNode(slicer.mrmlScene, LIST, Role.CHECKPOINTS)
             ui.checkpointsComboBox.setCurrentNode(checkpoints)
             self.showState()
 
@@ -149,7 +148,8 @@ class ProcedurePlanPanel:
         """Measure all lines on the head of the chosen scenario."""
         with slicer.util.tryWithErrorDisplay(_("The lines were not checked.")):
             self._problem = ""
-            scenario, plan, snapshot = self._scenario(), self._description(), self._snapshot()
+            scenario = chosenScenario(self._ui, self._session)
+            plan, snapshot = self._description(), self._snapshot()
             found = self._work.run(lambda report: self._logic.check(scenario, plan, report))
             if found is not None:
                 self._checked = snapshot, found
@@ -160,7 +160,7 @@ class ProcedurePlanPanel:
         """Copy the chosen scenario with this procedure and use the copy."""
         with slicer.util.tryWithErrorDisplay(_("The procedure was not saved.")):
             title = self._ui.procedureScenarioLineEdit.text.strip()
-            scenario, plan = self._scenario(), self._description()
+            scenario, plan = chosenScenario(self._ui, self._session), self._description()
             saved = self._work.run(lambda report: self._logic.save(scenario, title, plan, report))
             if saved is not None:
                 self._session.scenarioMade.emit(saved.name)
@@ -297,12 +297,6 @@ class ProcedurePlanPanel:
             name=self._name,
             checkpoints=ui.checkpointsComboBox.currentNode(),
         )
-
-    def _scenario(self) -> Any:
-        name = chosenData(self._ui.scenarioComboBox)
-        if not name:
-            raise InputError(_("Choose a scenario that can be used."))
-        return self._session.scenario.find(name)
 
     def _showProcedures(self) -> None:
         """Offer the procedures of the chosen scenario, and a new one."""

@@ -1,4 +1,4 @@
-"""The section Scenario: the head, the task, the robot, and other heads to look at or to give."""
+"""The section Scenario: head, task, robot, other heads, and each method of registration on one."""
 
 from __future__ import annotations
 
@@ -8,14 +8,26 @@ from typing import Any
 import qt
 import slicer
 
+from rastrainer.number_text import fixed
 from rastrainer.panels.application import askWhereToSave, fitSliceViews, fitThreeDViews
-from rastrainer.panels.cancelable_work import CancelableWork
-from rastrainer.panels.widgets import chosenData, fillComboBox, setChecked, setText, setUsable
+from rastrainer.panels.training_panel import METHODS
+from rastrainer.panels.widgets import (
+    CancelableWork,
+    chosenData,
+    chosenScenario,
+    fillComboBox,
+    fillTable,
+    setChecked,
+    setSentence,
+    setText,
+    setUsable,
+)
 from rastrainer.progress import no_progress
-from rastrainer.protocol import TRIAL_RUN
+from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
+from rastrainer.slicer.logic.scenario_logic import ComparedMethod
 from rastrainer.slicer.settings import SCENARIO, TASK
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
@@ -240,3 +252,70 @@ class ScenarioPanel:
     def _showMessage(self, sentence: str) -> None:
         if sentence:
             setText(self._ui.scenarioText, sentence)
+
+
+METHOD_NAMES = {
+    **METHODS,
+    RegistrationMethod.BONE_SCREWS.value: _("Bone screws"),
+    RegistrationMethod.SCAN.value: _("Range camera"),
+}
+
+
+class MethodsPanel:
+    """Wires the group's widgets to the session."""
+
+    def __init__(self, ui: Any, session: ModuleSession) -> None:
+        self._ui = ui
+        self._session = session
+        self._work = CancelableWork(self._showMessage, self._showProgress, self._showUsable)
+        self._work.connectButton(ui.compareMethodsButton, self.compare)
+        self._showMessage("")
+
+    def close(self) -> None:
+        """Cancel what is under way."""
+        self._work.cancel()
+
+    def compare(self) -> None:
+        """Simulate trials on the chosen head, and show how each method registers them."""
+        ui, logic = self._ui, self._session.methodComparison
+        with slicer.util.tryWithErrorDisplay(_("The methods were not compared.")):
+            scenario = chosenScenario(ui, self._session)
+            trials, shift = ui.methodTrialsSpinBox.value, ui.methodShiftSpinBox.value
+            self._showMessage(_("Trials are being simulated and registered."))
+            found = self._work.run(lambda report: logic.compare(scenario, trials, shift, report))
+            if found is not None:
+                fillTable(ui.methodsTable, [_row(method) for method in found])
+                self._showMessage(self._said(found))
+
+    def _said(self, found: tuple[ComparedMethod, ...]) -> str:
+        text = _(
+            "Residuals of different methods are of different points: they do not show which is "
+            "better. The true error does."
+        )
+        if len(found) == len(METHOD_NAMES):
+            return text
+        few = _("The head has too few landmarks for the other methods.")
+        return f"{text} {few}"
+
+    def _showUsable(self) -> None:
+        isAtWork = self._work.isUnderWay
+        self._ui.compareMethodsButton.text = _("Cancel") if isAtWork else _("Compare")
+
+    def _showProgress(self, step: str, _share: float) -> None:
+        if step:
+            self._showMessage(step)
+
+    def _showMessage(self, sentence: str) -> None:
+        setSentence(self._ui.methodsText, sentence)
+
+
+def _row(method: ComparedMethod) -> tuple[str, ...]:
+    low, high = method.interval
+    return (
+        METHOD_NAMES.get(method.name, method.name),
+        fixed(method.residual, 2),
+        fixed(method.true, 2),
+        fixed(method.expected, 2),
+        _("{low} to {high}").format(low=fixed(low, 2), high=fixed(high, 2)),
+        _("{share} %").format(share=fixed(100.0 * method.held, 0)),
+    )

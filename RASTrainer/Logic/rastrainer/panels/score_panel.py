@@ -11,8 +11,8 @@ import slicer
 from rastrainer.errors import InputError
 from rastrainer.number_text import fixed
 from rastrainer.panels.application import TABLES, askWhereToSave, fitThreeDViews, showTable
-from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
     fillComboBox,
     fillTable,
@@ -191,9 +191,7 @@ class ScorePanel:
         setSentence(ui.ctpsText, CTPS_WARNING if ctps else "")
         fillTable(ui.standingsTable, (_standingRow(s) for s in beside))
         fillTable(
-            ui.motionTable,
-            ((row.title, row.text) for row in motion),
-            [row.note for row in motion],
+            ui.motionTable, ((row.title, row.text) for row in motion), [row.note for row in motion]
         )
         self._nameTrial(trial)
         self._showFeedback()
@@ -291,9 +289,7 @@ def _reportOn(study: StudyPlace, folder: Path) -> Path:
 
 def _entry(number: int, trial: StoredTrial) -> str:
     return _("{number}: {task}, {day}").format(
-        number=number,
-        task=trial.record.task,
-        day=trial.record.started_utc[:16].replace("T", " "),
+        number=number, task=trial.record.task, day=trial.record.started_utc[:16].replace("T", " ")
     )
 
 

@@ -17,8 +17,7 @@ from rastrainer.panels.panel_stack import PanelStack
 from rastrainer.scenario.points import LABELS
 from rastrainer.slicer.link.connection import desktopKit
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import capturedPointsNode, setPoints
 from rastrainer.slicer.settings import Settings
 
 SCENARIO = "colin27"

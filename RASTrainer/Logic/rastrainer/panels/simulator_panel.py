@@ -20,7 +20,7 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
+from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.simulator_logic import freePort
 from rastrainer.slicer.program.simulator_program import ProgramState

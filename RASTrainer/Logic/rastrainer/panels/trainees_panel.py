@@ -10,9 +10,9 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.application import CALIBRATION, CURVE, askWhereToSave, showChart
-from rastrainer.panels.cancelable_work import CancelableWork
 from rastrainer.panels.plain_text import toolTip
 from rastrainer.panels.widgets import (
+    CancelableWork,
     chosenData,
     connectAsPressed,
     fillComboBox,
@@ -24,7 +24,7 @@ from rastrainer.panels.widgets import (
 )
 from rastrainer.protocol import Mode
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.scene.study_plots import showCalibration, showLearningCurve
+from rastrainer.slicer.scene.tables import showCalibration, showLearningCurve
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import StoredAbortedTrial

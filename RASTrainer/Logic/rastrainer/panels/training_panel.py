@@ -31,7 +31,7 @@ from rastrainer.protocol import (
     Proximity,
     RegistrationMethod,
 )
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.training_logic import TrialStatus
 from rastrainer.slicer.settings import (

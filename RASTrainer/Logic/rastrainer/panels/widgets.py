@@ -1,15 +1,24 @@
-"""What several panels do with their widgets."""
+"""What the panels do with their widgets, and work that takes a while.
+
+During that, the window stays responsive, and its user may cancel it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import qt
+import slicer
 
+from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import LONGEST_TEXT, shortened, shortName, toolTip, wrappable
-from rastrainer.slicer.link.heartbeat import LinkState
+from rastrainer.progress import Progress
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.slicer.link.link_status import LinkState
+from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.settings import Setting, Settings
+from rastrainer.slicer.translation import _
 
 GREEN, YELLOW, RED, GRAY = "#2e9e44", "#c98a00", "#d03030", "#888888"
 LINK_COLORS = {
@@ -113,6 +122,18 @@ def chosenData(combo: Any) -> str:
     return combo.itemData(combo.currentIndex) if combo.currentIndex >= 0 else ""
 
 
+def chosenScenario(ui: Any, session: ModuleSession) -> Scenario:
+    """Return the scenario that is chosen in the section Scenario.
+
+    Raises:
+        InputError: it cannot be used, or there is none.
+    """
+    name = chosenData(ui.scenarioComboBox)
+    if not name:
+        raise InputError(_("Choose a scenario that can be used."))
+    return session.scenario.find(name)
+
+
 def setChecked(box: Any, checked: bool) -> None:
     """Check a box or not, without a signal."""
     wasBlocked = box.blockSignals(True)
@@ -157,3 +178,66 @@ def keepChosen(
     known = [data for _text, data in entries]
     fillComboBox(combo, entries, chosen if chosen in known else setting.usual)
     combo.connect("activated(int)", lambda _index: settings.set(setting, chosenData(combo)))
+
+
+T = TypeVar("T")
+
+
+class _CanceledError(Exception):
+    """The user has pressed Cancel."""
+
+
+class CancelableWork:
+    """Runs one piece of work at a time.
+
+    Attributes:
+        isUnderWay: whether it runs.
+    """
+
+    def __init__(
+        self, showSentence: Callable[[str], None], show: Progress, showUsable: Callable[[], None]
+    ) -> None:
+        """Prepare for work.
+
+        Args:
+            showSentence: shows a sentence, an empty one where the work has failed.
+            show: shows a step's name and the share of the work done.
+            showUsable: called when work begins and ends.
+        """
+        self.isUnderWay = False
+        self._isCanceled = False
+        self._showSentence, self._show, self._showUsable = showSentence, show, showUsable
+
+    def run(self, work: Callable[[Progress], T]) -> T | None:
+        """Return what the work returns, None where the user has canceled it.
+
+        Args:
+            work: is given what it reports its progress to, which raises to cancel it.
+        """
+        self.isUnderWay, self._isCanceled = True, False
+        self._showUsable()
+        try:
+            return work(self._progress)
+        except _CanceledError:
+            self._showSentence(_("Canceled; nothing has changed."))
+            return None
+        except BaseException:
+            self._showSentence("")
+            raise
+        finally:
+            self.isUnderWay = False
+            self._showUsable()
+
+    def connectButton(self, button: Any, start: Callable[[], None]) -> None:
+        """Have a button start the work, or cancel what is under way."""
+        connectAsPressed(button, lambda: self.cancel if self.isUnderWay else start)
+
+    def cancel(self) -> None:
+        """Cancel what is under way, when it next reports its progress."""
+        self._isCanceled = True
+
+    def _progress(self, step: str, share: float) -> None:
+        self._show(step, share)
+        slicer.app.processEvents()
+        if self._isCanceled:
+            raise _CanceledError

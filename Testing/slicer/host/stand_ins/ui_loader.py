@@ -24,7 +24,7 @@ WIDGETS = {
 }
 
 
-class QUiLoader(QtUiTools.QUiLoader):
+class QUiLoader(QtCore.QObject):
     """Makes the widgets of CTK and of Slicer, too, and connects them."""
 
     def load(self, device: QtCore.QIODevice, parent: QtWidgets.QWidget | None = None) -> object:
@@ -32,13 +32,15 @@ class QUiLoader(QtUiTools.QUiLoader):
         buffer = QtCore.QBuffer()
         buffer.setData(content)
         buffer.open(QtCore.QIODevice.OpenModeFlag.ReadOnly)
-        widget = super().load(buffer, parent)
+        widget = _loader().load(buffer, parent)
         for name, (key, value) in enumerations.items():
             _named(widget, name).setProperty(key, value)
         for connection in connections:
             _connect(widget, connection)
         return widget
 
+
+class _Loader(QtUiTools.QUiLoader):
     def createWidget(
         self, class_name: str, parent: QtWidgets.QWidget | None = None, name: str = ""
     ) -> QtWidgets.QWidget:
@@ -51,9 +53,13 @@ class QUiLoader(QtUiTools.QUiLoader):
 
 
 @functools.cache
-def _checked(
-    content: bytes,
-) -> tuple[bytes, dict[str, tuple[str, int]], list[dict[str, str]]]:
+def _loader() -> _Loader:
+    """Return the loader of all files: one that is made looks for plugins first."""
+    return _Loader()
+
+
+@functools.cache
+def _checked(content: bytes) -> tuple[bytes, dict[str, tuple[str, int]], list[dict[str, str]]]:
     """Return what Qt can read of a `.ui` file, and apart from it what only CTK knows.
 
     That is the enumerations, by the names of their widgets, and the connections.

@@ -10,8 +10,10 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.head.head_body import SPACING_MM, HeadBody, HeadSettings
 from rastrainer.slicer.head.volume import (
+    SPACING_MM,
+    HeadBody,
+    HeadSettings,
     Volume,
     lowestSlice,
     matrixOf,

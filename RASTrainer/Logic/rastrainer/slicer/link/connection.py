@@ -14,16 +14,18 @@ from typing import Any
 import slicer
 import vtk
 
-from rastrainer.protocol import DeviceName
-from rastrainer.slicer.link.heartbeat import (
+from rastrainer.protocol import PROTOCOL_VERSION, DeviceName
+from rastrainer.slicer.link.link_status import (
     RECONNECT_AFTER_S,
     LinkObservation,
     LinkStatus,
+    Peer,
+    ProbeResult,
     judge,
     notInstalled,
 )
-from rastrainer.slicer.link.simulator_search import SimulatorSearch
-from rastrainer.slicer.scene.link_nodes import findIncomingNode
+from rastrainer.slicer.link.probe import Probe
+from rastrainer.slicer.scene.nodes import findIncomingNode
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,54 @@ def desktopKit() -> ConnectorKit | None:
     if not hasattr(slicer, "vtkMRMLIGTLConnectorNode"):
         return None
     return ConnectorKit(slicer.vtkMRMLIGTLConnectorNode, slicer.vtkSlicerOpenIGTLinkCommand)
+
+
+RETRY_S = 1.0
+RETRY_OTHER_S = 5.0
+"""Seconds until the next question: soon where a simulator may just be starting, later where
+another program answers."""
+
+
+class SimulatorSearch:
+    """A search, from `begin` until a simulator of our version is found.
+
+    Attributes:
+        finding: the latest answer; None as long as there is none.
+    """
+
+    def __init__(self, clock: Callable[[], float]) -> None:
+        self.finding: ProbeResult | None = None
+        self._clock = clock
+        self._probe: Probe | None = None
+        self._next = 0.0
+
+    def begin(self) -> None:
+        """Forget the last finding, and test at once."""
+        self.end()
+        self.finding = None
+        self._next = self._clock()
+
+    def end(self) -> None:
+        """Stop testing."""
+        if self._probe is not None:
+            self._probe.close()
+            self._probe = None
+
+    def process(self, host: str, port: int) -> ProbeResult | None:
+        """Test when it is due; return the simulator that has just answered, else None."""
+        if self._probe is None:
+            if self._clock() < self._next:
+                return None
+            self._probe = Probe(host, port, self._clock)
+        finding = self._probe.process()
+        if finding is None:
+            return None
+        self._probe = None
+        self.finding = finding
+        isSoon = finding.peer in (Peer.NOBODY, Peer.SILENT, Peer.SIMULATOR)
+        self._next = self._clock() + (RETRY_S if isSoon else RETRY_OTHER_S)
+        isOurs = finding.peer is Peer.SIMULATOR and finding.version == PROTOCOL_VERSION
+        return finding if isOurs else None
 
 
 CONNECTOR_NAME = "RASTrainerLink"

@@ -13,14 +13,16 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rastrainer.command_arguments import check_arguments
+from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, PROTOCOL_VERSION, CommandName
 from rastrainer.slicer.link.connection import ConnectorKit, SlicerConnection
-from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
+from rastrainer.slicer.link.link_status import LinkState, LinkStatus, judgeFinding, lookingAt
 from rastrainer.slicer.link.pending_commands import Arrivals, OnReply, PendingCommands, Request
-from rastrainer.slicer.link.simulator_search import ConnectionCheck, checkedAddress, checkPort
-from rastrainer.slicer.scene.link_nodes import prepareNodes
+from rastrainer.slicer.link.probe import Probe
+from rastrainer.slicer.scene.nodes import prepareNodes
 from rastrainer.slicer.signal import ErrorGuard, Signal
+from rastrainer.slicer.translation import _
 
 CallSoon = Callable[[Callable[[], None]], None]
 """Calls a function in the host's next turn."""
@@ -251,3 +253,49 @@ class Link:
         if status != self._status:
             self._status = status
             self._guard.emit("The link's status", self.statusChanged, status)
+
+
+class ConnectionCheck:
+    """The latest test; a new one takes the place of one that is still under way."""
+
+    def __init__(self, guard: ErrorGuard, clock: Callable[[], float]) -> None:
+        self._guard = guard
+        self._clock = clock
+        self._probe: Probe | None = None
+        self._address = ""
+        self._onFound: Callable[[LinkStatus], None] = lambda _status: None
+
+    def begin(self, host: str, port: int, onFound: Callable[[LinkStatus], None]) -> LinkStatus:
+        """Start a test; a later `process` calls `onFound`. Return the status to show meanwhile."""
+        if self._probe is not None:
+            self._probe.close()
+        self._probe = Probe(host, port, self._clock)
+        self._address = f"{host}:{port}"
+        self._onFound = onFound
+        return lookingAt(self._address)
+
+    def process(self) -> None:
+        """Report what answers when that is known."""
+        finding = None if self._probe is None else self._probe.process()
+        if finding is not None:
+            self._probe = None
+            status = judgeFinding(finding, self._address)
+            self._guard.run("The test of a connection", self._onFound, status)
+
+
+def checkedAddress(host: str, port: int) -> tuple[str, int]:
+    """Return a valid address.
+
+    Raises:
+        InputError: no host, or a port that is none.
+    """
+    if not host.strip():
+        raise InputError(_("Enter the host of the simulator, such as 127.0.0.1."))
+    checkPort(port)
+    return host.strip(), port
+
+
+def checkPort(port: int) -> None:
+    """Raise `InputError` if the port is none."""
+    if not 0 < port < 65536:
+        raise InputError(_("The port must be a number from 1 to 65535."))

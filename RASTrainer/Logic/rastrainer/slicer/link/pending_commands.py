@@ -16,10 +16,10 @@ from rastrainer.command_arguments import decode_answer_object
 from rastrainer.errors import InputError
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.scene.control_points import labelOf
-from rastrainer.slicer.scene.link_nodes import (
+from rastrainer.slicer.scene.nodes import (
     capturedPointsNode,
     decodedText,
+    labelOf,
     shownText,
     simStateNode,
 )

@@ -14,10 +14,83 @@ import threading
 import time
 from collections.abc import Callable
 
-from rastrainer.slicer.link.peer import Peer, PeerRecognition, ProbeResult, question
+from rastrainer.igtl.content import Status
+from rastrainer.igtl.message import Message, MessageReader, pack
+from rastrainer.protocol import DeviceName
+from rastrainer.slicer.link.link_status import Peer, ProbeResult
+
+MAX_BYTES = 64 * 1024
+"""Most bytes read; a simulator's heartbeat comes among the first hundreds."""
+MAX_STATUS_BYTES = 4096
+
+_HEADERS = (b"\0\1", b"\0\2")
+_WEB_PAGES = (b"HTTP/", b"<")
+_TLS_ALERT = b"\x15\x03"
+
+
+def question() -> bytes:
+    """Return a message that a simulator answers with its heartbeat.
+
+    A STATUS, as Slicer itself begins each connection with, does no harm to any OpenIGTLink program;
+    its text ends as the request of a browser does, so that a web server answers, too.
+    """
+    status = Status(Status.OK, message="Who is there?\r\n\r\n")
+    return pack(Message("RASTrainer", status, {"client": "connection test"}))
+
+
+class PeerRecognition:
+    """Takes the bytes of one peer as they come.
+
+    Attributes:
+        peer: who it is, as far as that is certain; else None.
+        version: of the protocol, where it is a simulator.
+    """
+
+    def __init__(self) -> None:
+        self.peer: Peer | None = None
+        self.version = 0
+        self._start = b""
+        self._size = 0
+        self._reader = MessageReader({Status.TYPE: MAX_STATUS_BYTES})
+
+    def feed(self, data: bytes) -> None:
+        """Take what has arrived."""
+        self._size += len(data)
+        self._start += data[: max(0, 8 - len(self._start))]
+        if self.peer is None:
+            self.peer = self._judgeStart() or self._judgeMessages(data)
+
+    def giveUp(self) -> Peer:
+        """Return who it is if nothing more comes."""
+        if self.peer is not None:
+            return self.peer
+        if not self._size:
+            return Peer.SILENT
+        return Peer.OTHER_OPENIGTLINK if self._reader.taken else Peer.OTHER_PROGRAM
+
+    def _judgeStart(self) -> Peer | None:
+        start = self._start
+        if any(start.startswith(sign) for sign in _WEB_PAGES):
+            return Peer.WEB_PAGE
+        if start.startswith(_TLS_ALERT):
+            return Peer.ENCRYPTED
+        known = (*_HEADERS, *_WEB_PAGES, _TLS_ALERT)
+        isPossible = any(sign[: len(start)] == start[: len(sign)] for sign in known)
+        return None if isPossible else Peer.OTHER_PROGRAM
+
+    def _judgeMessages(self, data: bytes) -> Peer | None:
+        for message in self._reader.feed(data):
+            # The reader lets nothing but STATUS through.
+            if message.device == DeviceName.SIM_SERVER and isinstance(message.content, Status):
+                self.version = message.content.subcode
+                return Peer.SIMULATOR
+        if self._reader.refusal:
+            return Peer.OTHER_OPENIGTLINK if self._reader.taken else Peer.OTHER_PROGRAM
+        return Peer.OTHER_OPENIGTLINK if self._size > MAX_BYTES else None
+
 
 POLL_S = 0.005
-"""In Slicer another thread runs only while the main thread waits, so it has to wait a little."""
+"""How long each look waits: in Slicer another thread runs only while the main thread does."""
 
 _running: dict[str, AddressLookup] = {}
 
@@ -72,7 +145,6 @@ def _numericAddress(host: str) -> str | None:
 LOOKUP_S = 5.0
 ANSWER_S = 3.0
 """How long a name is looked up, and how long an answer is waited for."""
-_WAIT_S = 0.005
 _PIECE_BYTES = 4096
 _MAX_PIECES = 8
 
@@ -179,14 +251,14 @@ class Probe:
     def _converse(self, connection: _Connection) -> Peer | None:
         """Send the question when there is a connection, then listen."""
         if not self._isAsked:
-            if not connection.isReady(_WAIT_S):
+            if not connection.isReady(POLL_S):
                 return None
             if connection.isRefused():
                 return Peer.NOBODY
             self._isAsked = True
             connection.ask(question())
         for piece in range(_MAX_PIECES):
-            if not connection.isReady(_WAIT_S if piece == 0 else 0.0):
+            if not connection.isReady(POLL_S if piece == 0 else 0.0):
                 return None
             data = connection.receive()
             if not data:

@@ -8,14 +8,14 @@ from rastrainer.errors import InputError
 from rastrainer.progress import Progress
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.program.own_process import Run
+from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
 from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, trianglesPolyData
-from rastrainer.slicer.scene.scene import Role, findNode, findOrAddNode
 from rastrainer.slicer.translation import _
 
 if TYPE_CHECKING:
     from rastrainer.head.mesh import HeadMesh
-    from rastrainer.slicer.head.head_body import HeadBody, HeadSettings
     from rastrainer.slicer.head.segment import SegmentImage
+    from rastrainer.slicer.head.volume import HeadBody, HeadSettings
 
 FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
 PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
@@ -54,10 +54,7 @@ def findSkin(
     return found
 
 
-_DRAFT = (
-    ("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT),
-    ("vtkMRMLModelNode", Role.HEAD_PREVIEW),
-)
+_DRAFT = (("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT), ("vtkMRMLModelNode", Role.HEAD_PREVIEW))
 
 
 class HeadPreview:

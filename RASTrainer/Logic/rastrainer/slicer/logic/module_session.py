@@ -15,29 +15,31 @@ from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
 from rastrainer.slicer.logic.curriculum_logic import CurriculumLogic
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
-from rastrainer.slicer.logic.method_comparison_logic import MethodComparisonLogic
 from rastrainer.slicer.logic.plan_logic import PlanLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.logic.replay_logic import ReplayLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.scenario_logic import ScenarioFiles, ScenarioLogic
+from rastrainer.slicer.logic.scenario_logic import (
+    MethodComparisonLogic,
+    ScenarioFiles,
+    ScenarioLogic,
+)
 from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
-from rastrainer.slicer.logic.slice_follower import SliceFollower
 from rastrainer.slicer.logic.study_logic import StudyLogic
 from rastrainer.slicer.logic.trace_logic import TraceLogic
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
+from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.own_process import OwnProcess
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.scene.registration_nodes import followPlacement
-from rastrainer.slicer.scene.scenario_volume import VolumeLoader
-from rastrainer.slicer.scene.views import BorrowedLayout
+from rastrainer.slicer.scene.scenario_nodes import VolumeLoader
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
 from rastrainer.study.database.database import LockWait, PostgresAddress, StudyPlace

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import OPEN_PHASES, Phase
-from rastrainer.slicer.link.heartbeat import LinkState, LinkStatus
+from rastrainer.slicer.link.link_status import LinkState, LinkStatus
 from rastrainer.slicer.logic.training_logic import tutorialSentence
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.translation import _

@@ -15,7 +15,7 @@ from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
-from rastrainer.slicer.scene.control_points import labelOf
+from rastrainer.slicer.scene.nodes import labelOf
 from rastrainer.slicer.scene.plan_points import LINE, PlanPoints, placedRows
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _

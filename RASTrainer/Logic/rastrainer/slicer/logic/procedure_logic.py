@@ -130,39 +130,15 @@ class ProcedureLogic:
         """Stop listening to the link."""
         self._listening.close()
 
-    def accept(self) -> None:
-        """Go on by the registration in use."""
-        self._send(CommandName.ACCEPT_REGISTRATION)
-
-    def registerAgain(self) -> None:
-        """Let all points be touched again."""
-        self._send(CommandName.REGISTER_AGAIN)
-
-    def align(self) -> None:
-        """Let the robot bring the guide onto the planned line by itself."""
-        self._send(CommandName.ALIGN_GUIDE)
-
-    def lock(self) -> None:
-        """Lock the guide where it is."""
-        self._send(CommandName.LOCK_GUIDE)
+    def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
+        """Send a command that goes on with the procedure."""
+        self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
 
     def feed(self, forward: bool) -> None:
         """Move drill or instrument by a millimeter along the guide."""
         velocity = FEED_MM_S if forward else -FEED_MM_S
         arguments = {"velocityMmS": velocity, "durationS": FEED_MM / FEED_MM_S}
-        self._send(CommandName.FEED, arguments)
-
-    def retractDrill(self) -> None:
-        """Take the drill out, and align again."""
-        self._send(CommandName.RETRACT_DRILL)
-
-    def startInsertion(self) -> None:
-        """Exchange the drill for the instrument."""
-        self._send(CommandName.START_INSERTION)
-
-    def release(self) -> None:
-        """Leave the instrument where it is."""
-        self._send(CommandName.RELEASE_INSTRUMENT)
+        self.command(CommandName.FEED, arguments)
 
     def takeScored(self, analysis: TrialAnalysis, isOtherOpen: bool) -> None:
         """Take the errors of a scored trial, and show them unless another trial is played."""
@@ -182,9 +158,6 @@ class ProcedureLogic:
         """Show the planned lines of the procedure of a trial that has begun, in its scenario."""
         named = [each for each in scenario.procedures if each.name == self.status.name]
         showPlannedLines(self._scene, named[0] if named else None)
-
-    def _send(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
-        self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
 
     def _follow(self, state: Mapping[str, Any]) -> None:
         status, trialId = ProcedureStatus.of(state), str(state.get("trialId", ""))

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import vtk
 
+from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
@@ -25,21 +27,17 @@ from rastrainer.procedure.plan import (
     Procedure,
     ProcedureKind,
     ProcedureTrajectory,
+    check_no_go_mesh,
+    check_no_go_size,
     procedure_json,
     read_procedure_meshes,
 )
 from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.logic.no_go_structures import noGoMeshes
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
-from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
+from rastrainer.slicer.scene.nodes import labelsOf, worldPoints
 from rastrainer.slicer.scene.plan_points import ENDS, placedRows
-from rastrainer.slicer.scene.procedure_plan_nodes import (
-    instrumentOf,
-    noGoNodes,
-    planLines,
-    showPlan,
-)
+from rastrainer.slicer.scene.procedure_lines import instrumentOf, noGoNodes, planLines, showPlan
 from rastrainer.slicer.translation import _
 
 FILE = "procedure.json"
@@ -209,8 +207,8 @@ class ProcedurePlanLogic:
                 Nothing is written then.
         """
         with tempfile.TemporaryDirectory() as temporary:
-            path = self._write(Path(temporary), plan)
-            return self._files.saveWith("--procedure", path, scenario.name, title, progress)
+            words = ["--procedure", str(self._write(Path(temporary), plan))]
+            return self._files.saveWith(words, scenario.name, title, progress)
 
     def _write(self, folder: Path, plan: PlanDescription) -> Path:
         procedure, meshes = self.read(plan)
@@ -263,3 +261,56 @@ def _nameOf(title: str) -> str:
             )
         )
     return name
+
+
+def noGoMeshes(nodes: list[Any]) -> dict[str, HeadMesh]:
+    """Return the surfaces of no-go structures by name, RAS mm.
+
+    Args:
+        nodes: `vtkMRMLModelNode` or `vtkMRMLSegmentationNode`, of which each segment is one.
+
+    Raises:
+        InputError: one is empty, open or too large, two have one name, or a transform is not
+            linear.
+    """
+    found: dict[str, HeadMesh] = {}
+    for node in nodes:
+        for name, surface in _surfaces(node):
+            if name in found:
+                text = _("Two no-go structures are named {name}: give each its own name.")
+                raise InputError(text.format(name=name))
+            found[name] = _mesh(name, surface, node)
+    return found
+
+
+def _surfaces(node: Any) -> Iterator[tuple[str, vtk.vtkPolyData]]:
+    if node.IsA("vtkMRMLModelNode"):
+        yield node.GetName(), node.GetPolyData()
+        return
+    segmentation = node.GetSegmentation()
+    node.CreateClosedSurfaceRepresentation()
+    for segmentId in segmentation.GetSegmentIDs():
+        surface = vtk.vtkPolyData()
+        node.GetClosedSurfaceRepresentation(segmentId, surface)
+        yield segmentation.GetSegment(segmentId).GetName(), surface
+
+
+def _mesh(name: str, surface: vtk.vtkPolyData | None, node: Any) -> HeadMesh:
+    from rastrainer.slicer.head.surface import meshOf
+    from rastrainer.slicer.head.volume import toWorld
+
+    if surface is None or surface.GetNumberOfPolys() == 0:
+        raise InputError(_("The no-go structure {name} is empty.").format(name=name))
+    # Before anything takes long.
+    check_no_go_size(surface.GetNumberOfPolys(), name)
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputData(surface)
+    triangles.PassLinesOff()
+    triangles.PassVertsOff()
+    merged = vtk.vtkCleanPolyData()
+    merged.SetInputConnection(triangles.GetOutputPort())
+    merged.Update()
+    mesh = meshOf(merged.GetOutput())
+    placed = HeadMesh(transforms.apply(toWorld(node), mesh.vertices), mesh.triangles)
+    check_no_go_mesh(placed, name)
+    return placed

@@ -15,24 +15,23 @@ from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import Registration, register_all_kinds
 from rastrainer.registration.target_error import TargetError, target_error
 from rastrainer.slicer.background_work import BackgroundWork
-from rastrainer.slicer.scene.control_points import localPoints, worldPoints
 from rastrainer.slicer.scene.error_colors import (
     clearResidualArrows,
     colorHead,
     showResidualArrows,
     uncolorHead,
 )
-from rastrainer.slicer.scene.registration_input import (
+from rastrainer.slicer.scene.nodes import Role, findNode, localPoints, worldPoints
+from rastrainer.slicer.scene.registration_nodes import (
     Choices,
     Pairs,
     Remedy,
     readPairs,
     remedies,
+    showRegistration,
     snapshot,
 )
-from rastrainer.slicer.scene.registration_nodes import showRegistration
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
-from rastrainer.slicer.scene.scene import Role, findNode
 from rastrainer.slicer.scene.skin_normals import SkinNormals
 from rastrainer.slicer.scene.tables import showFits, showResiduals
 from rastrainer.slicer.scene.trial_scene import checkSameTask

@@ -17,7 +17,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
 from rastrainer.slicer.logic.trial_work import EXPLAIN, EXPLAIN_PROCEDURE, READ_TRACK
 from rastrainer.slicer.program.own_process import Run, runHere
-from rastrainer.slicer.scene.robot_scene import URDF
+from rastrainer.slicer.scene.robot import URDF, readArmChain
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.slicer.scene.trial_replay import (
     TRIAL_ATTRIBUTE,
@@ -30,7 +30,6 @@ from rastrainer.slicer.scene.trial_replay import (
     stopReplay,
 )
 from rastrainer.slicer.scene.trial_scene import setTouchesVisible, showTouches
-from rastrainer.slicer.scene.urdf import readArmChain
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study

@@ -1,11 +1,15 @@
-"""Scenarios in the scene (head, fiducials, robot), as zip files, and plans saved in them."""
+"""Scenarios: in the scene, as files, plans saved in them, and methods of registration on them."""
 
 from __future__ import annotations
 
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
+from rastrainer.files.reading import read_json
 from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.library import ListedScenario, unpack
 from rastrainer.scenario.scenario import Scenario, load_scenario
@@ -14,18 +18,23 @@ from rastrainer.slicer.logic.head_preview import findSkin
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.program.own_process import Run
-from rastrainer.slicer.scene.control_points import labelsOf, worldPoints
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import (
+    ROLE_ATTRIBUTE,
+    Role,
+    capturedPointsNode,
+    findNode,
+    labelsOf,
+    worldPoints,
+)
 from rastrainer.slicer.scene.registration_nodes import followPlacement, isPlanned, showPlannedPlace
-from rastrainer.slicer.scene.robot_scene import robotNode, setRobotVisible, showRobot
+from rastrainer.slicer.scene.robot import robotNode, setRobotVisible, showRobot
 from rastrainer.slicer.scene.scenario_nodes import (
     SKIN_COLOR,
+    showImages,
     showScenario,
     showTask,
     trianglesPolyData,
 )
-from rastrainer.slicer.scene.scenario_volume import showImages
-from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role, findNode
 from rastrainer.slicer.scene.trial_scene import showOnlyTouchesOf
 from rastrainer.slicer.translation import _
 
@@ -185,32 +194,28 @@ class ScenarioFiles:
         """
         isLine = node.IsA("vtkMRMLMarkupsLineNode")
         plan = planWords(None, node) if isLine else planWords(node, None)
-        return self._copy(name, title, plan, progress)
+        return self.saveWith(plan, name, title, progress)
 
     def saveWith(
-        self, option: str, file: Path, name: str, title: str, progress: Progress = no_progress
+        self, plan: list[str], name: str, title: str, progress: Progress = no_progress
     ) -> Scenario:
-        """Copy a scenario with what a file holds, in the place of its own.
+        """Copy a scenario with something in the place of its own.
 
         Args:
-            option: "--procedure" for a file with one procedure and its meshes beside it, which
-                replaces one of the same name, or "--landmarks" for a markups file with landmarks
-                in the order of touching, which replaces all.
-            file: the file.
+            plan: arguments of `rastrainer scenario plan`, such as `--procedure` with a file of one
+                procedure and its meshes beside it, which replaces one of the same name, or
+                `--landmarks` with a markups file of landmarks in the order of touching, which
+                replaces all.
             name: of the scenario, which stays as it is.
             title: of the copy.
             progress: see the class.
 
         Raises:
-            InputError: there is one of that title already, or what the file holds cannot be used.
+            InputError: there is one of that title already, or the plan cannot be used.
         """
-        return self._copy(name, title, [option, str(file)], progress)
-
-    def _copy(self, name: str, title: str, plan: list[str], progress: Progress) -> Scenario:
         folder = self._library / self._cache.newName(title)
         source = str(self._cache.find(name).folder)
-        words = ["plan", source, "-o", str(folder), f"--title={title}", *plan]
-        self.run(words, progress)
+        self.run(["plan", source, "-o", str(folder), f"--title={title}", *plan], progress)
         self._cache.refresh()
         return load_scenario(folder)
 
@@ -235,3 +240,76 @@ def planWords(targets: Any | None, trajectory: Any | None) -> list[str]:
             raise InputError(_("The trajectory needs two points: its entry and its target."))
         words += ["--trajectory", trajectory.GetName(), *map(str, ends.ravel().tolist())]
     return words
+
+
+LIMIT_BYTES = 1 << 20
+
+
+@dataclass(frozen=True)
+class ComparedMethod:
+    """How a method has registered the trials; lengths in mm, root mean squares over trials.
+
+    Attributes:
+        name: a `RegistrationMethod`.
+        residual: of the points that count; it does not show the error.
+        expected: target error.
+        interval: medians of the ends of its 95 % interval.
+        true: target error.
+        held: share of the intervals that hold the true error.
+    """
+
+    name: str
+    residual: float
+    expected: float
+    interval: tuple[float, float]
+    true: float
+    held: float
+
+    @classmethod
+    def of(cls, name: str, value: Mapping[str, Any]) -> ComparedMethod:
+        """Return what the program has written of a method.
+
+        Raises:
+            KeyError, TypeError, ValueError: it has not written that.
+        """
+        low, high = map(float, value["interval_mm"])
+        return cls(
+            name,
+            float(value["residual_mm"]),
+            float(value["expected_tre_mm"]),
+            (low, high),
+            float(value["true_tre_mm"]),
+            float(value["interval_holds_share"]),
+        )
+
+
+class MethodComparisonLogic:
+    """What the group Methods of registration does."""
+
+    def __init__(self, simulator: SimulatorLogic) -> None:
+        self._simulator = simulator
+
+    def compare(
+        self, scenario: Scenario, trials: int, skinShiftMm: float, progress: Progress = no_progress
+    ) -> tuple[ComparedMethod, ...]:
+        """Return how each method for which a head has the points registers simulated trials.
+
+        Args:
+            scenario: whose head it is.
+            trials: how many.
+            skinShiftMm: between imaging and operation, RMS.
+            progress: see `ScenarioFiles`.
+
+        Raises:
+            InputError: the head cannot be used.
+        """
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary) / "methods"
+            words = ["compare-methods", "--scenario", str(scenario.folder), "-o", str(folder)]
+            words += ["--trials", str(trials), "--skin-shift", str(skinShiftMm)]
+            self._simulator.run(words, progress)
+            compared = read_json(folder / "methods.json", LIMIT_BYTES)
+        try:
+            return tuple(ComparedMethod.of(*each) for each in compared["methods"].items())
+        except (KeyError, TypeError, ValueError, AttributeError):
+            raise InputError(_("The simulator's program is of another version.")) from None

@@ -1,9 +1,12 @@
-"""Makes scenarios of volumes in the scene."""
+"""Makes scenarios of volumes in the scene: the head is made here, and the simulator plans on it.
+
+Fiducials and tasks need the robot, so the simulator's program proposes them.
+"""
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -11,19 +14,24 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, write_markups
-from rastrainer.progress import Progress
-from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario
+from rastrainer.progress import Progress, no_progress
+from rastrainer.protocol import FIDUCIAL_COUNT
+from rastrainer.scenario.points import touch_order
+from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario, load_scenario
 from rastrainer.scenario.setup import SetUp, write_setup
+from rastrainer.scenario.writer import HeadDraft, write_draft
+from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.head_preview import HeadPreview
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.scenario_logic import planWords
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
+from rastrainer.slicer.program.child_process import runChild
 from rastrainer.slicer.program.own_process import Run
-from rastrainer.slicer.scene.control_points import handPlacedLists, labelsOf, worldPoints
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, labelsOf, nodesOfClass, worldPoints
 from rastrainer.slicer.translation import _
 
 if TYPE_CHECKING:
-    from rastrainer.slicer.head.head_body import HeadSettings
+    from rastrainer.slicer.head.volume import HeadSettings
 
 MAKE_DRAFT = "rastrainer.slicer.head.head_draft:makeDraft"
 SOURCE = "The volume {name} in 3D Slicer."
@@ -129,14 +137,11 @@ class ScenarioMaker:
         Raises:
             InputError: something cannot be used; the sentence says what.
         """
-        from rastrainer.slicer.head.scenario_build import buildScenario
-
         with self._planned(volumeNode, options) as planned:
             folder = self._library / self._cache.newName(planned.title)
             command = self._simulator.command([])
-            scenario, warnings = buildScenario(
-                planned.head, folder, planned.words, command, progress
-            )
+            warnings = planScenario(planned.head, folder, planned.words, command, progress)
+            scenario = load_scenario(folder)
         self._preview.hide(volumeNode)
         self._cache.refresh()
         return scenario, [*planned.warnings, *warnings]
@@ -146,8 +151,6 @@ class ScenarioMaker:
 
         Arguments, warnings and errors are those of `make`.
         """
-        from rastrainer.slicer.head.scenario_build import planScenario
-
         with self._planned(
             volumeNode, replace(options, hasSkull=False, hasVolume=False)
         ) as planned:
@@ -204,7 +207,7 @@ def _chosen(volumeNode: Any) -> Any:
 
 
 def _settings(options: NewScenarioOptions) -> HeadSettings:
-    from rastrainer.slicer.head.head_body import HeadSettings
+    from rastrainer.slicer.head.volume import HeadSettings
 
     return HeadSettings(threshold=options.threshold, baseMm=options.cutMm)
 
@@ -215,3 +218,102 @@ def _tasks(lists: list[Any], folder: Path) -> list[str]:
     for path, node in zip(paths, lists, strict=True):
         write_markups(path, PointList(labelsOf(node), worldPoints(node)))
     return ["--tasks", *map(str, paths)] if paths else []
+
+
+MAX_LISTS = 6
+
+
+def handPlacedLists(scene: Any, targets: Any) -> tuple[list[Any], list[str]]:
+    """Return the usable lists, in the scene's order, and why others are left out.
+
+    Args:
+        scene: the scene.
+        targets: the list of the planned targets, which are no fiducials; None where there is none.
+
+    Raises:
+        InputError: there is no list of fifteen fiducials, or its labels give no order.
+    """
+    taken: list[Any] = []
+    leftOut = []
+    for node in nodesOfClass(scene, "vtkMRMLMarkupsFiducialNode"):
+        if node is targets or node.GetAttribute(ROLE_ATTRIBUTE) is not None:
+            continue
+        count = node.GetNumberOfDefinedControlPoints()
+        if count != FIDUCIAL_COUNT or count != node.GetNumberOfControlPoints():
+            reason = _(
+                "The point list {name} is left out: it has {count} placed points, not {all}."
+            )
+            leftOut.append(reason.format(name=node.GetName(), count=count, all=FIDUCIAL_COUNT))
+        elif len(taken) == MAX_LISTS:
+            reason = _("The point list {name} is left out: a scenario has at most {most} tasks.")
+            leftOut.append(reason.format(name=node.GetName(), most=MAX_LISTS))
+        else:
+            taken.append(_checked(node))
+    if not taken:
+        problem = _("There is no point list of {count} fiducials in the scene.")
+        raise InputError(" ".join([problem.format(count=FIDUCIAL_COUNT), *leftOut]))
+    return taken, leftOut
+
+
+def _checked(node: Any) -> Any:
+    try:
+        touch_order(labelsOf(node))
+    except InputError as error:
+        raise InputError(
+            _("The point list {name} cannot be used: {reason}").format(
+                name=node.GetName(), reason=error
+            )
+        ) from None
+    return node
+
+
+HEAD_SHARE = 0.5
+"""Of the work on a scenario, what is done to find and make its head."""
+
+
+def planScenario(
+    make: Callable[[Progress], tuple[HeadDraft, list[str]]],
+    folder: Path,
+    words: Sequence[str],
+    command: Sequence[str],
+    progress: Progress = no_progress,
+) -> list[str]:
+    """Make a head, have the simulator plan on it, and return warnings, one sentence each.
+
+    Args:
+        make: makes the head with its warnings, such as `makeDraft`, called in a worker thread.
+        folder: to be made; must be new or empty.
+        words: further arguments of `rastrainer scenario tasks`, such as `--title TITLE`; with
+            `--check` nothing is made.
+        command: words that run `rastrainer` of the simulator's Python.
+        progress: called with each step's name and the share of the work done, many times a
+            second; it may let the application draw, and may raise to cancel: nothing is left then.
+
+    Raises:
+        InputError: the volume, the folder or the simulator's program cannot be used.
+    """
+    with tempfile.TemporaryDirectory() as temporary:
+
+        def makeAndWrite(report: Progress) -> list[str]:
+            draft, warnings = make(report)
+            write_draft(Path(temporary), draft)
+            return warnings
+
+        warnings = inBackground(
+            makeAndWrite, lambda step, share: progress(step, HEAD_SHARE * share)
+        )
+        planner = [*command, "scenario", "tasks", temporary, "-o", str(folder), *words]
+        return [*warnings, *_run(planner, progress)]
+
+
+def _run(command: Sequence[str], progress: Progress) -> list[str]:
+    """Run the planner of tasks to its end and return its warnings; `progress` may raise to stop."""
+
+    def showShare(step: str, share: float) -> None:
+        progress(step, HEAD_SHARE + (1.0 - HEAD_SHARE) * share)
+
+    ended = runChild(command, showShare, "Placing fiducials")
+    if ended.exitStatus != 0:
+        reason = ended.lastLine.removeprefix("rastrainer: ") or "it wrote nothing"
+        raise InputError(f"The tasks could not be made: {reason}")
+    return list(ended.warnings)

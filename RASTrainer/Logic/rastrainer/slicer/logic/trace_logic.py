@@ -1,4 +1,7 @@
-"""Shows the trace of the trial that is being played, at most once a second."""
+"""Shows the trace of the trial that is being played, at most once a second.
+
+That is its points, the covered skin, and where to draw next.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +10,26 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from rastrainer.igtl.client import Reply
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import knownNumber
-from rastrainer.slicer.scene.trace_nodes import forgetTrace, showTrace
+from rastrainer.slicer.scene.error_colors import colorSkin, uncolorHead
+from rastrainer.slicer.scene.nodes import (
+    Role,
+    drawAsPoints,
+    findNode,
+    findOrAddNode,
+    pointCloud,
+    removeNode,
+    setPoints,
+)
 from rastrainer.slicer.signal import Listening
+from rastrainer.slicer.translation import _
 from rastrainer.trial.touch_registration import FollowedTrace, GivenPoints, TraceFollower
 
 PERIOD_S = 1.0
@@ -135,3 +150,59 @@ class TraceLogic:
     def _giveUp(self, wanted: _Wanted) -> None:
         """Wait for another state: what cannot be shown is said where it is registered."""
         self._isAsking, self._shown = False, wanted
+
+
+MODEL, MARKUPS = "vtkMRMLModelNode", "vtkMRMLMarkupsFiducialNode"
+DISTANCE_SCALARS = "distance to the trace (mm)"
+FARTHEST_MM = 20.0
+"""What is farther from the trace has the color of this distance."""
+NEXT_COLOR = (0.75, 0.0, 0.5)
+"""Far from the trace, the head is yellow."""
+
+
+def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
+    """Show a trace on the head, RAS mm.
+
+    Where the trainee is guided, the head is colored by the distance to the trace, and the place to
+    draw next is marked.
+    """
+    node = findOrAddNode(scene, MODEL, Role.TRACED_POINTS, _("Traced points"))
+    drawAsPoints(node)
+    node.SetAndObservePolyData(pointCloud(trace.places))
+    head = findNode(scene, MODEL, Role.HEAD_MODEL)
+    if isGuided and len(trace.places):
+        _colorHead(head, trace.away_mm)
+    elif head is not None:
+        uncolorHead(head, DISTANCE_SCALARS)
+    _showNext(scene, trace.next_place if isGuided else None)
+
+
+def forgetTrace(scene: Any) -> None:
+    """Remove what is shown of a trace."""
+    removeNode(scene, MODEL, Role.TRACED_POINTS)
+    removeNode(scene, MARKUPS, Role.NEXT_PLACE)
+    head = findNode(scene, MODEL, Role.HEAD_MODEL)
+    if head is not None and head.GetPolyData() is not None:
+        uncolorHead(head, DISTANCE_SCALARS)
+        head.GetPolyData().GetPointData().RemoveArray(DISTANCE_SCALARS)
+
+
+def _colorHead(head: Any | None, away_mm: np.ndarray) -> None:
+    # Between the trial's scene and this trace another head may have been shown.
+    if head is not None and head.GetPolyData().GetNumberOfPoints() == len(away_mm):
+        near = np.minimum(away_mm, FARTHEST_MM)
+        colorSkin(head, DISTANCE_SCALARS, near, (0.0, FARTHEST_MM), _("To trace (mm)"))
+
+
+def _showNext(scene: Any, place: np.ndarray | None) -> None:
+    if place is None:
+        removeNode(scene, MARKUPS, Role.NEXT_PLACE)
+        return
+    node = findOrAddNode(scene, MARKUPS, Role.NEXT_PLACE, _("Draw here next"))
+    setPoints(node, (_("Next"),), place[None])
+    node.SetLocked(True)
+    display = node.GetDisplayNode()
+    display.SetSelectedColor(NEXT_COLOR)
+    display.SetGlyphScale(4.0)
+    display.SetTextScale(3.5)
+    display.SetOccludedVisibility(True)

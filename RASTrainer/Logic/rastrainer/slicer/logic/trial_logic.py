@@ -22,8 +22,7 @@ from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.trial_delivery import Delivery, DeliveryQueue
-from rastrainer.slicer.logic.trial_scoring import TrialScoring
+from rastrainer.slicer.logic.trial_delivery import Delivery, DeliveryQueue, TrialScoring
 from rastrainer.slicer.logic.trial_work import REGISTER, SCORE
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial

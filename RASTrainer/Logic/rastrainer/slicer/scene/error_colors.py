@@ -13,7 +13,7 @@ from vtk.util.numpy_support import numpy_to_vtk
 from rastrainer.registration.localization_error import LocalizationError
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import expected_tre
-from rastrainer.slicer.scene.scene import Role, findNode, findOrAddNode, nodesOfClass
+from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode, nodesOfClass
 
 COLOR_TABLE_ID = "vtkMRMLColorTableNodeFileViridis.txt"
 """One of the color tables that every Slicer has; readable without color vision, too."""

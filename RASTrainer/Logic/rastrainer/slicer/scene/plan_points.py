@@ -9,7 +9,7 @@ from typing import Any
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role, findOrAddNode, nodesOf
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, findOrAddNode, nodesOf
 from rastrainer.slicer.translation import _
 
 SELECTION = "vtkMRMLSelectionNodeSingleton"

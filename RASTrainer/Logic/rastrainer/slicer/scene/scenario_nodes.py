@@ -1,4 +1,9 @@
-"""Shows a scenario in the scene: head, images, what is planned, and the fiducials of a task."""
+"""Shows a scenario in the scene: head, images, what is planned, and the fiducials of a task.
+
+The node of the images is requested at once, and filled when they have been read. It holds them
+itself, so that a saved scene carries them. It has no file of its own: Slicer's *Save* would offer
+to write over the scenario's.
+"""
 
 from __future__ import annotations
 
@@ -7,25 +12,33 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import slicer
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
+from rastrainer.errors import InputError
+from rastrainer.files.nrrd import read_nrrd
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, task_by_method
-from rastrainer.slicer.scene.control_points import setPoints
-from rastrainer.slicer.scene.scenario_volume import requestVolume
-from rastrainer.slicer.scene.scene import (
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.scene.nodes import (
+    CONTENT_ATTRIBUTE,
     SCENARIO_ATTRIBUTE,
     TASK_ATTRIBUTE,
     Role,
+    findNode,
     findOrAddNode,
     isShown,
+    nodesOfClass,
     noteShown,
     removeNode,
+    setPoints,
     stampOf,
 )
+from rastrainer.slicer.signal import Signal
+from rastrainer.slicer.translation import _
 
 
 def trianglesPolyData(vertices: np.ndarray, triangles: np.ndarray) -> vtk.vtkPolyData:
@@ -130,11 +143,7 @@ def _showSkull(scene: Any, scenario: Scenario) -> None:
 
 
 def _fill(
-    node: Any,
-    scenario: Scenario,
-    path: Path,
-    color: tuple[float, float, float],
-    opacity: float,
+    node: Any, scenario: Scenario, path: Path, color: tuple[float, float, float], opacity: float
 ) -> bool:
     """Show a mesh of a scenario; return whether it was not shown before."""
     # Called before every trial: the file is read only if it is not shown yet.
@@ -179,3 +188,110 @@ def showAsPlanned(node: Any) -> None:
     """Show a markups node as part of the plan, which is not moved by hand."""
     node.SetLocked(True)
     node.GetDisplayNode().SetSelectedColor(TARGET_COLOR)
+
+
+VOLUME = "vtkMRMLScalarVolumeNode"
+FILE_ATTRIBUTE = "RASTrainer.volumeFile"
+"""Of a node that is not filled yet: the file with its images."""
+
+
+def requestVolume(scene: Any, scenario: Scenario) -> None:
+    """Let the scene have a node for the images of a scenario, or none where it has none.
+
+    Called again, nothing is read twice: window, level and what the views show stay as they are.
+    """
+    node, file = findNode(scene, VOLUME, Role.HEAD_VOLUME), scenario.volume
+    stamp = "" if file is None else stampOf(file.path)
+    isThere = node is not None and isShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
+    if isThere and file is not None:
+        return
+    removeNode(scene, VOLUME, Role.HEAD_VOLUME)
+    if file is None:
+        return
+    node = findOrAddNode(scene, VOLUME, Role.HEAD_VOLUME, scenario.title)
+    noteShown(node, SCENARIO_ATTRIBUTE, scenario.name, stamp)
+    node.SetAttribute(FILE_ATTRIBUTE, str(file.path))
+    display = node.GetDisplayNode()
+    display.SetAutoWindowLevel(False)
+    display.SetWindowLevel(file.window, file.level)
+
+
+def showImages(scene: Any) -> None:
+    """Show the images of the scenario behind all else again, where others are."""
+    node = findNode(scene, VOLUME, Role.HEAD_VOLUME)
+    if node is not None and not _requested(node):
+        showAsBackground(scene, node)
+
+
+def showAsBackground(scene: Any, volume: Any) -> None:
+    """Show a volume behind all else in each slice view."""
+    for composite in nodesOfClass(scene, "vtkMRMLSliceCompositeNode"):
+        composite.SetBackgroundVolumeID(volume.GetID())
+
+
+class VolumeLoader:
+    """Fills the node of `requestVolume`, and shows it behind all else in the slice views.
+
+    Attributes:
+        shown: emits the node when it has been filled.
+        problemFound: emits a sentence if the images cannot be used; the node is removed.
+    """
+
+    def __init__(self, scene: Any, work: BackgroundWork) -> None:
+        """Read in the background of `work`."""
+        self.shown = Signal()
+        self.problemFound = Signal()
+        self._scene = scene
+        self._work = work
+        self._requested: tuple[str, ...] = ()
+
+    def process(self) -> None:
+        """Start reading requested images; called about ten times a second."""
+        node = findNode(self._scene, VOLUME, Role.HEAD_VOLUME)
+        requested = _requested(node)
+        if requested == self._requested:
+            return
+        self._requested = requested
+        if not requested:
+            return
+        self._work.do(
+            lambda: read_nrrd(Path(requested[-1])),
+            lambda image: self._take(requested, *image),
+            lambda error: self._refuse(requested, error),
+        )
+
+    def _take(self, requested: tuple[str, ...], values: np.ndarray, ijkToRas: np.ndarray) -> None:
+        # In a cleared scene the next node has the same ID, and may request the same at once.
+        self._requested = ()
+        node = self._scene.GetNodeByID(requested[0])
+        if _requested(node) == requested:
+            node.RemoveAttribute(FILE_ATTRIBUTE)
+            _fillVolume(node, values, ijkToRas)
+            showAsBackground(self._scene, node)
+            self.shown.emit(node)
+
+    def _refuse(self, requested: tuple[str, ...], error: Exception) -> None:
+        self._requested = ()
+        node = self._scene.GetNodeByID(requested[0])
+        if _requested(node) == requested:
+            self._scene.RemoveNode(node)
+            if isinstance(error, InputError):
+                sentence = _("There are no images in the slice views: {problem}")
+                self.problemFound.emit(sentence.format(problem=error))
+
+
+def _requested(node: Any | None) -> tuple[str, ...]:
+    """Return which images a node is to be filled with, empty where it is filled or not there."""
+    if node is None or not node.GetAttribute(FILE_ATTRIBUTE):
+        return ()
+    attributes = (node.GetAttribute(name) or "" for name in (CONTENT_ATTRIBUTE, FILE_ATTRIBUTE))
+    return (node.GetID(), *attributes)
+
+
+def _fillVolume(node: Any, values: np.ndarray, ijkToRas: np.ndarray) -> None:
+    image = vtk.vtkImageData()
+    image.SetDimensions(values.shape)
+    scalars = numpy_to_vtk(values.ravel(order="F"), deep=True)
+    image.GetPointData().SetScalars(scalars)
+    node.SetIJKToRASMatrix(slicer.util.vtkMatrixFromArray(ijkToRas))
+    node.SetAndObserveImageData(image)

@@ -12,7 +12,7 @@ from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.number_text import fixed
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.slicer.scene.scene import Role
+from rastrainer.slicer.scene.nodes import Role
 from rastrainer.slicer.scene.tables import Column, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
@@ -148,12 +148,7 @@ def _parts(score: TrialScore) -> list[Row]:
         Row(_("True TRE in the brain"), measures.tre_mm, "mm", error),
         *_bias(measures.common_bias_mm),
         Row(_("Unintended contact"), measures.contact_time_s, "s", _limit(CONTACT_LIMIT_S, "s")),
-        Row(
-            _("… its path"),
-            measures.contact_path_mm,
-            "mm",
-            _limit(CONTACT_PATH_LIMIT_MM, "mm"),
-        ),
+        Row(_("… its path"), measures.contact_path_mm, "mm", _limit(CONTACT_PATH_LIMIT_MM, "mm")),
         Row(_("Pressing depth"), measures.pressing_depth_mm, "mm", _limit(DEPTH_LIMIT_MM, "mm")),
     ]
 

@@ -36,10 +36,7 @@ class SkinNormals:
         self._isLooking = False
 
     def errorOnSkin(
-        self,
-        model: Any | None,
-        registration: Registration,
-        expected: np.ndarray | None = None,
+        self, model: Any | None, registration: Registration, expected: np.ndarray | None = None
     ) -> LocalizationError | None:
         """Return the localization error of touches on the skin, separately along and across it.
 

@@ -14,15 +14,17 @@ from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
-from rastrainer.slicer.scene.scene import (
+from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
+    TOUCH_COLOR,
     Role,
+    drawAsPoints,
     findNode,
     findOrAddNode,
     nodesOfClass,
+    pointCloud,
 )
-from rastrainer.slicer.scene.trace_nodes import drawAsPoints, pointCloud
-from rastrainer.slicer.scene.urdf import ArmChain
+from rastrainer.slicer.scene.robot import ArmChain
 
 SAMPLE_HZ = 10.0
 """Of what is shown; the journal has 50 samples a second."""
@@ -32,7 +34,6 @@ STATES_A_SLICE = 50
 """States added to the scene before the application may draw again."""
 SAME_ROBOT_MM = 0.01
 TOOL_COLOR = (0.2, 0.45, 0.85)
-TOUCH_COLOR = (0.95, 0.55, 0.1)
 TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 
 _PLACE, _TOOL, _TIP = "place", "tool", "tool model"

@@ -11,9 +11,8 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import TRACED_METHODS, RegistrationMethod
 from rastrainer.registration.fits import MINIMUM_POINTS, RIGID
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.scene.control_points import labelsOf, localPoints, setPoints
 from rastrainer.slicer.scene.error_colors import showResidualArrows
-from rastrainer.slicer.scene.link_nodes import capturedPointsNode
+from rastrainer.slicer.scene.nodes import capturedPointsNode, labelsOf, localPoints, setPoints
 from rastrainer.slicer.scene.registration_nodes import showRegistration
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE, showScenario, showTask, taskKey
 from rastrainer.slicer.scene.tables import showFits, showResiduals

@@ -5,8 +5,14 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer.link.heartbeat import LinkObservation, LinkState, judge, notInstalled
-from rastrainer.slicer.link.peer import Peer, ProbeResult
+from rastrainer.slicer.link.link_status import (
+    LinkObservation,
+    LinkState,
+    Peer,
+    ProbeResult,
+    judge,
+    notInstalled,
+)
 
 WELL = LinkObservation(
     "127.0.0.1:18944",

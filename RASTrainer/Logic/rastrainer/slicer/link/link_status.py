@@ -1,4 +1,4 @@
-"""State of the simulator and its link in words, and what to do about it.
+"""The state of the simulator and its link, and who answers at an address, in words.
 
 An open connection proves little: it may be half open, or lead to another program. The simulator
 therefore sends a heartbeat every second, with the version of its protocol.
@@ -10,8 +10,77 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import PROTOCOL_VERSION
-from rastrainer.slicer.link.peer import Peer, ProbeResult, remedyOf, sentenceOf
 from rastrainer.slicer.translation import _
+
+
+class Peer(str, Enum):
+    """Who may answer at a port."""
+
+    SIMULATOR = "simulator"
+    NOBODY = "nobody"
+    UNKNOWN_HOST = "unknown host"
+    SILENT = "silent"
+    WEB_PAGE = "web page"
+    ENCRYPTED = "encrypted"
+    OTHER_OPENIGTLINK = "other OpenIGTLink program"
+    OTHER_PROGRAM = "other program"
+
+
+@dataclass(frozen=True)
+class ProbeResult:
+    """Who answered.
+
+    Attributes:
+        peer: who it is.
+        ip: tested IPv4 address; empty if the host has none.
+        version: of the simulator's protocol; 0 where it is no simulator.
+    """
+
+    peer: Peer
+    ip: str = ""
+    version: int = 0
+
+
+def sentenceOf(peer: Peer, address: str) -> str:
+    """Return who answers at the address, such as `127.0.0.1:18944`, in a sentence."""
+    if peer is Peer.NOBODY:
+        return _("No simulator answers at {address}.").format(address=address)
+    if peer is Peer.UNKNOWN_HOST:
+        return _("There is no computer of that name: {address}.").format(address=address)
+    if peer is Peer.SIMULATOR:
+        return _("A RASTrainer simulator answers at {address}.").format(address=address)
+    if peer is Peer.SILENT:
+        return _(
+            "What answers at {address} accepts the connection and sends nothing: "
+            "it is not the OpenIGTLink port of a simulator."
+        ).format(address=address)
+    return _(
+        "What answers at {address} is {what}, not the OpenIGTLink port of a simulator."
+    ).format(address=address, what=_nameOf(peer))
+
+
+def remedyOf(peer: Peer) -> str:
+    """Return what to do about it; empty if it is a simulator."""
+    if peer is Peer.NOBODY:
+        return _("Start the simulator, or correct the host and port.")
+    if peer is Peer.UNKNOWN_HOST:
+        return _("Correct the host, or enter its IPv4 address, such as 127.0.0.1.")
+    if peer is Peer.SIMULATOR:
+        return ""
+    return _(
+        "Enter the port that the simulator names for OpenIGTLink: 18944 unless it has another."
+    )
+
+
+def _nameOf(peer: Peer) -> str:
+    if peer is Peer.WEB_PAGE:
+        return _("a web page (HTTP)")
+    if peer is Peer.ENCRYPTED:
+        return _("an encrypted port (TLS), such as that of a web page")
+    if peer is Peer.OTHER_OPENIGTLINK:
+        return _("another OpenIGTLink program")
+    return _("another program")
+
 
 STALE_AFTER_S = 3.5
 RECONNECT_AFTER_S = 10.0

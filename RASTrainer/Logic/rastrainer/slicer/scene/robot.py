@@ -1,8 +1,10 @@
-"""The robot in the 3D view: its meshes under the link poses that the simulator sends."""
+"""The robot: its URDF, its meshes in the 3D view under the poses of the link, and its arm."""
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,12 +12,147 @@ import numpy as np
 import slicer
 import vtk
 
+from rastrainer import transforms
 from rastrainer.errors import InputError
+from rastrainer.files.reading import plain_xml, read_bytes
 from rastrainer.protocol import DeviceName
-from rastrainer.slicer.scene.link_nodes import prepareNodes
-from rastrainer.slicer.scene.scene import ROLE_ATTRIBUTE, Role, findNode
-from rastrainer.slicer.scene.urdf import Element, attribute, numbers, originOf, readUrdf
+from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, Role, findNode, prepareNodes
 from rastrainer.transforms import MM_PER_M
+
+Element = ElementTree.Element
+MAX_BYTES = 4 << 20
+
+
+def readUrdf(path: Path) -> Element:
+    """Return the root of a URDF file.
+
+    Raises:
+        InputError: the file is missing, too large or not well-formed.
+    """
+    content = plain_xml(read_bytes(path, MAX_BYTES), f"The URDF {path}")
+    try:
+        return ElementTree.fromstring(content)
+    except ElementTree.ParseError as error:
+        raise InputError(f"The URDF {path} is not well-formed XML: {error}.") from None
+
+
+def attribute(element: Element, child: str, name: str) -> str:
+    """Return an attribute of an element's child.
+
+    Raises:
+        ValueError: there is no such child, or it lacks the attribute.
+    """
+    found = element.find(child)
+    value = None if found is None else found.get(name)
+    if value is None:
+        raise ValueError(f"<{element.tag}> has no <{child}> with {name}")
+    return value
+
+
+def numbers(text: str) -> np.ndarray:
+    """Return numbers between blanks, (n,) float.
+
+    Raises:
+        ValueError: the text contains something else.
+    """
+    return np.array([float(word) for word in text.split()])
+
+
+def originOf(element: Element) -> np.ndarray:
+    """Return the pose (4, 4) float, mm, of an origin: about x by roll, y by pitch, z by yaw.
+
+    Raises:
+        ValueError: the origin is malformed.
+    """
+    origin = element.find("origin")
+    if origin is None:
+        return np.eye(4)
+    xyz = numbers(origin.get("xyz", "0 0 0"))
+    roll, pitch, yaw = numbers(origin.get("rpy", "0 0 0"))
+    (sr, sp, sy), (cr, cp, cy) = np.sin([roll, pitch, yaw]), np.cos([roll, pitch, yaw])
+    rotation = np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+    return transforms.rigid(rotation, MM_PER_M * xyz)
+
+
+@dataclass(frozen=True, eq=False)
+class ArmChain:
+    """The joints from the robot's base to the tip of its tool, in their order.
+
+    Attributes:
+        origins: (n, 4, 4) float, of each joint in the frame of the one before, mm.
+        axes: (n, 3) float, unit; zeros for a joint that does not move.
+    """
+
+    origins: np.ndarray
+    axes: np.ndarray
+
+    @property
+    def moving(self) -> int:
+        """How many joints move."""
+        return int(self.axes.any(axis=1).sum())
+
+    def toolToWorld(self, q: np.ndarray) -> np.ndarray:
+        """Return the poses (m, 4, 4) float, mm, of the tool at joint angles q (m, n) float, rad.
+
+        Rotations follow Rodrigues' formula R = I + sin a K + (1 − cos a) K².
+        """
+        poses = np.broadcast_to(np.eye(4), (len(q), 4, 4))
+        column = 0
+        for origin, axis in zip(self.origins, self.axes, strict=True):
+            poses = poses @ origin
+            if not axis.any():
+                continue
+            angles = q[:, column, None, None]
+            column += 1
+            x, y, z = axis
+            cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+            turn = np.zeros((len(q), 4, 4))
+            turn[:, 3, 3] = 1.0
+            turn[:, :3, :3] = (
+                np.eye(3) + np.sin(angles) * cross + (1.0 - np.cos(angles)) * (cross @ cross)
+            )
+            poses = poses @ turn
+        return poses
+
+
+def readArmChain(urdf: Path) -> ArmChain:
+    """Read the chain of a robot without branches.
+
+    Raises:
+        InputError: the file cannot be used, or its joints are no chain of turning and fixed ones.
+    """
+    root = readUrdf(urdf)
+    try:
+        joints = {attribute(joint, "parent", "link"): joint for joint in root.findall("joint")}
+        children = {attribute(joint, "child", "link") for joint in joints.values()}
+        (base,) = joints.keys() - children
+        if len(joints) != len(root.findall("joint")):
+            raise ValueError
+        origins, axes, link = [], [], base
+        while link in joints:
+            joint = joints.pop(link)
+            origins.append(originOf(joint))
+            axes.append(_axis(joint))
+            link = attribute(joint, "child", "link")
+    except ValueError:
+        raise InputError(f"The URDF {urdf} is not a chain of revolute and fixed joints.") from None
+    return ArmChain(np.array(origins), np.array(axes))
+
+
+def _axis(joint: Element) -> np.ndarray:
+    if joint.get("type") == "fixed":
+        return np.zeros(3)
+    if joint.get("type") != "revolute":
+        raise ValueError
+    axis = numbers(attribute(joint, "axis", "xyz"))
+    return axis / np.linalg.norm(axis)
+
 
 URDF = "iiwa7.urdf"
 

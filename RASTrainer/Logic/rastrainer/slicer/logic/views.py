@@ -1,0 +1,313 @@
+"""Slicer's views: slices at the next point, the tool or an instrument, and a layout for a while."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import slicer
+import vtk
+from numpy.typing import ArrayLike
+
+from rastrainer.protocol import OPEN_PHASES, DeviceName, Phase
+from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
+from rastrainer.slicer.scene.nodes import (
+    CONTENT_ATTRIBUTE,
+    TASK_ATTRIBUTE,
+    Role,
+    findNode,
+    labelsOf,
+    nodesOfClass,
+    worldPoints,
+)
+from rastrainer.slicer.scene.registration_nodes import matrixOf
+
+LAYOUT_TAG = "vtkMRMLLayoutNode"
+WITH_TABLE = slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpTableView
+WITH_PLOT = slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView
+
+
+def jumpTo(scene: Any, position: Sequence[float]) -> None:
+    """Bring a place, (3,) float, RAS mm, into all slice views, which stay where they look."""
+    for view in nodesOfClass(scene, "vtkMRMLSliceNode"):
+        view.JumpSliceByOffsetting(*position)
+
+
+PROBES_EYE, IN_LINE, ACROSS = "Red", "Green", "Yellow"
+"""Names of the slice views that show the plane across an instrument, and the two along it."""
+LEAST_ACROSS = 0.3
+"""An instrument that goes along the patient's left-right axis leaves less of it across itself."""
+
+
+class AlongInstrument:
+    """Slice views that lie along an instrument for a while, and are then as they were."""
+
+    def __init__(self, scene: Any) -> None:
+        self._scene = scene
+        self._former: dict[str, vtk.vtkMatrix4x4] = {}
+
+    @property
+    def isShown(self) -> bool:
+        """Whether the views lie along an instrument."""
+        return bool(self._former)
+
+    def show(self, tip: np.ndarray, direction: np.ndarray) -> None:
+        """Lay the views through the tip of an instrument.
+
+        The probe's-eye view is across it, seen from outside, the other two are along it, with the
+        instrument coming from above; as far as possible, the patient's right is on the left.
+
+        Args:
+            tip: (3,) float, RAS mm.
+            direction: (3,) float, RAS, unit vector into the head.
+        """
+        axes = instrumentAxes(direction)
+        for view in nodesOfClass(self._scene, "vtkMRMLSliceNode"):
+            if view.GetName() not in axes:
+                continue
+            matrix = view.GetSliceToRAS()
+            if view.GetID() not in self._former:
+                self._former[view.GetID()] = vtk.vtkMatrix4x4()
+                self._former[view.GetID()].DeepCopy(matrix)
+            for column, vector in enumerate((*axes[view.GetName()], tip)):
+                for row in range(3):
+                    matrix.SetElement(row, column, float(vector[row]))
+            view.UpdateMatrices()
+
+    def giveBack(self) -> None:
+        """Let the views lie as they did before."""
+        for viewId, former in self._former.items():
+            view = self._scene.GetNodeByID(viewId)
+            if view is not None:
+                view.GetSliceToRAS().DeepCopy(former)
+                view.UpdateMatrices()
+        self._former.clear()
+
+    def forgetScene(self) -> None:
+        """Forget how the views lay: the scene was cleared."""
+        self._former.clear()
+
+
+def instrumentAxes(direction: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the axes of the slice views along an instrument, by the view's name.
+
+    Each is (3, 3) float, RAS: to the right of the view, up in it, and its normal, which go round as
+    in Slicer's axial, coronal and sagittal views.
+
+    Args:
+        direction: (3,) float, RAS, unit vector into the head.
+    """
+    outward = -direction
+    left = np.array([-1.0, 0.0, 0.0])
+    across = left - (left @ outward) * outward
+    if np.linalg.norm(across) < LEAST_ACROSS:
+        front = np.array([0.0, 1.0, 0.0])
+        across = front - (front @ outward) * outward
+    across /= np.linalg.norm(across)
+    upward = np.cross(across, outward)
+    return {
+        PROBES_EYE: np.array([across, upward, outward]),
+        IN_LINE: np.array([across, outward, upward]),
+        ACROSS: np.array([-upward, outward, across]),
+    }
+
+
+class BorrowedLayout:
+    """Tables and plots are seen only in a layout that has a view for them."""
+
+    def __init__(self, scene: Any) -> None:
+        self._scene = scene
+        self._purpose = ""
+        self._shown = self._former = 0
+        self._isOutdated = False
+
+    @property
+    def purpose(self) -> str:
+        """What the layout is shown for; empty where the views are as the user has them."""
+        node = self._node()
+        isShown = node is not None and node.GetViewArrangement() == self._shown
+        return self._purpose if isShown else ""
+
+    def show(self, purpose: str, layout: int) -> None:
+        """Show a layout, one of `vtkMRMLLayoutNode`'s; without a main window nothing happens."""
+        node = self._node()
+        if node is None:
+            return
+        if not self.purpose:
+            self._former = node.GetViewArrangement()
+        self._isOutdated = False
+        self._purpose, self._shown = purpose, layout
+        node.SetViewArrangement(layout)
+
+    def giveBack(self, purpose: str = "") -> None:
+        """Show the user's layout again, if ours is shown (for this purpose, if one is given).
+
+        A layout that the user has chosen meanwhile stays.
+        """
+        node = self._node()
+        if node is not None and self.purpose and purpose in ("", self._purpose):
+            node.SetViewArrangement(self._former)
+            self._purpose = ""
+
+    def forgetScene(self) -> None:
+        """Have the next `process` give the layout back: the scene was cleared of what it showed.
+
+        Not yet now, as Slicer shows its last layout again after a scene is closed.
+        """
+        self._isOutdated = True
+
+    def process(self) -> None:
+        """Give the layout back that belongs to a scene which was cleared."""
+        if self._isOutdated:
+            self._isOutdated = False
+            self.giveBack()
+
+    def _node(self) -> Any | None:
+        return self._scene.GetSingletonNode(LAYOUT_TAG, LAYOUT_TAG)
+
+
+TRANSFORM, FIDUCIALS = "vtkMRMLLinearTransformNode", "vtkMRMLMarkupsFiducialNode"
+LEAST_MOVE_MM = 0.5
+PERIOD_S = 0.1
+"""Between two jumps after the tool: each renders all slice views."""
+LEAST_TURN = 0.01
+"""Of the tool, in rad, before the views along it follow."""
+DEVICES = {
+    Phase.ALIGNING.value: DeviceName.TOOL_TIP_TO_WORLD,
+    Phase.DRILLING.value: DeviceName.INSTRUMENT_TIP_TO_WORLD,
+    Phase.INSERTING.value: DeviceName.INSTRUMENT_TIP_TO_WORLD,
+}
+"""Whose pose the views along the instrument follow, by the phase of a procedure."""
+
+
+class SliceFollower:
+    """Moves the slices as far as they must to go through a place; where they look stays.
+
+    While the guide of a procedure is aligned, and drill and instrument are in it, they may lie
+    along it instead: one across the instrument (probe's-eye view), two along it.
+
+    Attributes:
+        showsNextPoint: whether they jump to each point that is to be touched next.
+        followsTool: whether they stay at the tip of the tool, in the place of the next point.
+        liesAlong: whether they lie along the instrument of a procedure.
+    """
+
+    def __init__(
+        self, scene: Any, training: TrainingLogic, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.showsNextPoint = True
+        self.followsTool = False
+        self.liesAlong = True
+        self._along = AlongInstrument(scene)
+        self._pose: np.ndarray | None = None
+        self._scene = scene
+        self._training = training
+        self._clock = clock
+        self._shownPoint: tuple[str, ...] = ()
+        self._place: np.ndarray | None = None
+        self._lastJump = -PERIOD_S
+
+    def show(self, place: ArrayLike) -> None:
+        """Show a place, (3,) float, RAS mm."""
+        self._place = np.array(place, dtype=float)
+        self._lastJump = self._clock()
+        jumpTo(self._scene, self._place.tolist())
+
+    def showAgain(self) -> None:
+        """Show the place that was shown last, after the views were moved."""
+        if self._place is not None:
+            self.show(self._place)
+
+    def forgetScene(self) -> None:
+        """Forget what was shown: the scene was cleared, and its views with it."""
+        self._shownPoint, self._place, self._pose = (), None, None
+        self._along.forgetScene()
+
+    @property
+    def needsPoses(self) -> bool:
+        """Whether the slices move with the tool."""
+        return self.followsTool or self._device is not None
+
+    def process(self) -> None:
+        """Follow what has moved; called about ten times a second."""
+        device = self._device
+        if device is not None:
+            self._shownPoint = ()
+            self._lieAlong(device)
+            return
+        if self._along.isShown:
+            if self._training.progress.phase == Phase.PAUSED.value:
+                return
+            self._along.giveBack()
+            self._pose = None
+            self.showAgain()
+        if self.followsTool:
+            self._shownPoint = ()
+            self._followTool()
+        elif self.showsNextPoint:
+            self._showNextPoint()
+
+    @property
+    def _device(self) -> str | None:
+        """Whose pose the views along the instrument follow; None where they do not."""
+        return DEVICES.get(self._training.progress.phase) if self.liesAlong else None
+
+    def _lieAlong(self, device: str) -> None:
+        pose = poseOnHead(self._scene, device)
+        if pose is None or self._clock() < self._lastJump + PERIOD_S:
+            return
+        if self._pose is not None and self._along.isShown:
+            moved = float(np.linalg.norm(pose[:3, 3] - self._pose[:3, 3]))
+            turned = float(np.linalg.norm(pose[:3, 2] - self._pose[:3, 2]))
+            if moved < LEAST_MOVE_MM and turned < LEAST_TURN:
+                return
+        self._pose, self._lastJump = pose, self._clock()
+        self._along.show(pose[:3, 3], pose[:3, 2])
+
+    def _followTool(self) -> None:
+        pose = poseOnHead(self._scene, DeviceName.TOOL_TIP_TO_WORLD)
+        if pose is None or self._clock() < self._lastJump + PERIOD_S:
+            return
+        tip = pose[:3, 3]
+        if self._place is None or np.linalg.norm(tip - self._place) >= LEAST_MOVE_MM:
+            self.show(tip)
+
+    def _showNextPoint(self) -> None:
+        status = self._training.progress
+        fixed = findNode(self._scene, FIDUCIALS, Role.FIXED_FIDUCIALS)
+        point = _nextPoint(status, fixed)
+        if point == self._shownPoint:
+            return
+        self._shownPoint = point
+        if point and status.nextPoint in labelsOf(fixed):
+            self.show(worldPoints(fixed)[labelsOf(fixed).index(status.nextPoint)])
+
+
+def poseOnHead(scene: Any, device: str) -> np.ndarray | None:
+    """Return the pose of a device on the head, (4, 4) float, RAS mm; z is the tool's axis.
+
+    None where nothing is known of it, or of where the head is.
+    """
+    pose = findNode(scene, TRANSFORM, device)
+    toHead = findNode(scene, TRANSFORM, Role.WORLD_TO_HEAD)
+    if pose is None or toHead is None:
+        return None
+    toWorld = matrixOf(pose)
+    if np.array_equal(toWorld, np.eye(4)):
+        return None  # No pose has come yet.
+    return matrixOf(toHead) @ toWorld
+
+
+def _nextPoint(status: TrialStatus, fixed: Any | None) -> tuple[str, ...]:
+    """Return a key of the next point of a running trial; empty if none is shown.
+
+    The fiducials of a trial that has just started come a moment later than its first point.
+    """
+    if fixed is None or status.phase not in OPEN_PHASES or not status.nextPoint:
+        return ()
+    task = fixed.GetAttribute(TASK_ATTRIBUTE) or ""
+    if not task.endswith(f"/{status.task}"):
+        return ()
+    return (task, fixed.GetAttribute(CONTENT_ATTRIBUTE) or "", status.nextPoint)

@@ -1,0 +1,250 @@
+"""Our nodes in the scene: found or made, what they show, their points, and what the link fills."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import slicer
+import vtk
+from vtk.util.numpy_support import numpy_to_vtk
+
+from rastrainer.errors import InputError
+from rastrainer.protocol import DeviceName
+
+ROLE_ATTRIBUTE = "RASTrainer.role"
+
+
+class Role:
+    """What a node of ours is for. It stays when the node is renamed, saved and loaded again."""
+
+    HEAD_MODEL = "head model"
+    HEAD_PREVIEW = "head preview"
+    HEAD_SEGMENT = "head segment"
+    HEAD_VOLUME = "head volume"
+    SKULL = "skull"
+    FIXED_FIDUCIALS = "fixed fiducials"
+    TARGET = "target"
+    TRAJECTORY = "trajectory"
+    CAPTURED_POINTS = "captured points"
+    SIM_STATE = "simulator state"
+    WORLD_TO_HEAD = "world to head"
+    RESIDUALS = "residuals"
+    RESIDUAL_ARROWS = "residual arrows"
+    FITS = "fits"
+    HISTORY = "history"
+    LEARNING_CURVE = "learning curve"
+    CALIBRATION = "calibration"
+    SCORE = "score"
+    COMPARISON = "comparison"
+    MOTION = "motion metrics"
+    PLAN_TARGET = "plan target"
+    PLAN_TRAJECTORY = "plan trajectory"
+    PLAN_LINE = "procedure plan line"
+    NO_GO = "procedure no-go structure"
+    CHECKPOINTS = "procedure checkpoints"
+    PLANNED_LINE = "procedure planned line"
+    REGISTERED_LINE = "procedure registered line"
+    TRUE_LINE = "procedure true line"
+    ERRORS_BY_REGISTRATION = "procedure errors by registration"
+    ERRORS_BY_HAND = "procedure errors by hand"
+    PROCEDURE_ERRORS = "procedure errors"
+    ROBOT = "robot"
+    REPLAY = "replay"
+    LANDMARKS = "landmarks"
+    TRACED_POINTS = "traced points"
+    NEXT_PLACE = "next place of the trace"
+
+
+def findNode(scene: Any, className: str, role: str) -> Any | None:
+    """Return the first node of the class with the role, or None."""
+    return next(iter(nodesOf(scene, className, role)), None)
+
+
+def nodesOf(scene: Any, className: str, role: str) -> list[Any]:
+    """Return all nodes of the class with the role, in the scene's order."""
+    nodes = nodesOfClass(scene, className)
+    return [node for node in nodes if node.GetAttribute(ROLE_ATTRIBUTE) == role]
+
+
+def nodesOfClass(scene: Any, className: str) -> list[Any]:
+    """Return all nodes of the class or of classes derived from it, in the scene's order."""
+    nodes = scene.GetNodesByClass(className)
+    nodes.UnRegister(None)
+    return [nodes.GetItemAsObject(index) for index in range(nodes.GetNumberOfItems())]
+
+
+def removeNode(scene: Any, className: str, role: str) -> None:
+    """Remove the node of the class with the role, where there is one."""
+    node = findNode(scene, className, role)
+    if node is not None:
+        scene.RemoveNode(node)
+
+
+def findOrAddNode(scene: Any, className: str, role: str, name: str) -> Any:
+    """Return the node of the class with the role, added under `name` where there is none."""
+    node = findNode(scene, className, role)
+    if node is None:
+        node = scene.AddNewNodeByClass(className, name)
+        node.SetAttribute(ROLE_ATTRIBUTE, role)
+        if node.IsA("vtkMRMLDisplayableNode"):
+            node.CreateDefaultDisplayNodes()
+    return node
+
+
+SCENARIO_ATTRIBUTE = "RASTrainer.scenario"
+TASK_ATTRIBUTE = "RASTrainer.task"
+CONTENT_ATTRIBUTE = "RASTrainer.content"
+"""Stamp of what a node shows: a rebuilt scenario may keep its name."""
+
+
+def isShown(node: Any, attribute: str, name: str, content: str) -> bool:
+    """Return whether a node shows this content of this name."""
+    return (node.GetAttribute(attribute), node.GetAttribute(CONTENT_ATTRIBUTE)) == (name, content)
+
+
+def noteShown(node: Any, attribute: str, name: str, content: str) -> None:
+    """Note what a node shows from now on."""
+    node.SetAttribute(attribute, name)
+    node.SetAttribute(CONTENT_ATTRIBUTE, content)
+
+
+def stampOf(path: Path) -> str:
+    """Return a stamp that changes with a file, without reading it; empty if there is none."""
+    if not path.is_file():
+        return ""
+    status = path.stat()
+    return f"{status.st_mtime_ns} {status.st_size}"
+
+
+def labelsOf(node: Any) -> tuple[str, ...]:
+    """Return the labels of a `vtkMRMLMarkupsNode`."""
+    return tuple(labelOf(node, i) for i in range(node.GetNumberOfControlPoints()))
+
+
+def labelOf(node: Any, index: int) -> str:
+    """Return the label of one point; a peer may have sent one that is not UTF-8."""
+    return shownText(node.GetNthControlPointLabel(index))
+
+
+def localPoints(node: Any) -> np.ndarray:
+    """Return the points as they were received or placed, (n, 3) float, mm, in the node's frame."""
+    return slicer.util.arrayFromMarkupsControlPoints(node)
+
+
+def worldPoints(node: Any) -> np.ndarray:
+    """Return the points where Slicer shows them, (n, 3) float, RAS mm."""
+    return slicer.util.arrayFromMarkupsControlPoints(node, world=True)
+
+
+def setPoints(node: Any, labels: Sequence[str], points: np.ndarray) -> None:
+    """Replace the points of a `vtkMRMLMarkupsNode`.
+
+    Args:
+        node: the node.
+        labels: one for each point.
+        points: (n, 3) float, mm, in the node's own frame.
+    """
+    wasModifying = node.StartModify()
+    node.RemoveAllControlPoints()
+    slicer.util.updateMarkupsControlPointsFromArray(node, np.asarray(points, dtype=float))
+    for index, label in enumerate(labels):
+        node.SetNthControlPointLabel(index, label)
+    node.EndModify(wasModifying)
+
+
+ORIGINAL_NAME = "OriginalNodeName"
+"""The attribute in which Slicer's connector keeps the name of the device that fills a node."""
+
+TOUCH_COLOR = (0.95, 0.55, 0.1)
+POINT_PIXELS = 5.0
+
+
+def prepareNodes(scene: Any) -> None:
+    """Make the nodes that are missing; the connector adopts nodes of that name and class."""
+    capturedPointsNode(scene)
+    simStateNode(scene)
+    tips = (DeviceName.TOOL_TIP_TO_WORLD, DeviceName.INSTRUMENT_TIP_TO_WORLD)
+    for name in (*tips, *DeviceName.LINK_TO_WORLD):
+        _node(scene, "vtkMRMLLinearTransformNode", name, name).SetSaveWithScene(False)
+
+
+def capturedPointsNode(scene: Any) -> Any:
+    """Return the list of touched points (World, mm), whatever users call it, or a new one."""
+    className, role = "vtkMRMLMarkupsFiducialNode", Role.CAPTURED_POINTS
+    node = findNode(scene, className, role)
+    if node is None:
+        node = _node(scene, className, role, DeviceName.CAPTURED_POINTS)
+        node.SetLocked(True)
+        node.CreateDefaultDisplayNodes()
+        display = node.GetDisplayNode()
+        display.SetSelectedColor(TOUCH_COLOR)
+        display.SetGlyphScale(2.5)
+        display.SetTextScale(3.5)
+        display.SetOccludedVisibility(True)
+    return node
+
+
+def simStateNode(scene: Any) -> Any:
+    """Return the text of the simulator's state, or a new one; it is never saved."""
+    node = _node(scene, "vtkMRMLTextNode", Role.SIM_STATE, DeviceName.SIM_STATE)
+    node.SetSaveWithScene(False)
+    return node
+
+
+def drawAsPoints(node: Any) -> None:
+    """Draw a model as the points of a trace."""
+    node.SetSelectable(False)
+    display = node.GetDisplayNode()
+    display.SetRepresentation(display.PointsRepresentation)
+    display.SetPointSize(POINT_PIXELS)
+    display.SetColor(TOUCH_COLOR)
+    display.SetLighting(False)
+
+
+def pointCloud(places: np.ndarray) -> vtk.vtkPolyData:
+    """Return places (n, 3) as points, each of them a vertex cell."""
+    points, cells = vtk.vtkPoints(), vtk.vtkCellArray()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(places, dtype=np.float32), deep=True))
+    for number in range(len(places)):
+        cells.InsertNextCell(1, (number,))
+    cloud = vtk.vtkPolyData()
+    cloud.SetPoints(points)
+    cloud.SetVerts(cells)
+    return cloud
+
+
+def findIncomingNode(connector: Any, device: str) -> Any | None:
+    """Return the node that the connector fills for a device, or None."""
+    for index in range(connector.GetNumberOfIncomingMRMLNodes()):
+        node = connector.GetIncomingMRMLNode(index)
+        if node is not None and node.GetAttribute(ORIGINAL_NAME) == device:
+            return node
+    return None
+
+
+def _node(scene: Any, className: str, role: str, name: str) -> Any:
+    """Return the node of the role, else the one of the name, else a new one."""
+    node = findNode(scene, className, role)
+    if node is None:
+        node = scene.GetFirstNode(name, className) or scene.AddNewNodeByClass(className, name)
+        node.SetAttribute(ROLE_ATTRIBUTE, role)
+    return node
+
+
+def decodedText(text: str | bytes | None) -> str:
+    """Return the text, empty where there is none.
+
+    Raises:
+        InputError: it is not UTF-8.
+    """
+    if isinstance(text, bytes):
+        raise InputError("The text must be encoded in UTF-8.")
+    return text or ""
+
+
+def shownText(text: str | bytes | None) -> str:
+    """Return a text to be shown, such as a label: what is not UTF-8 in it is replaced."""
+    return text.decode("utf-8", "replace") if isinstance(text, bytes) else text or ""
