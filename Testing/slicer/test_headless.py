@@ -19,7 +19,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_headless import main as headless
-from rastrainer_headless.output import results_json, writeOutput
+from rastrainer_headless.main import results_json, writeOutput
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.simulator_double import SimulatorDouble
 

@@ -15,7 +15,7 @@ from rastrainer.trial.ctps import read_trials
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import fiducial_normals, region_of
 from rastrainer.trial.scoring import ScoreReference
-from rastrainer_headless.output import results_json
+from rastrainer_headless.main import results_json
 from Testing.domain.trial.trial_records import first_score
 
 PUBLISHED = Path(__file__).parents[2] / "assets" / "studies" / "published.csv"

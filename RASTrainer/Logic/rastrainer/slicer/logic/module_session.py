@@ -13,7 +13,6 @@ from rastrainer.scenario.scenario import Scenario, playable_methods
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
-from rastrainer.slicer.logic.curriculum_logic import CurriculumLogic
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
 from rastrainer.slicer.logic.plan_logic import PlanLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
@@ -30,7 +29,7 @@ from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.logic.study_logic import StudyLogic
 from rastrainer.slicer.logic.trace_logic import TraceLogic
-from rastrainer.slicer.logic.trainee_logic import TraineeLogic
+from rastrainer.slicer.logic.trainee_logic import CurriculumLogic, TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
