@@ -43,7 +43,10 @@ SECTIONS = (
 """In the order of the work."""
 NESTED = (CurriculumPanel, LandmarksPanel, MethodsPanel)
 """Whose widgets are in the files of other sections."""
-PANELS = (NextStepPanel, *SECTIONS)
+PANELS = (
+    NextStepPanel,
+    *SECTIONS,
+)
 """From above to below."""
 
 
