@@ -63,15 +63,15 @@ def value(widget, name):
     return "" if found is None else "".join(found.itertext()).strip()
 
 
-def shows_as_it_stands(host, name, text=HOSTILE):
-    """Check that a label shows a text, or its beginning, literally, and does not widen the dock."""
-    label = host.find(name)
-    shown = label.text.replace("\u200b", "")
-    assert label.textFormat == PLAIN
-    assert text[:100] in shown
-    assert len(shown) <= LONGEST_TEXT
+def shows_as_it_stands(host, *names, text=HOSTILE):
+    """Check that labels show a text, or its beginning, literally, and do not widen the dock."""
+    for name in names:
+        label = host.find(name)
+        shown = label.text.replace("\u200b", "")
+        assert label.textFormat == PLAIN, name
+        assert text[:100] in shown, name
+        assert len(shown) <= LONGEST_TEXT, name
     assert host.minimum_width() <= DOCK_WIDTH
-    return True
 
 
 # The files
@@ -116,10 +116,10 @@ def test_no_label_grows_with_a_long_word(open_module):
     host, before = open_module, open_module.minimum_width()
     from rastrainer.panels.widgets import setSentence
 
-    for label in labels():
-        if label.get("name").endswith("Text"):
-            setSentence(host.find(label.get("name")), HOSTILE)
-            shows_as_it_stands(host, label.get("name"))
+    names = [label.get("name") for label in labels() if label.get("name").endswith("Text")]
+    for name in names:
+        setSentence(host.find(name), HOSTILE)
+    shows_as_it_stands(host, *names)
     assert host.minimum_width() == before
 
 
@@ -130,9 +130,9 @@ def test_the_state_of_the_trial_and_a_question_about_its_trainee(connected, simu
     simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     host.wait_until(lambda: host.text("trainingText"), "the instruction is shown")
     host.wait_until(lambda: "bold" in host.text("phaseText"), "the phase is shown")
-    for name in ("trainingText", "instructionText", "phaseText", "nextPointText", "clearanceText"):
-        shows_as_it_stands(host, name)
-    shows_as_it_stands(host, "trialText", HTML)
+    names = ("trainingText", "instructionText", "phaseText", "nextPointText", "clearanceText")
+    shows_as_it_stands(host, *names)
+    shows_as_it_stands(host, "trialText", text=HTML)
     state = {"trialId": "", "phase": "running", "trainee": HTML, "task": "task-1"}
     simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     host.wait_until(lambda: host.find("abortButton").enabled, "a trial runs")
@@ -173,7 +173,7 @@ def test_names_of_a_host_a_node_and_a_task(open_module, tmp_path):
     host = open_module
     host.find("hostLineEdit").text = HTML
     host.press("probeButton")
-    shows_as_it_stands(host, "stateText", HTML)
+    shows_as_it_stands(host, "stateText", text=HTML)
     model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", HOSTILE)
     host.choose("headModelComboBox", model)
     host.press("useHeadButton")
@@ -204,10 +204,10 @@ def test_how_the_simulators_program_ends_and_pairs(open_module, tmp_path):
     host.type("programPathLineEdit", str(program))
     host.press("startSimulatorButton")
     host.wait_until(lambda: "bold" in host.text("pairingText"), "the address is shown")
-    shows_as_it_stands(host, "pairingText", "<b>bold</b>")
+    shows_as_it_stands(host, "pairingText", text="<b>bold</b>")
     (tmp_path / "over").touch()
     host.wait_until(lambda: "ended by itself" in host.text("programText"), "the end is told")
-    shows_as_it_stands(host, "programText", HTML)
+    shows_as_it_stands(host, "programText", text=HTML)
 
 
 # Tool tips and questions
