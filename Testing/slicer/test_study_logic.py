@@ -427,7 +427,7 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     started = datetime.now(timezone.utc).isoformat()
     aborted = make_aborted(trainee="T001", mode=step.mode, task=step.task, startedUtc=started)
     AbortedTrials(enrolled.trainees.study).add(aborted)
-    enrolled.logic.countAborted(AbortedTrial.from_json(aborted))
+    enrolled.logic.countTrial(AbortedTrial.from_json(aborted))
     room = enrolled.room
     room.run_until(lambda: told(enrolled).get("kind") == "repeat")
     assert told(enrolled)["task"] == step.task

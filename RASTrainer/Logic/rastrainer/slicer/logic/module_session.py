@@ -317,7 +317,7 @@ class ModuleSession:
         self._showTrainees()
 
     def _takeAborted(self, trial: AbortedTrial) -> None:
-        self.study.countAborted(trial)
+        self.study.countTrial(trial)
         self._showTrainees()
 
     def _noticeNewTrial(self, state: dict[str, Any]) -> None:

@@ -136,7 +136,7 @@ class RegistrationLogic:
         ids = (moving.GetID() if moving else "", fixed.GetID() if fixed else "")
         if ids != (self._movingId, self._fixedId):
             self._movingId, self._fixedId = ids
-            self._forgetChoices()
+            self.reset()
 
     def chooseTarget(self, target: Any | None) -> None:
         """Choose where the error is reported: a list's first point, None for the scenario's."""
@@ -174,12 +174,13 @@ class RegistrationLogic:
 
     def reset(self) -> None:
         """Forget the changes: what comes next is another trial."""
-        self._forgetChoices()
+        self._history = [Choices()]
+        self._seen = ()
 
     def forgetScene(self) -> None:
         """Forget lists and result: the scene was cleared, and the next nodes may have their IDs."""
         self._movingId = self._fixedId = self._targetId = ""
-        self._forgetChoices()
+        self.reset()
         self._compute()
 
     def process(self) -> None:
@@ -207,7 +208,7 @@ class RegistrationLogic:
         self.comparison, self.problem, self.leaveOneOut = None, "", None
         moving, fixed = self.moving(), self.fixed()
         if moving is None or moving.GetNumberOfControlPoints() == 0:
-            self._forgetChoices()
+            self.reset()
         # Of what is registered now, whatever the reason: lists that change back are news again.
         self._seen = self._snapshot()
         try:
@@ -294,10 +295,6 @@ class RegistrationLogic:
 
     def _head(self) -> Any | None:
         return findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
-
-    def _forgetChoices(self) -> None:
-        self._history = [Choices()]
-        self._seen = ()
 
     def _chosen(self, nodeId: str) -> Any | None:
         return self._scene.GetNodeByID(nodeId) if nodeId else None

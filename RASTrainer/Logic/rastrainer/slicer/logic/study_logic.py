@@ -230,13 +230,12 @@ class StudyLogic:
         StudyProgress(self._trainees.study).explain_repeat(self._trainees.chosen, reason)
         self._leadOn(self._trainees.chosen)
 
-    def countAborted(self, trial: AbortedTrial) -> None:
-        """Lead the trainee of an aborted trial that has just been stored: it may need a reason."""
-        self._leadOn(trial.trainee)
+    def countTrial(self, trial: TrialRecord | AbortedTrial) -> None:
+        """Count a trial that has just been stored, if it is what the study asks its trainee for.
 
-    def countTrial(self, record: TrialRecord) -> None:
-        """Count a trial that has just been stored, if it is what the study asks its trainee for."""
-        self._leadOn(record.trainee)
+        An aborted one may need a reason.
+        """
+        self._leadOn(trial.trainee)
 
     def _progress(self) -> Progress:
         progress = self.progress()

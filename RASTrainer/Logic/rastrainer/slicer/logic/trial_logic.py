@@ -14,7 +14,6 @@ import logging
 import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -37,13 +36,6 @@ from rastrainer.trial.record import TrialRecord
 
 RETRY_S = 5.0
 """After a study was locked or away, until its trials are looked for again."""
-
-
-class _Scoring(Enum):
-    """State of a trial's scoring; without one, scoring starts again."""
-
-    UNDER_WAY = "under way"
-    DONE = "done"
 
 
 class TrialLogic:
@@ -91,7 +83,8 @@ class TrialLogic:
         self._records = records
         self._run = run
         self._scoring = TrialScoring(link, work, openStudy, self._review)
-        self._scored: dict[str, _Scoring] = {}
+        self._beingScored: set[str] = set()
+        self._scored: set[str] = set()
         self._unscored: deque[TrialRecord] = deque()
         self._state: Mapping[str, Any] = {}
         self._retryAt: float | None = None
@@ -123,15 +116,11 @@ class TrialLogic:
         self._unscored.clear()
         self._refused.clear()
         self.received.clear()
-        for trialId in [each for each, state in self._scored.items() if state is _Scoring.DONE]:
-            del self._scored[trialId]
+        self._scored.clear()
 
     def isBeingScored(self, trialId: str) -> bool:
         """Whether a trial is being scored, or being stored to be scored then."""
-        return self._queue.isStoring(trialId) or self._isScoringUnderWay(trialId)
-
-    def _isScoringUnderWay(self, trialId: str) -> bool:
-        return self._scored.get(trialId) is _Scoring.UNDER_WAY
+        return self._queue.isStoring(trialId) or trialId in self._beingScored
 
     def _followTraining(self, state: Mapping[str, Any]) -> None:
         self._state = state
@@ -150,7 +139,7 @@ class TrialLogic:
 
     def _storing(self, delivery: Delivery) -> Callable[[], DeliveredTrial]:
         """Return what checks, registers and stores a trial, in the background."""
-        isUnderWay = self._isScoringUnderWay(str(delivery.get("trialId", "")))
+        isUnderWay = str(delivery.get("trialId", "")) in self._beingScored
 
         def store() -> DeliveredTrial:
             with self._openStudy() as study:
@@ -166,7 +155,7 @@ class TrialLogic:
         if record.trial_id not in self.received:
             self.received.append(record.trial_id)
             self.trialKept.emit(record)
-        if analysis is not None and not self._isScoringUnderWay(record.trial_id):
+        if analysis is not None and record.trial_id not in self._beingScored:
             self._score(analysis, self._queue.report)
             self._work.later(lambda: self._show(analysis))
 
@@ -208,19 +197,19 @@ class TrialLogic:
         while self._unscored and self._link.isOpen:
             record = self._unscored.popleft()
             # Since the list was read it may have been scored.
-            if record.trial_id not in self._scored and record.trial_id not in self._refused:
+            if record.trial_id not in self._beingScored | self._scored | self._refused:
                 self._scoreAgain(record)
                 return
 
     def _scoreAgain(self, record: TrialRecord) -> None:
-        self._scored[record.trial_id] = _Scoring.UNDER_WAY
+        self._beingScored.add(record.trial_id)
 
         def take(analysis: TrialAnalysis) -> None:
             # A trial of another simulator is none of this one's business.
             self._score(analysis, logging.info, self._resumeNext)
 
         def refuse(error: Exception) -> None:
-            self._scored.pop(record.trial_id, None)
+            self._beingScored.discard(record.trial_id)
             self._reportUnscored(error)
             self._resumeNext()
 
@@ -245,16 +234,18 @@ class TrialLogic:
         proceed: Callable[[], None] = lambda: None,
     ) -> None:
         trialId = analysis.record.trial_id
-        self._scored[trialId] = _Scoring.UNDER_WAY
+        self._beingScored.add(trialId)
 
         def fail(error: Exception) -> None:
-            self._scored.pop(trialId, None)
+            self._beingScored.discard(trialId)
+            self._scored.discard(trialId)
             self._noteFailure(error, trialId)
             report(_("The trial was not scored: {error}").format(error=error))
             proceed()
 
         def take(scored: TrialAnalysis) -> None:
-            self._scored[trialId] = _Scoring.DONE
+            self._beingScored.discard(trialId)
+            self._scored.add(trialId)
             try:
                 self.trialScored.emit(scored)
             finally:
