@@ -71,7 +71,7 @@ def test_the_simulator_is_set_up_package_by_package_and_removed_when_the_user_co
     host.press("removeSetupButton")
     assert not setup.folder.exists()
     assert "press Set up, once" in host.text("setupText")
-    assert "The simulator was stopped." in host.text("programText")
+    assert "not set up yet" in host.text("programText")
 
 
 def test_a_module_without_its_simulator_says_to_install_it_anew(host, setup, tmp_path):
