@@ -68,7 +68,7 @@ def check_procedures(planning: PlanningSetup) -> list[str]:
     wrong = []
     for procedure in planning.scenario.procedures:
         try:
-            wrong += _check(planning, procedure)
+            wrong += _check_on_head(planning, procedure) or _lines_held(planning, procedure)[1]
         except InputError as error:
             wrong.append(f"{procedure.title}: {error}")
     return wrong
@@ -89,18 +89,13 @@ def require_usable_procedures(setup: SimulationSetup) -> None:
     wrong = [
         sentence
         for procedure in scenario.procedures
-        for sentence in unreachable_lines(planning, procedure, range(0))
+        for sentence in _lines_held(planning, procedure, poses_tried=0)[1]
     ]
     if wrong:
         raise InputError(" ".join(wrong))
 
 
-def _check(planning: PlanningSetup, procedure: Procedure) -> list[str]:
-    wrong = check_procedure_on_head(planning, procedure)
-    return wrong or unreachable_lines(planning, procedure, range(POSES_TRIED))
-
-
-def check_procedure_on_head(planning: PlanningSetup, procedure: Procedure) -> list[str]:
+def _check_on_head(planning: PlanningSetup, procedure: Procedure) -> list[str]:
     """Return a sentence for each error of a plan on the scenario's head, apart from the reach.
 
     Raises:
@@ -111,21 +106,12 @@ def check_procedure_on_head(planning: PlanningSetup, procedure: Procedure) -> li
     return check_procedure(procedure, planning.mesh, read_procedure_meshes(procedure, skull))
 
 
-def unreachable_lines(planning: PlanningSetup, procedure: Procedure, seeds: range) -> list[str]:
-    """Return a sentence for each line of a procedure on which the guide cannot be held."""
-    return _lines_held(planning, procedure, seeds)[1]
-
-
-def lines_held(planning: PlanningSetup, procedure: Procedure) -> tuple[list[bool], list[str]]:
-    """Return whether the guide can be held on each line, and a sentence for each on which not."""
-    return _lines_held(planning, procedure, range(POSES_TRIED))
-
-
 def _lines_held(
-    planning: PlanningSetup, procedure: Procedure, seeds: range
+    planning: PlanningSetup, procedure: Procedure, poses_tried: int = POSES_TRIED
 ) -> tuple[list[bool], list[str]]:
+    """Return whether the guide can be held on each line, and a sentence for each on which not."""
     reach, held, wrong = GuideReach(planning), [], []
-    nominal, *others = planning.poses(seeds)
+    nominal, *others = planning.poses(range(poses_tried))
     for trajectory in procedure.trajectories:
         where = ""
         if not reach.is_held(trajectory, [nominal]):
@@ -191,11 +177,11 @@ def measure_procedures(
 
 
 def _measured(planning: PlanningSetup, procedure: Procedure, skull: Path) -> MeasuredProcedure:
-    wrong = check_procedure_on_head(planning, procedure)
+    wrong = _check_on_head(planning, procedure)
     held: list[bool | None] = [None] * len(procedure.trajectories)
     unreachable: list[str] = []
     if not wrong:
-        held[:], unreachable = lines_held(planning, procedure)
+        held[:], unreachable = _lines_held(planning, procedure)
     return MeasuredProcedure(
         procedure,
         tuple(measure_lines(procedure, read_procedure_meshes(procedure, skull))),

@@ -7,6 +7,7 @@ time and no version of the arm's mathematics can change it.
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,6 +27,23 @@ from rastrainer_simulator.training.feed import NO_FEED, Feed, HeadAhead
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE
 from rastrainer_simulator.training.rules import INTERRUPTED, RECORDING_FAILED, TRACED, TouchMoment
 from rastrainer_simulator.vectors import ZERO, vector
+
+
+@contextlib.contextmanager
+def refusing_malformed(sentence: str) -> Iterator[None]:
+    """Raise InputError where entries of a journal are not as they should be: forged, or foreign.
+
+    Its message is the `sentence`, without its full stop, and what was wrong.
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
+        raise InputError(f"{sentence} ({error!r}).") from None
+
+
+MALFORMED = "An entry of the journal is not as it should be"
 
 
 class RecordedFeed:
@@ -135,12 +153,8 @@ class InterruptedTrial:
         Raises:
             InputError: the entries are not those of a trial.
         """
-        try:
+        with refusing_malformed(MALFORMED):
             return cls._of(entries)
-        except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
-            raise InputError(
-                f"An entry of the journal is not as it should be ({error!r})."
-            ) from None
 
     @classmethod
     def _of(cls, entries: Sequence[Mapping[str, Any]]) -> InterruptedTrial | None:

@@ -18,7 +18,11 @@ from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, CommandName, Phas
 from rastrainer.scenario.scenario import method_of
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint
-from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
+from rastrainer_simulator.core.interrupted_trial import (
+    MALFORMED,
+    InterruptedTrial,
+    refusing_malformed,
+)
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.journal import Journal
 
@@ -153,10 +157,8 @@ def interrupted_attempt(reading: JournalReading) -> AbortedTrial | None:
     """
     if not reading.entries or InterruptedTrial.of(reading.entries) is None:
         return None
-    try:
+    with refusing_malformed(MALFORMED):
         return _interrupted_attempt(reading.entries)
-    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
-        raise InputError(f"An entry of the journal is not as it should be ({error!r}).") from None
 
 
 def _measured_mm(touch: Mapping[str, Any]) -> tuple[float, float, float]:

@@ -19,6 +19,7 @@ from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.collision.collision import stand_pose
 from rastrainer_simulator.core.arm import moving_links
+from rastrainer_simulator.core.interrupted_trial import refusing_malformed
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.record.trial_records import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
@@ -74,12 +75,8 @@ class RecordedTrial:
         Raises:
             InputError: it was recorded with others, or its entries are not those of a trial.
         """
-        try:
+        with refusing_malformed("The trial cannot be shown again: an entry is not as it should be"):
             self._prepare(track, setup)
-        except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
-            raise InputError(
-                f"The trial cannot be shown again: an entry is not as it should be ({error!r})."
-            ) from None
 
     def _prepare(self, track: ReplayTrack, setup: SimulationSetup) -> None:
         header, scenario = track.header, setup.scenario

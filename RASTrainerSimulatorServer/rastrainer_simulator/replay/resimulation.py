@@ -11,7 +11,11 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.journal.journal_file import Integrity, JournalReading
 from rastrainer.protocol import FINISHED_PHASES
-from rastrainer_simulator.core.interrupted_trial import InterruptedTrial, recorded_command
+from rastrainer_simulator.core.interrupted_trial import (
+    InterruptedTrial,
+    recorded_command,
+    refusing_malformed,
+)
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_entries import TrialEntries
@@ -86,14 +90,8 @@ def replay(
     Raises:
         InputError: the journal's entries are not those of a trial.
     """
-    try:
+    with refusing_malformed(f"{reading.path} cannot be replayed: an entry is not as it should be"):
         return _replay(reading, setup, watch)
-    except InputError:
-        raise
-    except (KeyError, TypeError, ValueError, AttributeError, IndexError) as error:
-        raise InputError(
-            f"{reading.path} cannot be replayed: an entry is not as it should be ({error!r})."
-        ) from None
 
 
 def tick_span(reading: JournalReading) -> tuple[int, int]:
@@ -102,14 +100,10 @@ def tick_span(reading: JournalReading) -> tuple[int, int]:
     Raises:
         InputError: the journal's entries are not those of a trial.
     """
-    try:
+    with refusing_malformed(f"{reading.path} cannot be replayed: its ticks are missing"):
         first = StartingPoint(**reading.header["before"]).tick
         simulated = (entry for entry in reading.entries if entry["kind"] not in _NOT_SIMULATED)
         return first, max((entry["tick"] for entry in simulated), default=first)
-    except (KeyError, TypeError) as error:
-        raise InputError(
-            f"{reading.path} cannot be replayed: its ticks are missing ({error!r})."
-        ) from None
 
 
 def _replay(

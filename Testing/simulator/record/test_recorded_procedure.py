@@ -371,6 +371,6 @@ def test_a_forged_procedure_is_refused_with_a_sentence(drilled, kind, change):
 def test_a_journal_of_another_procedure_is_not_shown_or_resumed_as_this_one(finished, planned):
     track = read_track(finished[0])
     track.header["procedure"]["sha256"] = "0" * 64
-    with pytest.raises(InputError, match="another procedure"):
+    with pytest.raises(InputError, match=r"^The trial was recorded with another procedure\.$"):
         RecordedTrial(track, planned)
     assert find_interrupted(finished[0].parent) is None
