@@ -24,10 +24,10 @@ _TOLERANCE = 1e-4
 def face_vertices(mesh: HeadMesh) -> np.ndarray:
     """Return which vertices (n,) bool are the face; none if the head ends above it."""
     away = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1)
-    return (away < RADIUS_MM) & ~is_on_base(mesh)
+    return (away < RADIUS_MM) & ~_is_on_base(mesh)
 
 
-def is_on_base(mesh: HeadMesh) -> np.ndarray:
+def _is_on_base(mesh: HeadMesh) -> np.ndarray:
     """Return which vertices (n,) bool lie on the flat base."""
     heights = mesh.vertices[:, 2]
     return heights < heights.min() + FLAT_MM
@@ -50,7 +50,7 @@ def without_face(mesh: HeadMesh) -> HeadMesh:
     free = face_vertices(mesh)
     # Where the base cuts through the face its rim would keep the profile: it may slide along.
     away = np.linalg.norm(mesh.vertices - nose_tip(mesh), axis=1)
-    rim = (away < RADIUS_MM) & is_on_base(mesh)
+    rim = (away < RADIUS_MM) & _is_on_base(mesh)
     across, forward, height = (np.asarray(mesh.vertices, dtype=float) - mesh.centroid).T
     distance, direction = np.hypot(across, forward), np.arctan2(across, forward)
     distance, direction = (_relaxed(mesh.edges, x, free | rim) for x in (distance, direction))

@@ -73,7 +73,7 @@ class ProposedLandmarks:
     left_out: tuple[str, ...]
 
 
-def propose_landmarks(scenario: Scenario) -> ProposedLandmarks:
+def _propose_landmarks(scenario: Scenario) -> ProposedLandmarks:
     """Return landmarks for the head of a scenario that the robot can touch in its trials.
 
     Raises:
@@ -271,7 +271,7 @@ def write_proposal(folder: Path, path: Path) -> list[str]:
     Raises:
         InputError: the scenario cannot be read, or the file not be written.
     """
-    proposed = propose_landmarks(load_scenario(folder))
+    proposed = _propose_landmarks(load_scenario(folder))
     names = tuple(landmark.name for landmark in proposed.landmarks)
     places = np.array([each.position for each in proposed.landmarks], dtype=float).reshape(-1, 3)
     write_markups(path, PointList(names, places))

@@ -166,10 +166,10 @@ def without_tasks(
         targets=options.targets,
         trajectory=options.trajectory,
     )
-    return with_main_target(scenario, head, warn)
+    return _with_main_target(scenario, head, warn)
 
 
-def with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenario:
+def _with_main_target(scenario: Scenario, head: HeadMesh, warn: Warn) -> Scenario:
     """Return the scenario with the first planned target as its main one, if trials can start there.
 
     A trial starts above the main target: with a deep one, the tip would start in the head.
@@ -228,7 +228,7 @@ def copy_with_plan(
         before, name=scenario_name(title), title=title, trajectory=trajectory or before.trajectory
     )
     if targets:
-        scenario = with_main_target(replace(scenario, targets=targets), head, warn)
+        scenario = _with_main_target(replace(scenario, targets=targets), head, warn)
     no_go = read_all_no_go(scenario.procedures)
     wrong: list[str] = []
     if procedure is not None:

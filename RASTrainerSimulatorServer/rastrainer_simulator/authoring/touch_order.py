@@ -84,7 +84,7 @@ def complexity(
             is_hidden(point, normal, mesh, eye)
             for point, normal in zip(fiducials, normals, strict=True)
         ),
-        reorientation_deg=float(angles_deg(normals[:-1], normals[1:]).sum()),
+        reorientation_deg=float(_angles_deg(normals[:-1], normals[1:]).sum()),
     )
 
 
@@ -95,16 +95,16 @@ def turns_deg(
 
     A path straight over curved skin does not turn. Shapes (n, 3).
     """
-    return angles_deg(_in_plane(at - before, normals), _in_plane(after - at, normals))
+    return _angles_deg(_in_plane(at - before, normals), _in_plane(after - at, normals))
 
 
 def is_hidden(point: np.ndarray, normal: np.ndarray, mesh: HeadMesh, eye: np.ndarray) -> bool:
     """Return whether the number at `point` is hidden from `eye`; all (3,)."""
-    angle = angles_deg(normal[None], (eye - point)[None])[0]
+    angle = _angles_deg(normal[None], (eye - point)[None])[0]
     return bool(angle > GRAZING_DEG) or hides(mesh, eye, point)
 
 
-def angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def _angles_deg(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Return the angles (n,) between vectors (n, 3), degrees; 0 where one has no length."""
     across = np.linalg.norm(np.cross(a, b), axis=1)
     return np.degrees(np.arctan2(across, np.einsum("ij,ij->i", a, b)))
@@ -146,7 +146,7 @@ def transitions_between(
     """Return the transitions between points; shapes (n, 3), (n, 3) and (n, n)."""
     count = len(points)
     first, second = np.indices((count, count)).reshape(2, -1)
-    turned = angles_deg(normals[first], normals[second]).reshape(count, count)
+    turned = _angles_deg(normals[first], normals[second]).reshape(count, count)
     before, at, after = np.indices((count,) * 3).reshape(3, -1)
     turns = turns_deg(points[before], points[at], points[after], normals[at])
     return Transitions(

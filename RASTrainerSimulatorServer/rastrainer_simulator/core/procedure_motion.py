@@ -190,7 +190,7 @@ class ProcedureMotion:
             return outline.radius(vector(dot(row, direction) for row in plan.rows))
 
         middle = plan.in_world(outline.middle.tolist())
-        return guide_path(guide, line, stand_off, middle, radius)
+        return _guide_path(guide, line, stand_off, middle, radius)
 
 
 TRAVEL_SPEED = 0.10
@@ -207,7 +207,7 @@ HeadRadius = Callable[[Vector], float]
 """Distance of the skin from the middle of the head in a direction (unit vector, World), m."""
 
 
-def guide_path(
+def _guide_path(
     guide: GuideAxis, line: PlannedLine, stand_off: float, middle: Vector, radius: HeadRadius
 ) -> PathCommand:
     """Return the path of the guide to `stand_off` m before a line's entry: out, around, and in.

@@ -84,7 +84,7 @@ class AbortedArchive:
         Raises:
             InputError: its record is invalid.
         """
-        attempt = archived_attempt(reading)
+        attempt = _archived_attempt(reading)
         if attempt is None:
             return False
         if not attempt.acknowledged:
@@ -113,7 +113,7 @@ class AbortedArchive:
         waiting = self._waiting.get(trial_id)
         if waiting is None:
             reading = find()
-            attempt = None if reading is None else archived_attempt(reading)
+            attempt = None if reading is None else _archived_attempt(reading)
         else:
             attempt = waiting[0]
         if attempt is None:
@@ -133,7 +133,7 @@ def attempt_entry(record: AbortedTrial, times: Mapping[str, Any]) -> dict[str, A
     return {"kind": ATTEMPT, **times, "record": record.to_json()}
 
 
-def archived_attempt(reading: JournalReading) -> ArchivedAttempt | None:
+def _archived_attempt(reading: JournalReading) -> ArchivedAttempt | None:
     """Return the aborted trial of a journal; None if it has none."""
     found = reading.of_kind(ATTEMPT)
     if not found or reading.of_kind("registered"):

@@ -45,7 +45,7 @@ from rastrainer_simulator.scene.scene_glb import TIP_MARKER, TOOL, link_node_nam
 from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 
-def look_through(camera: Camera, renderer: vtkRenderer) -> None:
+def _look_through(camera: Camera, renderer: vtkRenderer) -> None:
     """Set a renderer's camera; the scenario's is in mm, what is rendered in metres."""
     view = renderer.GetActiveCamera()
     view.SetPosition(*(camera.position / MM_PER_M))
@@ -69,7 +69,7 @@ class OffscreenWindow:
     def frame(self, camera: Camera, size: tuple[int, int]) -> np.ndarray:
         """Return (height, width, 3) uint8, the top row first, for `size` = (width, height)."""
         self._window.SetSize(*size)
-        look_through(camera, self._renderer)
+        _look_through(camera, self._renderer)
         with _without_display_warning():
             self._window.Render()
         shot = vtkWindowToImageFilter()
@@ -159,7 +159,7 @@ class SceneMoment:
         return colors
 
 
-def apply_material(material: Material, target: vtkProperty) -> None:
+def _apply_material(material: Material, target: vtkProperty) -> None:
     """Set a material on an actor's property."""
     target.SetOpacity(material.opacity)
     if material.glowing:
@@ -198,7 +198,7 @@ def _actor(shape: Surface, material: Material, pose: np.ndarray) -> vtkActor:
     made = vtkActor()
     made.SetMapper(mapper)
     made.SetUserMatrix(vtk_matrix(pose))
-    apply_material(material, made.GetProperty())
+    _apply_material(material, made.GetProperty())
     return made
 
 

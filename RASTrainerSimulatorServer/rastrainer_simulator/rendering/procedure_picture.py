@@ -40,13 +40,13 @@ LONGEST_BAR = 0.25
 Legend = Sequence[tuple[Material, str]]
 
 
-def write_legend(renderer: vtkRenderer, rows: Legend) -> None:
+def _write_legend(renderer: vtkRenderer, rows: Legend) -> None:
     """Write what each color is into the lower left corner of a picture that is to be drawn."""
     for number, (_material, text) in enumerate(reversed(rows)):
         _write(renderer, text, MARGIN + SWATCH[0] + 14, MARGIN + number * ROW)
 
 
-def paint_legend(pixels: np.ndarray, rows: Legend) -> None:
+def _paint_legend(pixels: np.ndarray, rows: Legend) -> None:
     """Paint the lines beside the legend's words; `pixels` is (height, width, 3) uint8."""
     for number, (material, _text) in enumerate(reversed(rows)):
         middle = MARGIN + number * ROW + TEXT_SIZE // 2
@@ -61,7 +61,7 @@ def bar_mm(height_mm: float) -> float:
     return power * max(step for step in (1.0, 2.0, 5.0) if step * power <= longest)
 
 
-def write_scale(renderer: vtkRenderer, height_mm: float, width: int) -> None:
+def _write_scale(renderer: vtkRenderer, height_mm: float, width: int) -> None:
     """Write the bar's length into the lower right corner of a picture of that width, in pixels."""
     text = _write(renderer, f"{bar_mm(height_mm):g} mm", width - MARGIN, MARGIN + THICK + 4)
     text.GetTextProperty().SetJustificationToRight()
@@ -172,12 +172,12 @@ def _picture(
         renderer.AddActor(actor)
     light_room(renderer, Shadows.NONE)
     renderer.SetBackground(0.93, 0.94, 0.95)
-    write_legend(renderer, legend)
-    write_scale(renderer, height_mm, size[0])
+    _write_legend(renderer, legend)
+    _write_scale(renderer, height_mm, size[0])
     window = OffscreenWindow(renderer)
     pixels = window.frame(camera, size)
     window.close()
-    paint_legend(pixels, legend)
+    _paint_legend(pixels, legend)
     paint_scale(pixels, height_mm)
     return pixels
 

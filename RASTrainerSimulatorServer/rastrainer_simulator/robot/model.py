@@ -85,9 +85,9 @@ def load_robot(
     Raises InputError for an unusable file and for a robot that is not a 7R S-R-S arm.
     """
     path = Path(urdf_path) if urdf_path else asset_path(*DEFAULT_URDF)
-    robot = read_urdf(path)
+    robot = _read_urdf(path)
     joints, links = _walk(robot)
-    meshes = mesh_parts(robot, path.parent, Path(mesh_folder) if mesh_folder else None)
+    meshes = _mesh_parts(robot, path.parent, Path(mesh_folder) if mesh_folder else None)
     return make_model(robot.name, joints, links, tip_link, meshes)
 
 
@@ -170,7 +170,7 @@ FARTHEST = 100.0
 _MOVABLE = ("revolute", "continuous")
 
 
-def read_urdf(path: Path) -> yourdfpy.Robot:
+def _read_urdf(path: Path) -> yourdfpy.Robot:
     """Return the links and joints of a URDF whose tree and numbers have been checked.
 
     No mesh is opened. Raises InputError where the file cannot be read, is not plain XML, is not a
@@ -256,7 +256,7 @@ class MeshPart:
     replaced: bool = False  # used instead of the URDF's own mesh
 
 
-def mesh_parts(
+def _mesh_parts(
     robot: yourdfpy.Robot, urdf_folder: Path, mesh_folder: Path | None
 ) -> tuple[MeshPart, ...]:
     """Return the meshes that a URDF names, or those of `mesh_folder` where it has one for a link.

@@ -51,12 +51,12 @@ def reach_position(arm: CanonicalArm, goal: Goal, aim: Goal, start: Start, most:
     theta, passes = _iterate(arm, target, start, most)
     if theta is not None:
         return Reached(theta, passes)
-    for wrist, elbow in planar_starts(arm, target, start.theta):
+    for wrist, elbow in _planar_starts(arm, target, start.theta):
         theta, used = _iterate(arm, target, Start(start.theta, wrist, elbow, inf), 1)
         passes += used
         if theta is not None:
             return Reached(theta, passes)
-    upper, fore, tool = nearest_links(arm, goal.position, start.theta)
+    upper, fore, tool = _nearest_links(arm, goal.position, start.theta)
     angles = joint_angles(upper, fore, tool, None, start.theta)
     theta = nearest_branch(arm, angles, start.theta, False)
     return Reached(theta, passes) if theta else Reached(start.theta, passes, True)
@@ -122,7 +122,7 @@ def _rolled(arm: CanonicalArm, theta: Angles, roll: tuple[Vector, Vector]) -> An
 _TINY = 1e-12
 
 
-def planar_starts(
+def _planar_starts(
     arm: CanonicalArm, target: Vector, last: Angles
 ) -> Iterator[tuple[Vector, Vector]]:
     """Yield wrists and elbows (m) in the plane of the target and the first axis.
@@ -177,7 +177,9 @@ class ReachPlan(NamedTuple):
     parts: tuple[RigidPart, ...]
 
 
-def nearest_links(arm: CanonicalArm, target: Vector, last: Angles) -> tuple[Vector, Vector, Vector]:
+def _nearest_links(
+    arm: CanonicalArm, target: Vector, last: Angles
+) -> tuple[Vector, Vector, Vector]:
     """Return the directions of upper arm, forearm and tool that bring the tip nearest to `target`.
 
     `target` (m) is out of reach; where it is on the first axis, the arm stays in its plane of

@@ -91,7 +91,7 @@ def srs_geometry(joints: Sequence[Joint], tip_offset: np.ndarray) -> SrsGeometry
         raise InputError("The shoulder, elbow, wrist and tool tip must be four different points.")
     along = [(elbow - shoulder) / upper, (wrist - elbow) / fore, (tip[:3, 3] - wrist) / tool]
     base, signs, offsets = _conventions(joints, axes, along)
-    turned = canonical_rotation(offsets)
+    turned = _canonical_rotation(offsets)
     return SrsGeometry(
         base=base,
         shoulder=shoulder,
@@ -107,7 +107,7 @@ def srs_geometry(joints: Sequence[Joint], tip_offset: np.ndarray) -> SrsGeometry
     )
 
 
-def canonical_rotation(angles: Sequence[float]) -> np.ndarray:
+def _canonical_rotation(angles: Sequence[float]) -> np.ndarray:
     """Return the (3, 3) rotation of the canonical chain's end, Rz(θ1) Ry(θ2) … Rz(θ7)."""
     rotation = np.eye(3)
     for index, angle in enumerate(angles):

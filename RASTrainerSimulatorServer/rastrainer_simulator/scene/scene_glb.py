@@ -90,7 +90,7 @@ def robot_nodes(robot: RobotModel) -> list[Node]:
             (marker if is_marker else place).append(surface)
     nodes = [Node(name, merged(group)) for name, group in surfaces.items() if name != TOOL]
     tip_marker = Node(TIP_MARKER, merged(marker))
-    return [*nodes, Node(TOOL, merged(surfaces[TOOL]), (tip_marker, *instrument_nodes()))]
+    return [*nodes, Node(TOOL, merged(surfaces[TOOL]), (tip_marker, *_instrument_nodes()))]
 
 
 def _first_links(robot: RobotModel) -> dict[int, RobotLink]:
@@ -108,7 +108,7 @@ DRILL_RADIUS, ELECTRODE_RADIUS = 0.0016, 0.0011
 """As they are drawn; an electrode is mostly thinner, and would hardly be seen."""
 
 
-def instrument_nodes() -> tuple[Node, ...]:
+def _instrument_nodes() -> tuple[Node, ...]:
     """Return what the tool holds in a procedure; its frame's origin is the tip, z is the axis.
 
     `drill` and `electrode` are 1 m long: a view scales them along z by how far they are fed.

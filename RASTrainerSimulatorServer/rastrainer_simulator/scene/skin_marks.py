@@ -55,7 +55,7 @@ class Place:
     cost: float
 
 
-def number_places(
+def _number_places(
     skin: Skin, points: np.ndarray, sizes: Sequence[np.ndarray], arrows: Sequence[Arrow]
 ) -> tuple[list[np.ndarray], bool]:
     """Return the middle (3,) of each number, and whether all keep at least the least margin.
@@ -199,7 +199,7 @@ def place_marks(skin: Skin, points: np.ndarray, labels: Sequence[str]) -> Placem
     sizes = [np.ptp(flat, axis=0) for flat, _ in numbers]
     for longest in LENGTHS:
         placed_arrows = arrows(skin, points, longest)
-        places, has_room = number_places(skin, points, sizes, placed_arrows)
+        places, has_room = _number_places(skin, points, sizes, placed_arrows)
         if has_room:
             break
     return Placement(numbers, places, placed_arrows, has_room)

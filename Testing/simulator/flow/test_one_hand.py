@@ -10,7 +10,7 @@ from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.input.presets import LEFT_ALONE, RIGHT_ALONE, presets_of
 from Testing.simulator.flow.test_controls_screens import open_the_bindings
 from Testing.simulator.flow.trainee import Pad
-from Testing.simulator.input.test_presets import REACH
+from Testing.simulator.input.test_bindings import REACH
 
 AXIS_OF = {RIGHT_ALONE: "right", LEFT_ALONE: "left"}
 

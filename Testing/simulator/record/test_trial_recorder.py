@@ -1,4 +1,6 @@
-"""What the first trial needs is there before it begins: a tick has no time to load anything."""
+"""What the first trial needs is there before it begins; a tick has no time to load anything."""
+
+from __future__ import annotations
 
 import json
 import subprocess
@@ -10,6 +12,7 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import CommandName
 from rastrainer_simulator.core.simulation import Simulation
+from rastrainer_simulator.record.beside_the_trial import DisplayReport, DisplayUse
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.state import Event, EventKind, OperatorCommand, OperatorInput
 
@@ -68,3 +71,22 @@ def test_a_contact_in_the_tick_of_register_counts_in_the_record_as_in_the_journa
     ).measured()
     assert record.motion["contacts"] == 1
     assert record.motion == trial_motion(Recording.of(entries.taken()).trajectory())
+
+
+def test_the_record_names_the_last_view_all_frames_and_the_aids():
+    use = DisplayUse()
+    assert use.summary() == {}
+    use.guidance = "arrow"
+    assert use.summary() == {"guidance": "arrow"}
+    use.ghost = "expert"
+    use.add(DisplayReport("page", "Chrome/120", 60.0, 55, 5))
+    use.add(DisplayReport("headset", "Quest 3", 90.0, 88, 2))
+    assert use.summary() == {
+        "kind": "headset",
+        "device": "Quest 3",
+        "guidance": "arrow",
+        "ghost": "expert",
+        "refreshHz": 90.0,
+        "shownFrames": 143,
+        "droppedFrames": 7,
+    }

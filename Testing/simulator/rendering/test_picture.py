@@ -1,3 +1,5 @@
+"""Pictures of the scene, and their legend and scale."""
+
 import numpy as np
 import pytest
 import trimesh
@@ -10,6 +12,7 @@ from rastrainer.scenario.scenario import Camera, Furniture
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.rendering.lighting import Shadows
 from rastrainer_simulator.rendering.picture import SceneMoment, render_picture, write_png
+from rastrainer_simulator.rendering.procedure_picture import INK, bar_mm, paint_scale
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.robot.model import load_robot
 from rastrainer_simulator.scene.room_nodes import room_nodes, stand_node, table_node
@@ -140,3 +143,17 @@ def test_an_inset_shows_a_second_view_in_a_white_frame(picture, head_to_world):
 def test_an_unwritable_picture_is_refused_in_one_sentence(tmp_path):
     with pytest.raises(InputError, match=r"robot\.png cannot be written: No such file"):
         write_png(np.zeros((2, 2, 3), np.uint8), tmp_path / "nowhere" / "robot.png")
+
+
+@pytest.mark.parametrize(
+    ("height_mm", "bar"), [(194.0, 20.0), (4.1, 1.0), (1.0, 0.2), (20.0, 5.0), (0.9, 0.2)]
+)
+def test_a_scale_is_a_round_number_of_millimeters_at_most_a_quarter_of_the_height(height_mm, bar):
+    assert bar_mm(height_mm) == pytest.approx(bar)
+
+
+def test_the_bar_is_as_long_as_it_says():
+    pixels = np.full((400, 640, 3), 255, dtype=np.uint8)
+    paint_scale(pixels, 80.0)
+    is_ink = (pixels == INK).all(axis=2)
+    assert is_ink.any(axis=0).sum() == 20.0 / 80.0 * 400
