@@ -19,7 +19,7 @@ from Testing.slicer.simulator_double import wait_until
 LONG_S = 60.0
 SIMULATOR = """
 import pathlib, signal, subprocess, sys, time
-from rastrainer_simulator.record.records_folder import RecordsFolder
+from rastrainer_simulator.record.journal import RecordsFolder
 if "stubborn" in sys.argv:
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
 records = RecordsFolder(pathlib.Path(sys.argv[1]))
