@@ -8,7 +8,15 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.files.point_list import SCHEMA, PointList, pair, read_markups, write_markups
+from rastrainer.files.point_list import (
+    SCHEMA,
+    PointList,
+    pair,
+    read_markups,
+    read_points,
+    write_markups,
+    write_point_cloud,
+)
 
 XYZ = np.arange(9.0).reshape(3, 3)
 
@@ -182,3 +190,12 @@ def test_other_files_are_refused_with_one_sentence_that_names_the_file(content, 
         read_markups(path)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("count", ["0", "2", "9" * 30, "many"])
+def test_a_cloud_with_another_number_of_vertices_is_refused_with_a_message(tmp_path, count):
+    path = tmp_path / "cloud.ply"
+    write_point_cloud(path, np.zeros((1, 3)), "RAS")
+    path.write_bytes(path.read_bytes().replace(b"vertex 1", f"vertex {count}".encode()))
+    with pytest.raises(InputError, match="must be a PLY file"):
+        read_points(path)

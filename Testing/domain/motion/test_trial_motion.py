@@ -204,6 +204,16 @@ def test_touches_that_could_not_be_written_do_not_count():
     assert [touch.label for touch in Recording.of(entries).trajectory().touches] == ["1"]
 
 
-def test_a_malformed_entry_raises_one_sentence():
+@pytest.mark.parametrize(
+    "malformed",
+    [
+        {"kind": "touch", "label": "1"},
+        {"kind": "touch", "label": "1", "simTime": 1.0, "positionMm": ["1", "2", "x"]},
+        {"kind": "trace", "simTime": 1.0, "positionMm": [1.0, 2.0]},
+        {"kind": "sample", "simTime": 10**400, "tipMm": [1, 2, 3], "clearanceMm": 1.0},
+    ],
+    ids=["missing", "words", "two coordinates", "huge"],
+)
+def test_a_malformed_entry_raises_one_sentence(malformed):
     with pytest.raises(InputError, match="An entry of the journal is not as it should be"):
-        Recording.of([{"kind": "touch", "label": "1"}])
+        Recording.of([malformed])

@@ -157,7 +157,7 @@ def read_point_cloud(path: str | os.PathLike[str]) -> np.ndarray:
             raise ValueError
         form, count, columns = _described(lines[1:])
         points = _vertices(form, count, columns, body)
-    except (ValueError, LookupError):
+    except (ValueError, LookupError, OverflowError):
         raise InputError(
             f"The file {path} must be a PLY file, as text or binary little-endian, whose first "
             "element is vertex with the numbers x, y and z."

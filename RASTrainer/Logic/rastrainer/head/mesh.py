@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import InputError
+from rastrainer.files.writing import write_bytes
 from rastrainer.head.triangle_tree import TriangleTree
 
 MAX_BYTES = 64_000_000
@@ -160,29 +161,34 @@ class HeadMesh:
 
 
 def write_head_mesh(path: Path, mesh: HeadMesh) -> None:
-    """Write a mesh as PLY whose comment lets Slicer place it in RAS; whole or not at all."""
+    """Write a mesh as PLY whose comment lets Slicer place it in RAS; whole or not at all.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
     header = _HEADER.format(vertices=len(mesh.vertices), triangles=len(mesh.triangles))
     faces = np.empty(len(mesh.triangles), _FACE)
     faces["count"] = 3
     faces["corners"] = mesh.triangles
     content = header.encode() + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
-    partial = Path(path).with_suffix(".partial")
-    partial.write_bytes(content)
-    partial.replace(path)
+    write_bytes(path, content)
 
 
 def read_head_mesh(path: Path) -> HeadMesh:
     """Read a mesh that `write_head_mesh` wrote.
 
     Raises:
-        InputError: missing, too large, or not such a file.
+        InputError: missing, unreadable, too large, or not such a file.
     """
     path = Path(path)
     if not path.is_file():
         raise InputError(f"The mesh {path} does not exist.")
     if path.stat().st_size > MAX_BYTES:
         raise InputError(f"The mesh {path} is larger than {MAX_BYTES // 1_000_000} MB.")
-    content = path.read_bytes()
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"The mesh {path} cannot be read: {error.strerror}.") from None
     head, end, body = content.partition(b"end_header\n")
     vertex_count, triangle_count = (_count(head, element) for element in (b"vertex", b"face"))
     expected = _HEADER.format(vertices=vertex_count, triangles=triangle_count).encode()

@@ -179,10 +179,11 @@ class SkinShift:
         Raises:
             ValueError: anything else; the words follow "must be".
         """
-        seed = value.get("seed", 0) if isinstance(value, Mapping) else 0
+        given = dict(value) if isinstance(value, Mapping) else value
+        seed = given.pop("seed", 0) if isinstance(given, dict) else 0
         if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
             raise ValueError("an object whose seed is a whole number from 0")
-        amounts = skin_amounts({key: value[key] for key in value if key != "seed"})
+        amounts = skin_amounts(given)
         return cls(amounts.get("shiftMm", 0.0), seed, amounts.get("indentationMm", 0.0))
 
 

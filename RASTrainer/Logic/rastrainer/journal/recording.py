@@ -63,7 +63,7 @@ class Recording:
         try:
             for entry in entries:
                 recording.add(entry)
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
             raise InputError(
                 f"An entry of the journal is not as it should be ({error!r})."
             ) from None
@@ -143,8 +143,7 @@ class Recording:
             self._refused.append(self._touch_of(entry))
 
     def _touch_of(self, entry: Mapping[str, Any]) -> Touch:
-        x, y, z = entry["positionMm"]
-        return Touch(entry["label"], (x, y, z), self._event_time(entry))
+        return Touch(entry["label"], _position(entry), self._event_time(entry))
 
     def _undo(self, entry: Mapping[str, Any]) -> None:
         self._undone += 1
@@ -152,8 +151,7 @@ class Recording:
 
     def _trace(self, entry: Mapping[str, Any]) -> None:
         # A point is left at the end of its tick, unlike a touch.
-        x, y, z = entry["positionMm"]
-        self._traced.append(Touch("", (x, y, z), self._trial_time(entry["simTime"])))
+        self._traced.append(Touch("", _position(entry), self._trial_time(entry["simTime"])))
 
     def _stroke(self, entry: Mapping[str, Any]) -> None:
         del self._traced[entry["kept"] :]
@@ -231,6 +229,11 @@ def read_trajectory(
         with contextlib.suppress(InputError):
             return Recording.of(read_journal(path, pause).entries).trajectory()
     return None
+
+
+def _position(entry: Mapping[str, Any]) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in entry["positionMm"])
+    return x, y, z
 
 
 def _with_clearance(interval: Interval, times: np.ndarray, clearance: np.ndarray) -> Interval:
@@ -331,10 +334,10 @@ def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTr
     """
     reading = read_journal(path, pause)
     recording = _ReplayRecording.of(reading.entries)
-    trajectory, q = recording.trajectory(), np.array(recording.postures, dtype=np.float64)
-    if len(q) < 2 or q.shape != (len(trajectory.times_s), 7):
+    trajectory, postures = recording.trajectory(), recording.postures
+    if len(postures) < 2 or any(len(posture) != 7 for posture in postures):
         raise InputError(f"{path} holds no movement that could be shown again.")
-    feeds = np.array(recording.feeds, dtype=np.float64)
+    q, feeds = np.array(postures), np.array(recording.feeds)
     return ReplayTrack(reading.header, trajectory, q, feeds, tuple(recording.events))
 
 
@@ -358,6 +361,6 @@ class _ReplayRecording(WholeRecording):
     def _add_sample(self, entry: Mapping[str, Any]) -> bool:
         counts = super()._add_sample(entry)
         if counts:
-            self.postures.append(entry["q"])
-            self.feeds.append(entry.get("feedMm", 0.0))
+            self.postures.append([float(value) for value in entry["q"]])
+            self.feeds.append(float(entry.get("feedMm", 0.0)))
         return counts
