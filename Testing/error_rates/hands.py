@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
+from rastrainer.registration.target_error import true_touch_errors
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.scoring import SAFETY_METRICS, SafetyMeasures
-from rastrainer.trial.trueness import true_touch_errors
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.simulator.authoring.planned_heads import setup_of

@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.registration.registration import register
+from rastrainer.registration.target_error import common_bias, true_touch_errors
 from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
 from rastrainer.trial.scoring import ScoreMeasures, TrialScore, score_trial
-from rastrainer.trial.trueness import common_bias, true_touch_errors
 from rastrainer_simulator.core.setup import SimulationSetup
 from Testing.error_rates.hands import HEADS, TASKS, setup
 from Testing.simulator.virtual.cheating_trainees import (

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from rastrainer.registration.target_error import bias_of_errors
 from rastrainer.trial.score_reference import Region
-from rastrainer.trial.trueness import bias_of_errors
 
 
 def errors_along_skin(

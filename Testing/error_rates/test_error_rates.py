@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from rastrainer.registration.registration import register
+from rastrainer.registration.target_error import common_bias
 from rastrainer.trial.score_reference import fiducial_normals, region_of, score_reference
 from rastrainer.trial.scoring import score_trial
-from rastrainer.trial.trueness import common_bias
 from Testing.error_rates import curricula, played
 from Testing.error_rates.biased_aim import scored
 from Testing.error_rates.hands import TASKS, scenario_of

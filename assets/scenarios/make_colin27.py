@@ -16,9 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.errors import RASTrainerError
-from rastrainer.files.nrrd import read_nrrd
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
-from rastrainer.head.volume import HeadVolume, write_head_volume
+from rastrainer.head.volume import HeadVolume, read_nrrd, write_head_volume
 from rastrainer.slicer.head.head_draft import makeDraft
 from rastrainer_headless.volume_files import readVolume
 

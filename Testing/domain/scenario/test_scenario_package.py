@@ -10,8 +10,8 @@ import pytest
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.files.nrrd import write_nrrd
 from rastrainer.head.mesh import HeadMesh, write_head_mesh
+from rastrainer.head.volume import write_nrrd
 from rastrainer.scenario.library import pack, unpack
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.scenario.writer import write_scenario

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.registration.registration import register
+from rastrainer.registration.target_error import CommonBias
 from rastrainer.trial.advice import Reason, advise, touch_findings
 from rastrainer.trial.trial_feedback import MAX_SHORT, PastTrial, progress_of, trial_feedback
-from rastrainer.trial.trueness import CommonBias
 from Testing.domain.trial.trial_records import first_score, gentle_score, second_score
 from Testing.touched_head import head_points
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import slicer
 
-from rastrainer.files.nrrd import MAX_FILE_BYTES, write_nrrd
-from rastrainer.head.volume import KEPT_MM
+from rastrainer.head.volume import KEPT_MM, MAX_FILE_BYTES, write_nrrd
 from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.head_draft import HOUNSFIELD, imageOf
 from rastrainer.slicer.head.volume import HeadSettings, Volume

@@ -1,7 +1,17 @@
-"""The images of a scenario's head, in an NRRD file, RAS mm."""
+"""The images of a scenario's head, RAS mm, in an NRRD file: the part of the format that they need.
+
+The format is Teem's "nearly raw raster data": text lines, an empty line, then the voxels. Supported
+are three axes of gzip-compressed integers in a known space. The header is checked before the voxels
+are unpacked; comments and key/value texts are ignored and never written.
+"""
 
 from __future__ import annotations
 
+import gzip
+import io
+import math
+import re
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +20,8 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import Fields
-from rastrainer.files.nrrd import read_nrrd, write_nrrd
+from rastrainer.files.reading import read_bytes
+from rastrainer.files.writing import write_bytes
 from rastrainer.head.mesh import HeadMesh
 
 MAX_GRAY_LEVEL = 32768.0
@@ -92,3 +103,208 @@ def check_place(volume: HeadVolume, head: HeadMesh, path: Path) -> None:
     is_within = (indices >= -0.5) & (indices <= np.array(volume.values.shape) - 0.5)
     if is_within.all(axis=1).mean() < MIN_COVERED_SHARE:
         raise InputError(f"The volume {path} must lie where the head is.")
+
+
+MAX_FILE_BYTES = 40_000_000
+MAX_VOXELS = 50_000_000
+MAX_AXIS_VOXELS = 2048
+MAX_ORIGIN_MM = 2000.0
+"""Distance of the first voxel from the origin, along each axis."""
+
+SPACINGS_MM = (0.1, 10.0)
+MIN_AXIS_VOLUME = 0.1
+"""Of the box spanned by unit steps along the axes; smaller means almost coplanar axes."""
+
+_MAGIC = re.compile(r"NRRD000[1-5]")
+_MAX_HEADER_BYTES = 16_384
+_KINDS = {
+    "uint8": ("unsigned char", "uchar", "uint8", "uint8_t"),
+    "int16": ("short", "short int", "signed short", "signed short int", "int16", "int16_t"),
+}
+_SPACES = {
+    "left-posterior-superior": (-1.0, -1.0, 1.0),
+    "lps": (-1.0, -1.0, 1.0),
+    "left-anterior-superior": (-1.0, 1.0, 1.0),
+    "las": (-1.0, 1.0, 1.0),
+    "right-anterior-superior": (1.0, 1.0, 1.0),
+    "ras": (1.0, 1.0, 1.0),
+}
+"""Signs that convert to RAS."""
+
+_ELSEWHERE = ("data file", "datafile", "line skip", "lineskip", "byte skip", "byteskip")
+_VECTOR = re.compile(r"\(([^()]*)\)")
+
+
+@dataclass(frozen=True)
+class _Header:
+    """Type and geometry of the voxels.
+
+    Attributes:
+        dtype: as stored.
+        shape: number of voxels along each axis.
+        ijk_to_ras: (4, 4) float, mm.
+    """
+
+    dtype: np.dtype
+    shape: tuple[int, int, int]
+    ijk_to_ras: np.ndarray
+
+
+def read_nrrd(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Return the voxels (i, j, k), uint8 or int16, and the matrix (4, 4) float, index to RAS mm.
+
+    Raises:
+        InputError: the file is missing or not supported.
+    """
+    content = read_bytes(path, MAX_FILE_BYTES)
+    header, start = _read_header(path, content)
+    count = math.prod(header.shape) * header.dtype.itemsize
+    values = np.frombuffer(_unpacked(path, content[start:], count), header.dtype)
+    native = values.astype(header.dtype.newbyteorder("="), copy=False)
+    return native.reshape(header.shape, order="F"), header.ijk_to_ras
+
+
+def write_nrrd(path: Path, values: np.ndarray, ijk_to_ras: np.ndarray) -> None:
+    """Write a gzip-compressed image; the same image gives the same bytes.
+
+    Args:
+        path: of the file.
+        values: (i, j, k) uint8 or int16.
+        ijk_to_ras: (4, 4) float, mm.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    to_lps = np.diag([*_SPACES["lps"], 1.0]) @ ijk_to_ras
+    directions = " ".join(_vector(to_lps[:3, axis]) for axis in range(3))
+    lines = (
+        "NRRD0004",
+        f"type: {_KINDS[values.dtype.name][0]}",
+        "dimension: 3",
+        "space: left-posterior-superior",
+        f"sizes: {' '.join(map(str, values.shape))}",
+        f"space directions: {directions}",
+        "kinds: domain domain domain",
+        "endian: little",
+        "encoding: gzip",
+        f"space origin: {_vector(to_lps[:3, 3])}",
+    )
+    packed = io.BytesIO()
+    # Without the time and name that `gzip.open` would write.
+    with gzip.GzipFile("", "wb", 9, packed, mtime=0) as file:
+        file.write(values.astype(values.dtype.newbyteorder("<")).tobytes(order="F"))
+    write_bytes(path, "\n".join(lines).encode("ascii") + b"\n\n" + packed.getvalue())
+
+
+def _read_header(path: Path, content: bytes) -> tuple[_Header, int]:
+    """Return the header of a file and the offset of its voxels."""
+    head = content[:_MAX_HEADER_BYTES].replace(b"\r\n", b"\n")
+    text, separator, _ = head.partition(b"\n\n")
+    magic, _, rest = text.decode("latin-1").partition("\n")
+    if not _MAGIC.fullmatch(magic):
+        raise _wrong(path, "start as NRRD files do")
+    if not separator:
+        raise _wrong(path, f"have a header of at most {_MAX_HEADER_BYTES // 1024} KiB")
+    fields = _fields(path, rest)
+    blank_line = re.search(rb"\r?\n\r?\n", content[:_MAX_HEADER_BYTES])
+    assert blank_line is not None  # The separator was found above.
+    return _header(path, fields), blank_line.end()
+
+
+def _fields(path: Path, text: str) -> dict[str, str]:
+    fields: dict[str, str] = {}
+    for line in text.split("\n"):
+        name, separator, value = line.partition(":")
+        # "#" starts a comment, "name:=value" is a key/value text.
+        if line.startswith("#") or not separator or value.startswith("="):
+            continue
+        name = name.strip().lower()
+        if name in fields:
+            raise _wrong(path, f"have the field “{name[:40]}” once")
+        fields[name] = value.strip()
+    if any(name in fields for name in _ELSEWHERE):
+        raise _wrong(path, "hold its voxels itself, right after its header")
+    return fields
+
+
+def _header(path: Path, fields: dict[str, str]) -> _Header:
+    kind = fields.get("type", "").lower()
+    name = next((name for name, words in _KINDS.items() if kind in words), None)
+    if name is None:
+        raise _wrong(path, "have the type uint8 (unsigned char) or int16 (short)")
+    if fields.get("encoding", "").lower() not in ("gzip", "gz"):
+        raise _wrong(path, "be compressed by gzip")
+    endian = fields.get("endian", "little").lower()
+    if endian not in ("little", "big"):
+        raise _wrong(path, "be little or big endian")
+    dtype = np.dtype(name).newbyteorder("<" if endian == "little" else ">")
+    return _Header(dtype, _shape(path, fields), _matrix(path, fields))
+
+
+def _shape(path: Path, fields: dict[str, str]) -> tuple[int, int, int]:
+    sizes = fields.get("sizes", "").split()
+    is_whole = all(size.isascii() and size.isdigit() and len(size) < 6 for size in sizes)
+    if fields.get("dimension") != "3" or len(sizes) != 3 or not is_whole:
+        raise _wrong(path, "have three axes")
+    i, j, k = map(int, sizes)
+    shape = (i, j, k)
+    if not all(2 <= size <= MAX_AXIS_VOXELS for size in shape) or math.prod(shape) > MAX_VOXELS:
+        raise _wrong(
+            path,
+            f"have 2 to {MAX_AXIS_VOXELS} voxels along each axis and at most "
+            f"{MAX_VOXELS // 10**6} million in all",
+        )
+    return shape
+
+
+def _matrix(path: Path, fields: dict[str, str]) -> np.ndarray:
+    signs = _SPACES.get(fields.get("space", "").lower())
+    if signs is None:
+        raise _wrong(path, "be in the space left-posterior-superior")
+    axes = _vectors(path, fields, "space directions", 3)
+    origin = _vectors(path, fields, "space origin", 1)[0]
+    spacings = np.linalg.norm(axes, axis=1)
+    if not (spacings >= SPACINGS_MM[0]).all() or not (spacings <= SPACINGS_MM[1]).all():
+        raise _wrong(path, f"have voxels of {SPACINGS_MM[0]:g} to {SPACINGS_MM[1]:g} mm")
+    if abs(np.linalg.det(axes / spacings[:, None])) < MIN_AXIS_VOLUME:
+        raise _wrong(path, "have axes that span a space")
+    matrix = np.eye(4)
+    matrix[:3, :3] = axes.T
+    matrix[:3, 3] = origin
+    matrix = np.diag([*signs, 1.0]) @ matrix
+    return matrix + 0.0  # No negative zeros.
+
+
+def _vectors(path: Path, fields: dict[str, str], name: str, count: int) -> np.ndarray:
+    """Return the vectors (count, 3) float of a field, such as `(1,0,0) (0,1,0) (0,0,1)`."""
+    found = [each.split(",") for each in _VECTOR.findall(fields.get(name, ""))]
+    try:
+        vectors = np.array(found, dtype=float)
+    except ValueError:
+        vectors = np.empty(0)
+    if vectors.shape != (count, 3) or not (np.abs(vectors) <= MAX_ORIGIN_MM).all():
+        numbers = f"{3 * count} numbers within ±{MAX_ORIGIN_MM:g}"
+        raise _wrong(path, f"have the field “{name}” with {numbers}")
+    return vectors
+
+
+def _unpacked(path: Path, packed: bytes, count: int) -> bytes:
+    """Return exactly `count` bytes; more or fewer are refused."""
+    stream = zlib.decompressobj(wbits=31)
+    try:
+        content = stream.decompress(packed, count + 1)
+    except zlib.error:
+        raise _wrong(path, "hold voxels that gzip can unpack: it is damaged") from None
+    if len(content) > count:
+        raise _wrong(path, "hold no more voxels than its header says")
+    if len(content) < count or not stream.eof:
+        raise _wrong(path, "hold as many voxels as its header says: it is cut short")
+    return content
+
+
+def _vector(values: np.ndarray) -> str:
+    return "(" + ",".join(f"{value + 0.0:.12g}" for value in values) + ")"
+
+
+def _wrong(path: Path, wanted: str) -> InputError:
+    return InputError(f"The volume {path} must {wanted}.")

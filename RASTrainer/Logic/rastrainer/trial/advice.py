@@ -12,8 +12,8 @@ import numpy as np
 from rastrainer.motion.trajectory import Touch, Trajectory
 from rastrainer.motion.trial_motion import DWELL_RADIUS_MM
 from rastrainer.registration.registration import Registration
+from rastrainer.registration.target_error import CommonBias
 from rastrainer.trial.scoring import DEPTH_LIMIT_MM, SCORE_VERSION, TrialScore, score_trial
-from rastrainer.trial.trueness import CommonBias
 from rastrainer.trial.wording import Sentence, say
 
 OUTLIER_SHARE = 2.0

@@ -15,7 +15,12 @@ from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
-from rastrainer.registration.target_error import TargetError
+from rastrainer.registration.target_error import (
+    CommonBias,
+    TargetError,
+    common_bias,
+    true_touch_errors,
+)
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial import ctps
 from rastrainer.trial.advice import advise
@@ -38,7 +43,6 @@ from rastrainer.trial.touch_registration import (
     unshifted_tre_mm,
 )
 from rastrainer.trial.trial_feedback import TrialFeedback, trial_feedback
-from rastrainer.trial.trueness import CommonBias, common_bias, true_touch_errors
 
 
 @dataclass(frozen=True)

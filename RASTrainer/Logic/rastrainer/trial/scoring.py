@@ -7,8 +7,9 @@ far that no such trial reaches any acceptable one.
 
 Accuracy is the true error over the region in which the registration has to be right
 (`rastrainer.trial.score_reference`), times the trueness of the touches: the bias that all of them
-share (`rastrainer.trial.trueness`). Only a simulator knows either; neither FRE nor expected TRE can
-detect a common bias. The references come from the scenario and do not depend on the mode.
+share (`rastrainer.registration.target_error`). Only a simulator knows either; neither FRE nor
+expected TRE can detect a common bias. The references come from the scenario and do not depend on
+the mode.
 
 Pauses are not part of the completion time: the arm is still, and interruptions should not cost
 points. But they give time to think, so pauses longer in total than `LONG_PAUSE_S` are reported with

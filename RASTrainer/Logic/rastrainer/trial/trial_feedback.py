@@ -11,6 +11,7 @@ from rastrainer.errors import InputError
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.number_text import fixed
 from rastrainer.registration.registration import Registration
+from rastrainer.registration.target_error import CommonBias
 from rastrainer.statistics.competence import LcCusum, lc_cusum, lc_cusum_limit
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.advice import Advice, TouchFinding, advise, touch_findings
@@ -25,7 +26,6 @@ from rastrainer.trial.scoring import (
     TrialScore,
     passes,
 )
-from rastrainer.trial.trueness import CommonBias
 from rastrainer.trial.wording import Sentence, say
 
 ADEQUATE_FAILURES, INADEQUATE_FAILURES = 0.05, 0.4

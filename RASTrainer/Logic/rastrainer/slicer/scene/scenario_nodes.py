@@ -17,8 +17,8 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
 from rastrainer.errors import InputError
-from rastrainer.files.nrrd import read_nrrd
 from rastrainer.head.mesh import read_head_mesh
+from rastrainer.head.volume import read_nrrd
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.scenario.points import Task
 from rastrainer.scenario.scenario import Scenario, task_by_method

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.trial.trueness import CommonBias, common_bias, true_touch_errors
+from rastrainer.registration.target_error import CommonBias, common_bias, true_touch_errors
 from Testing.touched_head import head_points, random_rotation
 
 seeds = st.integers(0, 2**32 - 1)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.files.nrrd import MAX_FILE_BYTES, read_nrrd, write_nrrd
+from rastrainer.head.volume import MAX_FILE_BYTES, read_nrrd, write_nrrd
 
 OBLIQUE = np.array([[0.6, -0.8, 0, -50], [0.8, 0.6, 0, 10], [0, 0, -1.5, 70], [0, 0, 0, 1.0]])
 
