@@ -18,7 +18,7 @@ from rastrainer.report.svg import (
     scatter_sheet,
 )
 from rastrainer.statistics.intervals import Proportion
-from rastrainer.study.outcomes import mode_title
+from rastrainer.study.outcomes import mode_title, short_mode_title
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.study.tre_calibration import CalibrationPoint, TreCalibration, share_text
 
@@ -40,7 +40,7 @@ def calibration(data: StudyData) -> str:
     parts = [bullets(found.sentences())]
     if found.points:
         colors = {
-            mode: (mode_title(mode).split(" ")[0], mode_color(mode, index))
+            mode: (short_mode_title(mode), mode_color(mode, index))
             for index, mode in enumerate(data.modes)
             if found.of_mode(mode).points
         }

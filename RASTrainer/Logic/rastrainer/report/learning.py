@@ -22,8 +22,8 @@ from rastrainer.statistics.trend import (
     cohort_trend,
     fit_learning_curve,
 )
-from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, mode_title
-from rastrainer.study.study_data import StudyData
+from rastrainer.study.outcomes import MAIN_OUTCOMES, Outcome, mode_title, short_mode_title
+from rastrainer.study.study_data import StudyData, values_of
 
 SHOWN = ("completion_time_s", "rmse_mm", "score")
 MIN_CURVE_TRIALS = 8
@@ -105,8 +105,8 @@ def _chart(
     if curve is not None:
         last = max(len(own) for own in points.values())
         fitted = [(x, curve.at(x)) for x in np.linspace(1, last, 60)]
-    heading = f"{mode_title(mode).split(' ')[0]}: {outcome.heading}"
-    span = [t.values[outcome.name] for t in data.trials if outcome.name in t.values]
+    heading = f"{short_mode_title(mode)}: {outcome.heading}"
+    span = values_of(data.trials, outcome.name)
     color = mode_color(mode, index)
     return learning_curves(heading, color, points, x_title, fitted, (min(span), max(span)))
 

@@ -29,7 +29,7 @@ from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.few_subjects import what_it_shows
 from rastrainer.statistics.intervals import mean
 from rastrainer.study.outcomes import Outcome
-from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.study.study_data import StudyData, TrialRow, values_of
 
 TITLES = {
     RegistrationMethod.FIDUCIALS.value: "Fiducials",
@@ -175,14 +175,7 @@ def _picture(by_method: StudyData, methods: Sequence[str]) -> str:
         Series(
             outcome.title,
             color,
-            tuple(
-                tuple(
-                    trial.values[outcome.name]
-                    for trial in by_method.of_mode(method)
-                    if outcome.name in trial.values
-                )
-                for method in methods
-            ),
+            tuple(tuple(values_of(by_method.of_mode(method), outcome.name)) for method in methods),
         )
         for outcome, color in COLORS.items()
     ]
@@ -226,5 +219,5 @@ def _skin_row(shift: float, indentation: float, method: str, trials: Sequence[Tr
 
 
 def _mean_of(trials: Sequence[TrialRow], name: str) -> str:
-    values = [trial.values[name] for trial in trials if name in trial.values]
+    values = values_of(trials, name)
     return fixed(float(np.mean(values)), 2) if values else "–"

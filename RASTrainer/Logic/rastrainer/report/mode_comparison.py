@@ -29,9 +29,10 @@ from rastrainer.study.outcomes import (
     MOTION_OUTCOMES,
     Outcome,
     mode_title,
+    short_mode_title,
     task_title,
 )
-from rastrainer.study.study_data import StudyData
+from rastrainer.study.study_data import StudyData, values_of
 
 SHOWN = ("completion_time_s", "rmse_mm", "ctps", "score")
 
@@ -56,11 +57,7 @@ def _chart(data: StudyData, outcome: Outcome) -> str:
             mode_title(mode),
             mode_color(mode, index),
             tuple(
-                tuple(
-                    trial.values[outcome.name]
-                    for trial in data.of_mode(mode)
-                    if trial.task == task and outcome.name in trial.values
-                )
+                tuple(values_of((t for t in data.of_mode(mode) if t.task == task), outcome.name))
                 for task in data.tasks
             ),
         )
@@ -140,7 +137,7 @@ def distribution_chart(heading: str, lanes: Sequence[tuple[str, str, Sequence[fl
         sheet.text(x, height - 10, number(tick), 10, FAINT, "middle")
     for index, (name, color, values) in enumerate(lanes):
         y = 32 + LANE_HEIGHT * (index + 0.5)
-        sheet.text(LANE_LEFT - 10, y + 4, name.split(" ")[0], 11, INK, "end")
+        sheet.text(LANE_LEFT - 10, y + 4, name, 11, INK, "end")
         _lane(sheet, axis, y, color, values)
     return sheet.svg()
 
@@ -182,11 +179,9 @@ def distributions(data: StudyData) -> str:
     for outcome in MAIN_OUTCOMES:
         lanes = []
         for index, mode in enumerate(data.modes):
-            values = [
-                t.values[outcome.name] for t in data.of_mode(mode) if outcome.name in t.values
-            ]
+            values = values_of(data.of_mode(mode), outcome.name)
             if values:
-                lanes.append((mode_title(mode), mode_color(mode, index), values))
+                lanes.append((short_mode_title(mode), mode_color(mode, index), values))
         if lanes:
             charts.append(distribution_chart(outcome.heading, lanes))
     caption = "All trials; below the dots the middle half, the median, and the whole range."
@@ -202,10 +197,7 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     compared = {c.outcome.name: result for c, result in tested(comparisons)}
     rows = []
     for outcome in outcomes:
-        values = [
-            [t.values[outcome.name] for t in data.of_mode(mode) if outcome.name in t.values]
-            for mode in data.modes
-        ]
+        values = [values_of(data.of_mode(mode), outcome.name) for mode in data.modes]
         means = [_mean_and_sd(own, outcome.digits) if own else "–" for own in values]
         counts = " / ".join(str(len(own)) for own in values)
         rows.append([outcome.heading, *means, counts, *_effect(compared.get(outcome.name))])

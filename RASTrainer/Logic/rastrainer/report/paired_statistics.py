@@ -21,7 +21,7 @@ from rastrainer.report.svg import (
 )
 from rastrainer.statistics.few_subjects import what_it_shows
 from rastrainer.statistics.paired import equivalence_margin
-from rastrainer.study.outcomes import mode_name, mode_title
+from rastrainer.study.outcomes import mode_name, mode_title, short_mode_title
 
 SEPARATED = (
     "Trainees did the modes in different orders, so that the effect of the period (practice, "
@@ -117,7 +117,7 @@ def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
         rows.append([comparison.outcome.heading, *counts, later, between])
     header = [
         "Outcome",
-        *(f"n, {mode_title(mode).split(' ')[0]} first" for mode in (one.first, one.second)),
+        *(f"n, {short_mode_title(mode)} first" for mode in (one.first, one.second)),
         "one period later [95\N{NO-BREAK SPACE}%]",
         "between sequences [95\N{NO-BREAK SPACE}%]",
     ]
@@ -130,9 +130,7 @@ def _order(comparisons: Sequence[ModeComparison]) -> list[str]:
 
 def _table(comparisons: Sequence[ModeComparison]) -> str:
     rows = [_row(comparison) for comparison in comparisons]
-    modes = [
-        mode_title(mode).split(" ")[0] for mode in (comparisons[0].first, comparisons[0].second)
-    ]
+    modes = [short_mode_title(mode) for mode in (comparisons[0].first, comparisons[0].second)]
     headers = [
         "Outcome",
         "n",
@@ -203,7 +201,7 @@ def paired_lines(comparison: ModeComparison) -> str:
     means = [float(comparison.first_means.mean()), float(comparison.second_means.mean())]
     sheet.polyline([(FIRST, axis.at(means[0])), (SECOND, axis.at(means[1]))], INK, 2.6)
     for x, mode in ((FIRST, comparison.first), (SECOND, comparison.second)):
-        sheet.text(x, PAIRED_HEIGHT - 20, mode_title(mode).split(" ")[0], 11, INK, "middle")
+        sheet.text(x, PAIRED_HEIGHT - 20, short_mode_title(mode), 11, INK, "middle")
     _difference(sheet, comparison)
     return sheet.svg()
 

@@ -21,7 +21,7 @@ from rastrainer.statistics.competence import (
 )
 from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.values import moment
-from rastrainer.study.outcomes import mode_title, task_title
+from rastrainer.study.outcomes import mode_title, short_mode_title, task_title
 from rastrainer.study.protocol.study_protocol import pass_mark_of
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -206,7 +206,7 @@ def _chart(data: StudyData, mode: str, charts: dict[str, LcCusum]) -> str:
     limit = next(iter(charts.values())).limit
     last = max(len(chart.scores) for chart in charts.values())
     return learning_curves(
-        f"{mode_title(mode).split(' ')[0]}: LC-CUSUM",
+        f"{short_mode_title(mode)}: LC-CUSUM",
         mode_color(mode, data.modes.index(mode)),
         points,
         "trial",

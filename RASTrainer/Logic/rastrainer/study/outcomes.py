@@ -69,6 +69,11 @@ def mode_title(mode: str) -> str:
     return MODE_TITLES.get(mode, mode)
 
 
+def short_mode_title(mode: str) -> str:
+    """Return the first word of a mode's title, for narrow columns and charts."""
+    return mode_title(mode).split(" ")[0]
+
+
 def mode_name(mode: str) -> str:
     """Return the name of a mode for a sentence."""
     return MODE_NAMES.get(mode, mode)

@@ -229,6 +229,11 @@ def _from_database(place: StudyPlace) -> StudyData:
         )
 
 
+def values_of(trials: Iterable[TrialRow], name: str) -> list[float]:
+    """Return a measurement of those trials that have it."""
+    return [trial.values[name] for trial in trials if name in trial.values]
+
+
 def trial_rows(history: Iterable[StoredTrial]) -> list[TrialRow]:
     """Return the trials of one trainee, in order, as rows."""
     counts: dict[str, int] = defaultdict(int)
