@@ -55,11 +55,15 @@ OF_A_PROCEDURE = (
 
 @dataclass(frozen=True)
 class ProcedureMoment:
-    """When and where a command of a procedure is carried out; `elapsed` is the trial's time, s."""
+    """When and where a command of a procedure is carried out, and with which arguments.
+
+    `elapsed` is the trial's time, s.
+    """
 
     state: TrainingState
     now: TouchMoment
     elapsed: float
+    arguments: Mapping[str, Any]
 
     @property
     def procedure(self) -> ProcedureState:
@@ -90,9 +94,7 @@ class ProcedurePhases:
         self._touches = touches
         self._settings = settings
         self._texts = texts
-        self._handlers: Mapping[
-            str, Callable[[ProcedureMoment, OperatorCommand], TrialStep | RefusedStep]
-        ] = {
+        self._handlers: Mapping[str, Callable[[ProcedureMoment], TrialStep | RefusedStep]] = {
             CommandName.REGISTER: self._verify,
             CommandName.CAPTURE: self._check_point,
             CommandName.USE_REGISTRATION: self._use_registration,
@@ -108,7 +110,8 @@ class ProcedurePhases:
         self, command: OperatorCommand, state: TrainingState, now: TouchMoment, elapsed: float
     ) -> TrialStep | RefusedStep:
         """Return what a command leads to that is allowed in the phase of a state."""
-        return self._handlers[command.name](ProcedureMoment(state, now, elapsed), command)
+        moment = ProcedureMoment(state, now, elapsed, command.arguments)
+        return self._handlers[command.name](moment)
 
     def resumed(self, state: TrainingState) -> TrialStep:
         """Return the step by which a paused procedure continues in its stage."""
@@ -122,16 +125,14 @@ class ProcedurePhases:
         name = _present(state).line.name
         return TrialStep(running, AT_EACH_STAGE[procedure.stage], {"name": name})
 
-    def _verify(self, moment: ProcedureMoment, _command: OperatorCommand) -> TrialStep:
+    def _verify(self, moment: ProcedureMoment) -> TrialStep:
         elapsed_s = moment.state.completed_s
         data = {"completionTimeS": elapsed_s}
         return TrialStep(moment.entering(Phase.VERIFYING), "verifying", data=data)
 
-    def _use_registration(
-        self, moment: ProcedureMoment, command: OperatorCommand
-    ) -> TrialStep | RefusedStep:
+    def _use_registration(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Show the plan by a registration from now on; a second one is refused unless equal."""
-        registration = FinalRegistration.from_arguments(command.arguments)
+        registration = FinalRegistration.from_arguments(moment.arguments)
         known = moment.procedure.registration
         if known is not None and not known.agrees_with(registration):
             return RefusedStep(self._texts.say("already in use"))
@@ -156,9 +157,7 @@ class ProcedurePhases:
         }
         return TrialStep(state, "verify", {"fre": used.fre_mm}, data)
 
-    def _check_point(
-        self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> TrialStep | RefusedStep:
+    def _check_point(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Touch the nearest checkpoint; its error is by the trainee's own registration."""
         procedure, now = moment.procedure, moment.now
         name, error = self._nearest_checkpoint(procedure, now)
@@ -207,9 +206,7 @@ class ProcedurePhases:
             return say("above a checkpoint", height=MM_PER_M * now.tip_clearance)
         return None
 
-    def _accept(
-        self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> TrialStep | RefusedStep:
+    def _accept(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         procedure = moment.procedure
         if procedure.registration is None:
             return RefusedStep(self._texts.say("not in use yet"))
@@ -217,9 +214,7 @@ class ProcedurePhases:
         state = moment.entering(Phase.ALIGNING, attempts=attempts, trajectory=0)
         return TrialStep(state, "align", {"name": procedure.trajectories[0].line.name})
 
-    def _register_again(
-        self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> TrialStep | RefusedStep:
+    def _register_again(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Touch all points again; what was touched stays in the record as an attempt."""
         attempts = (*moment.procedure.attempts, _attempt(moment))
         if len(attempts) >= MAX_ATTEMPTS:
@@ -231,7 +226,7 @@ class ProcedurePhases:
         again = replace(state, touches=(), next_point=self._labels[0], trace=trace)
         return TrialStep(again, "register again", {"point": self._labels[0]})
 
-    def _lock(self, moment: ProcedureMoment, _command: OperatorCommand) -> TrialStep | RefusedStep:
+    def _lock(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Lock the guide where it is, if a drill in it would meet the head."""
         now, limit_mm = moment.now, STAND_OFF_LIMIT_MM
         ahead = now.feed.ahead
@@ -264,18 +259,14 @@ class ProcedurePhases:
             feed=Feed(ahead=ahead),
         )
 
-    def _retract(
-        self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> TrialStep | RefusedStep:
+    def _retract(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Take the drill out and align again: only before it has cut bone."""
         if moment.now.feed.has_cut_bone:
             return RefusedStep(self._texts.say("bone is cut"))
         state = moment.entering(Phase.ALIGNING)
         return TrialStep(state, "realign", {"name": _present(state).line.name}, feed=NO_FEED)
 
-    def _start_insertion(
-        self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> TrialStep | RefusedStep:
+    def _start_insertion(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Exchange the drill for the instrument, which begins at the guide's tip."""
         feed = moment.now.feed
         if feed.drilled <= 0.0:
@@ -289,9 +280,7 @@ class ProcedurePhases:
             feed=replace(feed, depth=0.0),
         )
 
-    def _release(
-        self, moment: ProcedureMoment, _command: OperatorCommand
-    ) -> TrialStep | RefusedStep:
+    def _release(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
         """Leave the instrument where it is; the next line follows, or the end."""
         depth = moment.now.feed.depth
         if depth <= 0.0:

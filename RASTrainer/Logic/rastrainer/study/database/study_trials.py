@@ -15,7 +15,7 @@ from rastrainer.registration.fits import RIGID
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.study.database import study_trainees
-from rastrainer.study.database.database import Connection
+from rastrainer.study.database.database import Connection, Rows
 from rastrainer.study.database.study_trainees import TRAINEE_ID, check_not_deleted
 from rastrainer.study.database.values import (
     StoredProcedure,
@@ -182,23 +182,16 @@ def find_record(connection: Connection, trial_id: str) -> TrialRecord:
 def find(connection: Connection, trial_id: str) -> StoredTrial:
     """Return a trial with its latest results."""
     record = find_record(connection, trial_id)
-    registrations = connection.execute(
-        "SELECT kind, registration_json FROM registrations WHERE trial_id = ? ORDER BY id",
-        (trial_id,),
-    ).fetchall()
-    score = connection.execute(
-        "SELECT score_json FROM scores WHERE trial_id = ? ORDER BY id DESC", (trial_id,)
-    ).fetchone()
-    truth = connection.execute(
-        "SELECT true_tre_mm, head_to_world_json FROM truths WHERE trial_id = ?", (trial_id,)
-    ).fetchone()
-    motion = connection.execute(
-        "SELECT motion_json FROM motions WHERE trial_id = ?", (trial_id,)
-    ).fetchone()
-    procedure = connection.execute(
-        "SELECT outcome_json FROM procedure_outcomes WHERE trial_id = ? ORDER BY id DESC",
-        (trial_id,),
-    ).fetchone()
+
+    def rows(columns: str, table: str, order: str = "") -> Rows:
+        query = f"SELECT {columns} FROM {table} WHERE trial_id = ? {order}"
+        return connection.execute(query, (trial_id,))
+
+    registrations = rows("kind, registration_json", "registrations", "ORDER BY id").fetchall()
+    score = rows("score_json", "scores", "ORDER BY id DESC").fetchone()
+    truth = rows("true_tre_mm, head_to_world_json", "truths").fetchone()
+    motion = rows("motion_json", "motions").fetchone()
+    procedure = rows("outcome_json", "procedure_outcomes", "ORDER BY id DESC").fetchone()
     return StoredTrial(
         record=record,
         registrations={
