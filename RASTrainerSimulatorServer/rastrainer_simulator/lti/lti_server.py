@@ -17,8 +17,7 @@ from yarl import URL
 from rastrainer.errors import InputError
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.loop.timing import AsyncRateLimiter
-from rastrainer_simulator.lti.course_study import CourseStudy
-from rastrainer_simulator.lti.grade_return import GradeReturn
+from rastrainer_simulator.lti.course_study import CourseStudy, GradeReturn
 from rastrainer_simulator.lti.launch_message import (
     LARGEST_TOKEN,
     VALID_S,

@@ -13,8 +13,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import PlatformLinks
 from rastrainer.study.trainee_data import erase_trainee, export_trainee
-from rastrainer_simulator.lti import grade_return
-from rastrainer_simulator.lti.grade_return import FIRST_RETRY_S, LAST_RETRY_S, scores_url
+from rastrainer_simulator.lti.course_study import FIRST_RETRY_S, LAST_RETRY_S, scores_url
 from Testing.domain.trial.trial_records import first_score, gentle_score, make_record
 from Testing.simulator.lti.conftest import Lab
 from Testing.simulator.lti.platform_double import CLAIM, GRADES
@@ -242,7 +241,7 @@ def test_a_mistake_of_ours_is_logged_and_stops_no_later_grade(
         await send_due()
         is_sent.set()
 
-    monkeypatch.setattr(grade_return, "ROUND_S", 0.01)
+    monkeypatch.setattr("rastrainer_simulator.lti.course_study.ROUND_S", 0.01)
     monkeypatch.setattr(grades, "send_due", fail_once)
     lab.thread.call(lab.tool.server.return_grades)
     assert is_sent.wait(60.0)
