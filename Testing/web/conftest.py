@@ -25,15 +25,15 @@ def browser(driver):
     browser.close()
 
 
-@pytest.fixture
-def loop(shared, tmp_path):  # noqa: F811
+@pytest.fixture(scope="module")
+def loop(shared, tmp_path_factory):  # noqa: F811
     """A control loop in this process, which leaves the processors to the browser."""
     put_back(shared)
-    with ControlLoop(shared, tmp_path / "records") as loop:
+    with ControlLoop(shared, tmp_path_factory.mktemp("loop") / "records") as loop:
         yield loop
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def served(loop, loop_thread):
     """Views of that loop, served to pages that are shown what a test tells them."""
     served = ServedViews(loop_thread, loop, **PATIENT)

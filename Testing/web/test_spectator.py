@@ -73,13 +73,23 @@ def watch(browser, served, **options):
     return open_page(browser, served.url, f"{served.code}&role=spectator", draws=False, **options)
 
 
-@pytest.fixture
-def page(browser, served):
-    served.presenter.screen = SCREEN
+@pytest.fixture(scope="module")
+def opened(browser, served):
     page = watch(browser, served, has_pad=True)
+    page.evaluate(accessibility_checker())
     yield page
     assert page.problems == []
     page.context.close()
+
+
+@pytest.fixture
+def page(opened, served):
+    """The page of somebody who watches, at a menu, of whom the simulator has been told nothing."""
+    served.presenter.calls.clear()
+    served.presenter.screen = SCREEN
+    served.tell(SCREEN)
+    opened.wait_for_selector("html[lang=en] body[data-menu=start]")
+    return opened
 
 
 def test_keys_clicks_pad_and_pointer_of_a_spectator_go_nowhere(served, page):
@@ -104,30 +114,6 @@ def test_keys_clicks_pad_and_pointer_of_a_spectator_go_nowhere(served, page):
     page.evaluate("frames_(3)")
     assert page.evaluate("sent") == []
     assert served.presenter.calls == []
-
-
-def test_a_spectator_may_pair_to_take_part(served, page):
-    page.click("#take-part")
-    page.wait_for_selector("#pairing:not([hidden])")
-    page.fill("#code", served.code)
-    page.press("#code", "Enter")
-    page.wait_for_selector("body[data-scene]:not([data-watching])")
-    wait_for(page, "page.connection.isConnected")
-    assert page.locator("#take-part").is_hidden()
-    page.keyboard.press("KeyW")
-    served.wait_for_call("on_key", _joined(served), "KeyW", True, "w")
-
-
-def _joined(served) -> int:
-    joined: list[int] = []
-
-    def is_told() -> bool:
-        joined[:] = [call[1] for call in served.presenter.calls if call[0] == "view_joined"]
-        return bool(joined)
-
-    wait_until(is_told, "a view")
-    (number,) = joined
-    return number
 
 
 def test_the_form_lets_who_pairs_choose_to_watch(browser, served):
@@ -183,17 +169,38 @@ def _vector(pose: list[float]) -> str:
     "language",
     ["de", *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES if tag != "de")],
 )
-def test_what_a_spectator_sees_breaks_no_rule_of_accessibility(browser, served, language):
-    page = watch(browser, served)
-    page.evaluate(accessibility_checker())
+def test_what_a_spectator_sees_breaks_no_rule_of_accessibility(page, served, language):
     found = []
     for name, screen in (("menu", SCREEN), ("work", WORKING)):
         served.tell(Screen(menu=screen.menu, instruction=screen.instruction, language=language))
         page.wait_for_selector(f"html[lang={language}]")
         page.wait_for_selector(f"body[data-menu='{'start' if name == 'menu' else ''}']")
         found += complaints(page, name, ("phone", "laptop at 200 %", "full HD at 200 %"))
-    page.context.close()
     assert found == []
+
+
+def test_a_spectator_may_pair_to_take_part(served, page):
+    page.click("#take-part")
+    page.wait_for_selector("#pairing:not([hidden])")
+    page.fill("#code", served.code)
+    page.press("#code", "Enter")
+    page.wait_for_selector("body[data-scene]:not([data-watching])")
+    wait_for(page, "page.connection.isConnected")
+    assert page.locator("#take-part").is_hidden()
+    page.keyboard.press("KeyW")
+    served.wait_for_call("on_key", _joined(served), "KeyW", True, "w")
+
+
+def _joined(served) -> int:
+    joined: list[int] = []
+
+    def is_told() -> bool:
+        joined[:] = [call[1] for call in served.presenter.calls if call[0] == "view_joined"]
+        return bool(joined)
+
+    wait_until(is_told, "a view")
+    (number,) = joined
+    return number
 
 
 @pytest.mark.soak

@@ -1,0 +1,226 @@
+"""What the page draws in its scene: touches, ghost, trace and procedure, and in a headset, too."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from rastrainer_simulator.net.views import outgoing
+from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.net.views.screen import DepthRuler, Screen
+from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
+from Testing.web.chromium import enter_headset, open_page, wait_for
+
+
+@pytest.fixture(scope="module")
+def page(browser, served):
+    page = open_page(browser, served.url, served.code, "metaQuest2", draws=False)
+    yield page
+    assert page.problems == []
+
+
+RED = 0xC7001A
+DRAW = """
+(changes) => {
+  const state = { ...page.state, ...changes };
+  page.isDue = true;
+  page.ghost.put(state.time, state.ghost, 1);
+  page.drawFlat(page.flat, 1, page.stage.model, state);
+  return {
+    ring: page.ring.mesh.visible ? page.ring.mesh.scale.x : 0,
+    color: page.ring.material.color.getHex(),
+    tip: page.stage.model.tip.color.getHex(),
+    isFramed: !document.getElementById("contact").hidden,
+    ghost: page.ghost.doubles.map((double) => double.position.toArray()),
+  };
+}
+"""
+
+
+@pytest.fixture
+def draw(page):
+    """Return a function that draws a state with some changes and returns what is seen of it."""
+    return lambda **changes: page.evaluate(DRAW, changes)
+
+
+def test_tip_ring_and_frame_are_red_only_where_a_touch_goes_wrong(draw):
+    for stage in TouchStage:
+        seen = draw(touch=stage.value, clearanceMm=0.0)
+        is_wrong = stage in TOUCH_ERRORS
+        assert seen["isFramed"] is is_wrong
+        assert (seen["tip"] == RED) is is_wrong
+        assert (seen["ring"] > 0) is (stage is not TouchStage.FAR)
+        if seen["ring"]:
+            assert (seen["color"] == RED) is is_wrong
+
+
+def test_the_ring_closes_as_the_tip_comes_nearer(draw):
+    radii = [draw(touch="near", clearanceMm=clearance)["ring"] for clearance in (20.0, 10.0, 0.0)]
+    assert radii == pytest.approx([0.025, 0.015, 0.005])
+
+
+def test_a_ghost_is_where_the_stream_says_and_goes_when_it_ends(draw):
+    assert draw()["ghost"] == []
+    poses = {"link_7": [0.4, 0.1, 0.7, 0, 0, 0, 1], "tool": [0.4, 0.1, 0.5, 0, 0, 0, 1]}
+    assert draw(ghost=poses)["ghost"] == [pytest.approx(pose[:3]) for pose in poses.values()]
+    assert draw()["ghost"] == []
+
+
+NOSE = (0.95, 84.89, -36.69)
+NOT_GUIDED = TraceGuidance()
+GUIDED = TraceGuidance(10.0, SkinPlace(NOSE, (0.0, 1.0, 0.0)))
+TRACE = """() => {
+  const { marks, ring } = page.trace;
+  const model = page.stage.model;
+  const paint = model.skinMesh.geometry.getAttribute("color");
+  const skin = model.skinColor.toArray();
+  const isPainted = model.skin.vertexColors;
+  let painted = 0;
+  for (let i = 0; isPainted && i < paint.count; i++) {
+    painted += Math.abs(paint.getX(i) - skin[0]) > 0.1;
+  }
+  return {
+    marks: marks.visible ? marks.count : 0,
+    ring: ring.visible ? ring.position.toArray() : null,
+    painted,
+    color: model.skin.color.toArray(),
+  };
+}"""
+
+
+def told(known, points, guidance=NOT_GUIDED):
+    """What the simulator would tell the page, as the page takes it."""
+    return f"page.take({json.dumps(json.loads(outgoing.trace(known, points, guidance)))})"
+
+
+def test_what_was_traced_is_marked_painted_and_taken_back(page):
+    page.evaluate(told(0, [[x, 84.9, -36.7] for x in range(-3, 4)], GUIDED))
+    wait_for(page, "page.trace.ring.visible")
+    drawn = page.evaluate(TRACE)
+    assert drawn["marks"] == 7
+    assert drawn["painted"] > 20
+    assert drawn["ring"] == pytest.approx([0.00095, 0.08789, -0.03669], abs=1e-6)
+    page.evaluate(told(7, [[10.0, 84.0, -30.0]], GUIDED))
+    wait_for(page, "page.trace.marks.count === 8")
+    assert page.evaluate(TRACE)["painted"] > drawn["painted"]
+    page.evaluate(told(2, []))
+    wait_for(page, "page.trace.marks.count === 2")
+    left = page.evaluate(TRACE)
+    assert (left["painted"], left["ring"]) == (0, None)
+    assert left["color"] == pytest.approx(page.evaluate("page.stage.model.skinColor.toArray()"))
+
+
+def test_a_page_that_joins_again_forgets_what_it_knew(page):
+    page.evaluate(told(0, [list(NOSE)], GUIDED))
+    wait_for(page, "page.trace.marks.count === 1")
+    page.evaluate("page.connection.rejoin({ kind: 'page', device: '', refreshHz: 0 })")
+    wait_for(page, "page.trace.marks.count === 0")
+    assert not page.evaluate("page.trace.ring.visible")
+
+
+RULER = DepthRuler(30.0, 37.0, 44.5, 126.0)
+SEEN = """(procedure) => {
+  const { model } = page.stage;
+  page.showProcedure(model, { ...page.state, procedure });
+  const visible = (names) => names.filter((name) => model.node(name).visible);
+  const noGo = model.node("plan").children.filter((node) => node.visible);
+  return {
+    tools: visible(["guide", "axis", "drill", "electrode"]),
+    fedM: model.node("drill").scale.z,
+    noGo: noGo.map((node) => node.userData.name ?? node.name).sort(),
+    isSeenThrough: noGo.every((node) => node.material.transparent),
+    skin: model.node("skin").material.opacity,
+    panel: !document.getElementById("guiding").hidden,
+    board: page.headset?.boards.guiding.mesh.visible ?? false,
+  };
+}"""
+PAINTED = """(procedure) => {
+  const written = [];
+  const { fillText } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    written.push(text);
+    return fillText.call(this, text, x, y);
+  };
+  page.showProcedure(page.stage.model, { ...page.state, procedure });
+  CanvasRenderingContext2D.prototype.fillText = fillText;
+  return written;
+}"""
+STEERED = """async (procedure) => {
+  const sent = [];
+  const { send } = page.connection;
+  page.connection.send = (type, message) => {
+    if (type === "sticks" || type === "press") sent.push(structuredClone(message));
+  };
+  page.takeState = () => undefined;
+  page.state = { ...page.state, procedure };
+  const { right } = device.controllers;
+  await frames_(2);
+  right.updateAxes("thumbstick", 0.6, -0.5);
+  await frames_(3);
+  right.updateButtonValue("trigger", 1);
+  await frames_(3);
+  right.updateButtonValue("trigger", 0);
+  right.updateAxes("thumbstick", 0, 0);
+  right.updateButtonValue("b-button", 1);
+  await frames_(3);
+  right.updateButtonValue("b-button", 0);
+  await frames_(2);
+  page.connection.send = send;
+  delete page.takeState;
+  return sent;
+}"""
+AIM = {
+    "entryMm": [12.0, -3.0],
+    "targetMm": [4.0, 7.0],
+    "entryDistanceMm": 12.37,
+    "angleDeg": 6.48,
+}
+NOTHING = {"tools": [], "noGo": [], "skin": 1.0, "panel": False, "board": False}
+
+
+def at(tool, feed_mm=0.0, aim=None):
+    return {"name": "biopsy", "tool": tool, "feedMm": feed_mm, "aim": aim}
+
+
+def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(served, page):
+    served.tell(Screen())
+    wait_for(page, "page.stage.model !== null && page.state !== null")
+    assert page.evaluate(SEEN, at("pointer")).items() >= NOTHING.items()
+    served.tell(Screen(is_head_clear=True, language="de"))
+    wait_for(page, "page.screen.is_head_clear")
+    seen = page.evaluate(SEEN, at("guide", aim=AIM))
+    assert seen["tools"] == ["guide", "axis"]
+    assert seen["noGo"] == ["no_go_right-ventricle", "no_go_sagittal-sinus"]
+    assert seen["isSeenThrough"]
+    assert seen["skin"] < 0.5
+    assert seen["panel"]
+    assert page.evaluate(PAINTED, at("guide", aim={**AIM, "angleDeg": 6.61})) == [
+        "12,4 mm",
+        "6,6°",
+    ]
+    served.tell(Screen(is_head_clear=True, ruler=RULER))
+    wait_for(page, "page.screen.ruler !== null")
+    drilled = page.evaluate(SEEN, at("drill", 41.5))
+    assert drilled["tools"] == ["guide", "drill"]
+    assert drilled["fedM"] == pytest.approx(0.0415)
+    written = page.evaluate(PAINTED, at("electrode", 99.96))
+    assert written[0] == "100.0 mm"
+    assert written[-4:] == ["30", "37", "45", "126"]
+    served.presenter.screen = Screen(is_head_clear=True, ruler=RULER)
+    enter_headset(page)
+    worn = page.evaluate(SEEN, at("drill", 41.5))
+    assert worn["board"]
+    check_steering(page.evaluate(STEERED, at("guide", aim=AIM)))
+    assert not page.evaluate(SEEN, at("pointer"))["tools"]
+
+
+def check_steering(sent):
+    """The right stick lifts and turns the guide; with its trigger held, it tilts it instead."""
+    sticks = [each for each in sent if "translation" in each]
+    lifting, tilting = sticks[0], [each for each in sticks if each["fine"]][-1]
+    assert lifting["translation"][2] > 0.3
+    assert lifting["rotation"] == [pytest.approx(0.545, abs=0.01), 0]
+    assert tilting["translation"] == [0, 0, 0]
+    assert min(tilting["rotation"]) > 0.3
+    assert {"control": "undo"} in sent

@@ -1,0 +1,233 @@
+"""What opens the page: the pairing code, from this computer or the network; and what is missing."""
+
+from __future__ import annotations
+
+import json
+import re
+import stat
+import threading
+from http.server import BaseHTTPRequestHandler, HTTPServer
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.igtl.content import Command
+from rastrainer.igtl.message import Message, pack
+from Testing.web.chromium import PATIENCE_MS, SMALL, draw_nothing, launch, open_page
+from Testing.web.hands import PageKeys
+from Testing.web.place import PATIENT, Place
+
+NETWORK = re.compile(r"serves the local network on (https://\S+?:\d+)")
+TRY_TO_COMMAND = """([url, bytes]) =>
+  fetch(url, { method: "POST", mode: "no-cors", body: new Uint8Array(bytes) })
+    .then(() => "answered", () => "refused")
+"""
+TRY_TO_JOIN = """(url) => new Promise((done) => {
+  const socket = new WebSocket(url + "/stream", "rastrainer.views.1");
+  socket.onopen = () => done("joined");
+  socket.onerror = () => done("refused");
+})"""
+
+NOTE_LOADING = """
+window.told = [];
+addEventListener("DOMContentLoaded", () => {
+  const place = document.getElementById("loading");
+  const note = () => {
+    const bar = place.querySelector("progress");
+    if (!place.hidden) told.push([place.textContent, bar.value, bar.max]);
+  };
+  new MutationObserver(note).observe(place, { attributes: true, childList: true, subtree: true });
+});
+"""
+"""What is shown while a scene comes may have gone by the time that one looks."""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("opening")
+    with Place(folder, "--lan", limits=PATIENT) as place:
+        place.network = NETWORK.search(place.simulator.next_line())[1]
+        place.cable = place.simulator.next_line()
+        yield place
+
+
+def new_page(browser, **options):
+    page = browser.new_context(viewport=SMALL, ignore_https_errors=True, **options).new_page()
+    page.set_default_timeout(PATIENCE_MS)
+    return page
+
+
+@pytest.fixture
+def stranger(browser):
+    page = new_page(browser)
+    draw_nothing(page)
+    yield page
+    page.context.close()
+
+
+@pytest.fixture(scope="module")
+def paired(place, browser):
+    return open_page(browser, place.simulator.url, place.simulator.code, draws=False)
+
+
+@pytest.mark.parametrize("way", ["loopback", "network"])
+def test_who_has_not_paired_sees_the_form_and_nothing_else(place, stranger, way):
+    url = place.simulator.url if way == "loopback" else place.network
+    stranger.goto(url)
+    stranger.wait_for_selector("#pairing:not([hidden])")
+    assert stranger.evaluate(TRY_TO_JOIN, url.replace("http", "ws", 1)) == "refused"
+    assert stranger.evaluate("fetch('/sounds/touch.wav').then((a) => a.status)") == 401
+    # However low the window is, the form can be scrolled to its last button.
+    stranger.click("#pairing button.second", trial=True)
+    stranger.fill("#code", "000000" if place.simulator.code != "000000" else "111111")
+    stranger.press("#code", "Enter")
+    stranger.wait_for_selector("#pairing output:not(:empty)")
+    stranger.fill("#code", place.simulator.code)
+    stranger.press("#code", "Enter")
+    stranger.wait_for_selector("body[data-scene]")
+    assert stranger.evaluate("window.isSecureContext")
+    # Only the views of this computer are told how others are paired.
+    if way == "loopback":
+        stranger.wait_for_selector(f"#status:has-text('{place.simulator.code}')")
+    told = stranger.inner_text("#status")
+    assert (place.simulator.code in told, place.network in told) == (way == "loopback",) * 2
+
+
+@pytest.fixture(scope="module")
+def foreign_url():
+    """Where a page of somebody else is served, on this computer, too."""
+
+    class Foreign(BaseHTTPRequestHandler):
+        def do_GET(self):
+            self.send_response(200)
+            self.end_headers()
+
+        def log_message(self, *_arguments):
+            pass
+
+    server = HTTPServer(("127.0.0.1", 0), Foreign)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+
+
+def test_a_page_of_another_origin_cannot_connect(place, paired, foreign_url):
+    foreign = paired.context.new_page()
+    foreign.goto(foreign_url)
+    assert foreign.evaluate(TRY_TO_JOIN, place.simulator.url.replace("http", "ws", 1)) == "refused"
+    foreign.close()
+
+
+def test_a_page_cannot_send_commands_to_the_openigtlink_port(place, stranger, foreign_url):
+    arguments = {"task": "task-1", "trainee": "somebody-else"}
+    command = pack(Message("command", Command(1, "StartTask", json.dumps(arguments))))
+    stranger.goto(foreign_url)
+    port = place.simulator.port
+    answer = stranger.evaluate(TRY_TO_COMMAND, [f"http://127.0.0.1:{port}", list(command)])
+    assert answer == "refused"
+    with Client(port=port) as client:
+        state = client.wait_for("SimState", timeout=60)
+    assert "somebody-else" not in state.content.text
+
+
+def test_a_code_in_the_address_does_not_stay_there(place, stranger):
+    code = "000000" if place.simulator.code != "000000" else "111111"
+    stranger.goto(f"{place.simulator.url}/#code={code}")
+    stranger.wait_for_selector("#pairing:not([hidden])")
+    assert stranger.url == f"{place.simulator.url}/"
+    assert stranger.evaluate("[location.hash, history.length]") == ["", 2]
+
+
+def test_the_private_key_is_the_owners_alone_and_a_cable_is_told(place):
+    file = place.records.with_name("records-config") / "certificates" / "views.pem"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert "adb reverse tcp:" in place.cable
+
+
+def test_without_javascript_the_page_says_so_in_every_language(place, browser):
+    page = new_page(browser, java_script_enabled=False)
+    page.goto(place.simulator.url)
+    assert "RASTrainer needs JavaScript" in page.inner_text("body")
+    assert "RASTrainer braucht JavaScript" in page.inner_text("[lang=de]")
+    assert "RASTrainer a besoin de JavaScript" in page.inner_text("[lang=fr]")
+    assert "RASTrainer necesita JavaScript" in page.inner_text("[lang=es]")
+    assert "RASTrainer 需要 JavaScript" in page.inner_text("[lang=zh-Hans]")
+    page.context.close()
+
+
+def address(place) -> str:
+    return f"{place.simulator.url}/#code={place.simulator.code}"
+
+
+def test_the_scene_tells_how_much_of_it_has_come(place, stranger):
+    stranger.add_init_script(NOTE_LOADING)
+    stranger.goto(address(place))
+    stranger.wait_for_selector("body[data-scene]")
+    stranger.wait_for_selector("#loading", state="hidden")
+    told = stranger.evaluate("told")
+    assert all(text.startswith("Loading the scene: ") for text, _loaded, _total in told)
+    (total,) = {total for _text, _loaded, total in told}
+    assert 1e6 < total < 5e6
+    loaded = [loaded for _text, loaded, _total in told]
+    assert loaded == sorted(loaded)
+    assert loaded[0] < loaded[-1] == total
+
+
+def test_without_webgl_menus_are_read_and_chosen_and_the_page_says_what_is_missing(place, driver):
+    browser = launch(driver, "--disable-3d-apis")
+    page = new_page(browser)
+    problems = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.goto(address(place))
+    page.wait_for_selector("body[data-menu=start]")
+    page.wait_for_selector("#warnings li:has-text('WebGL')")
+    trainee = place.trainee(PageKeys(page))
+    trainee.choose("settings")
+    page.wait_for_selector("body[data-menu=settings]")
+    assert page.inner_text("#menu h2") == trainee.menu.title
+    assert problems == []
+    browser.close()
+
+
+def test_a_second_operator_cannot_take_the_control_unasked(place, paired, browser):
+    other = open_page(browser, place.simulator.url, place.simulator.code, draws=False)
+    first = place.trainee(PageKeys(paired))
+    first.go_home()
+    first.choose("train")
+    # Whoever rests may be relieved, and a slow machine would let them rest: when the focus has
+    # moved, the simulator knows of the key that was pressed before.
+    paired.keyboard.down("ShiftLeft")
+    focus = first.menu.focus
+    first.press("down", lambda: first.menu.focus != focus, "another focus")
+    other.keyboard.press("Escape")
+    other.wait_for_selector("#warnings li[data-tone=warning]")
+    # The warning has come with the menu that is open now.
+    assert other.get_attribute("body", "data-menu") == "introduction"
+    paired.wait_for_selector("#control:has-text('You drive')")
+    assert not other.evaluate("page.control.isYou")
+    other.context.close()
+
+
+def try_code(page, code):
+    """Enter a code, and wait until it is answered: of the one before, the page says the same."""
+    page.fill("#code", code)
+    with page.expect_response("**/pair"):
+        page.click("#pairing button")
+
+
+def test_a_code_that_is_no_longer_valid_says_so_and_so_does_a_new_one(place, browser):
+    # The place has another code afterwards: this test is the last.
+    page = new_page(browser, locale="de-DE")
+    draw_nothing(page)
+    wrong = "000000" if place.simulator.code != "000000" else "000001"
+    page.goto(f"{place.simulator.url}/#code={wrong}")
+    page.wait_for_selector("#pairing output:has-text('gilt nicht mehr')")
+    assert page.get_attribute("html", "lang") == "de-DE"
+    # Before it is paired, the page says nothing about the robot.
+    assert not page.is_visible("#control")
+    for _ in range(3):
+        try_code(page, wrong)
+        page.wait_for_selector("#pairing output:has-text('nicht der Kopplungscode')")
+    try_code(page, wrong)
+    page.wait_for_selector("#pairing output:has-text('zeigt jetzt einen neuen Code')")
+    page.context.close()

@@ -1,0 +1,174 @@
+"""What the page shows of a screen: errors, plots, a legend and menus, and what it reads aloud."""
+
+from __future__ import annotations
+
+import pytest
+
+from rastrainer_simulator.net.views.screen import (
+    ErrorArrow,
+    Fact,
+    Hint,
+    Menu,
+    MenuItem,
+    Screen,
+    ScreenMessage,
+    Tone,
+)
+from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from Testing.simulator.flow.every_page import every_screen, names_of_pages
+from Testing.simulator.flow.scored_journals import task_menu
+from Testing.web.chromium import open_page, show, wait_for
+
+SIZE = {"width": 1280, "height": 720}
+
+
+@pytest.fixture(scope="module")
+def opened(browser, served):
+    page = open_page(browser, served.url, served.code, size=SIZE, draws=False)
+    yield page
+    assert page.problems == []
+
+
+@pytest.fixture
+def page(opened, served):
+    """The page, which shows nothing yet."""
+    show(opened, served, Screen())
+    return opened
+
+
+DRAWN = """
+() => page.errors.group.children
+  .filter((mesh) => mesh.geometry.type === "SphereGeometry")
+  .map((mesh) => [mesh.material.color.getHexString(), ...mesh.position.toArray()])
+"""
+
+
+def arrow(tone, height):
+    return ErrorArrow((0.5, 0.0, 0.4), (0.5, 0.0, height), tone)
+
+
+def test_arrows_come_with_the_screen_and_go_with_it(page, served):
+    arrows = tuple(map(arrow, (Tone.GOOD, Tone.WARNING, Tone.ERROR), (0.41, 0.42, 0.43)))
+    served.tell(Screen(errors=arrows, hints=(Hint("Esc", "Result", "back"), Hint("D", "Turn"))))
+    wait_for(page, "page.errors.group.children.length === 6")
+    drawn = page.evaluate(DRAWN)
+    assert [color for color, *_place in drawn] == ["8ff0d0", "ffe000", "ef5f66"]
+    assert [place for _color, *place in drawn] == [pytest.approx(list(each.end)) for each in arrows]
+    # Who has only a mouse gets back, too.
+    assert page.locator("#hints button").count() == 1
+    page.click("#hints button:has-text('Result')")
+    (view,) = {call[1] for call in served.presenter.calls if call[0] == "view_joined"}
+    served.wait_for_call("on_item", view, "back")
+    served.tell(Screen())
+    wait_for(page, "page.errors.group.children.length === 0")
+
+
+PICTURE = "#menu img"
+
+
+@pytest.mark.parametrize(
+    "language",
+    ["en", *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES if tag != "en")],
+)
+def test_the_plot_stands_beside_the_tasks_and_every_score_is_its_text(
+    page, served, loop, outside, language
+):
+    served.tell(task_menu(loop, outside.services, language=language))
+    page.wait_for_selector(PICTURE)
+    wait_for(page, f"document.querySelector('{PICTURE}').naturalWidth > 0")
+    plot, tasks = page.locator(PICTURE), page.locator("#menu ul")
+    assert "38, 52, 47, 67, 71, 69, 88" in plot.get_attribute("alt")
+    place, beside = plot.bounding_box(), tasks.bounding_box()
+    assert place["width"] > 200
+    assert place["x"] + place["width"] <= beside["x"]
+
+
+LEGEND = "Within 10 mm of traced points"
+
+
+def test_the_legend_is_read_with_a_sample_of_the_paint(page, served):
+    served.tell(Screen(status=("Task 1",), coverage=LEGEND))
+    page.wait_for_selector("#status .legend")
+    assert page.inner_text("#status .legend") == LEGEND
+    sample = page.locator("#status .legend i")
+    assert sample.evaluate("e => getComputedStyle(e).backgroundColor") == "rgb(87, 181, 232)"
+    served.tell(Screen(status=("Task 1",)))
+    wait_for(page, "document.querySelector('#status .legend') === null")
+
+
+LISTEN = """
+window.heard = [];
+window.reading = [];
+speechSynthesis.speak = (utterance) => {
+  window.heard.push([utterance.lang, utterance.text]);
+  window.reading.push(utterance);
+};
+speechSynthesis.cancel = () => window.ended();
+window.ended = () => window.reading.shift()?.onend();
+"""
+"""A machine without voices never ends a sentence: the test says when one has been read."""
+
+
+def spoken(**others):
+    return Screen(is_spoken=True, **others)
+
+
+def heard(page, count):
+    """Wait for a number of sentences, and return them all."""
+    wait_for(page, f"window.heard.length >= {count}")
+    return [text for _language, text in page.evaluate("window.heard")]
+
+
+def test_what_is_new_is_read_in_its_language_one_sentence_after_the_other(page, served):
+    page.evaluate(LISTEN)
+    served.tell(Screen(instruction=ScreenMessage("Not read."), status=("quiet",)))
+    page.wait_for_selector("#status:has-text('quiet')")
+    warned = (ScreenMessage("Contact."),)
+    served.tell(spoken(instruction=ScreenMessage("Touch point 1."), warnings=warned, language="de"))
+    assert heard(page, 1) == ["Contact."]
+    gone = ScreenMessage("Touch point 2.")
+    served.tell(spoken(instruction=gone, warnings=warned, status=("two",), language="de"))
+    page.wait_for_selector("#status:has-text('two')")
+    last = ScreenMessage("Touch point 3.")
+    served.tell(spoken(instruction=last, warnings=warned, status=("three",), language="de"))
+    page.wait_for_selector("#status:has-text('three')")
+    page.evaluate("ended()")
+    assert heard(page, 2) == ["Contact.", "Touch point 3."]
+    page.evaluate("ended()")
+    assert page.evaluate("window.heard.map(([language]) => language)") == ["de", "de"]
+    items = (MenuItem("next", "Next task"), MenuItem("again", "Again"))
+    menu = Menu("result", "Result", ("Well done.",), (Fact("Score", "81"),), items, focus="again")
+    served.tell(spoken(menu=menu, language="zh-Hans"))
+    for count in range(3, 7):
+        heard(page, count)
+        page.evaluate("ended()")
+    assert heard(page, 6)[2:] == ["Result", "Well done.", "Score: 81", "Again"]
+    assert page.evaluate("window.heard[5][0]") == "zh-CN", "voices are named by region"
+
+
+def test_what_is_being_read_stops_when_reading_is_switched_off(page, served):
+    page.evaluate(LISTEN)
+    served.tell(spoken(instruction=ScreenMessage("A long sentence.")))
+    assert heard(page, 1) == ["A long sentence."]
+    served.tell(Screen(instruction=ScreenMessage("A long sentence."), status=("off",)))
+    page.wait_for_selector("#status:has-text('off')")
+    wait_for(page, "window.reading.length === 0")
+    assert heard(page, 1) == ["A long sentence."]
+
+
+@pytest.mark.soak
+def test_every_page_is_shown_the_same_when_it_is_opened_again(page, served, presenter):
+    screens = every_screen(presenter)
+    assert names_of_pages() <= screens.keys()
+
+    def look_at(screen):
+        show(page, served, screen)
+        page.evaluate("frames_(2)")
+        return page.inner_html("#menu"), page.is_visible("#menu")
+
+    for name, screen in screens.items():
+        first = look_at(screen)
+        look_at(Screen())
+        assert look_at(screen) == first, name
+        assert first[1] == (screen.menu is not None), name
+        look_at(Screen())

@@ -1,0 +1,272 @@
+"""Without keys: by the mouse, two thumbs or a tracked hand alone, from the menus to the touches."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rastrainer_simulator.flow.tutorial.steps import steps_for
+from rastrainer_simulator.input.inputs import SourceKind
+from Testing.end_to_end.stream_trainee import LONGEST_WAY_S
+from Testing.end_to_end.view_learner import ViewLearner
+from Testing.tutorial_player import TutorialPlayer
+from Testing.web.chromium import enter_headset, open_page
+from Testing.web.hands import PageMouse, TrackedHands
+from Testing.web.place import PATIENT, Place, Trainee
+from Testing.web.tapping_trainee import PHONE, SteeringTrainee, TappingTrainee
+
+SIZE = {"width": 1280, "height": 720}
+SLOW, SLOWEST = "0.5", "0.25"
+"""Simulated seconds in a second, so that a stick is let go of in time on a busy machine."""
+
+
+class Clicks:
+    """Menus by clicks, as far as an ID and the task."""
+
+    def choose(self, item: str) -> None:
+        """Click on an item, which leads to another menu."""
+        before = self.menu_name
+        self.hands.click(item)
+        self.until(lambda: self.menu_name != before, f"after {item}")
+
+    def click_id(self) -> None:
+        """Add P7 to the ID, a character at a time."""
+        before = self.value("trainee")
+        self.choose("clicked")
+        for row, character in (("row 1", "P"), ("row 3", "7")):
+            self.choose(row)
+            self.choose(character)
+        self.choose("done")
+        assert self.value("trainee") == f"{before}P7"
+
+    def begin_by_sticks(self, task: str) -> None:
+        """Go to a task, or the tutorial, with sticks on the screen."""
+        self.go_to_experiment()
+        self.click_id()
+        self.choose(task)
+        self.until_menu(None)
+        shown = "trial-run" if task == "tutorial" else task
+        self.until(lambda: self.view.scene["task"] == shown, "the scene")
+        if not self.view.screen.has_sticks:
+            self.hands.click("press sticks")
+        self.until(lambda: self.view.screen.has_sticks, "the sticks")
+
+
+class ClickingTrainee(Clicks, Trainee):
+    """Does everything by the mouse."""
+
+
+class HandTrainee(Trainee):
+    """Pinches at what is written on boards; elsewhere the tip follows the pinching hand."""
+
+    def __init__(self, view, page):
+        super().__init__(view, TrackedHands(page))
+        self._page = page
+
+    def choose(self, item):
+        before = self.menu_name
+        # Else the board of the menu before, which may have an item of that name elsewhere.
+        self._page.wait_for_selector(f"body[data-menu='{before or ''}']", state="attached")
+        self.hands.choose(item)
+        self.until(lambda: self.menu_name != before, f"after {item}")
+
+    def steer_to(self, place, near, fine=False):  # noqa: ARG002
+        if self.menu_name == "trial":
+            self.choose("resume")
+        self._lead(place, lambda: np.linalg.norm(place - self.tip) <= near)
+
+    def sink_onto_skin(self, below):
+        self._lead(below, lambda: self.view.state["proximity"] == "contact")
+
+    def _lead(self, place, is_there):
+        self.hands.pinch(True)
+        self.hands.carry(place - self.tip)
+        give_up = self.view.state["time"] + LONGEST_WAY_S
+        while not is_there() and self.view.state["time"] < give_up:
+            self.view.next_state()
+        self.hands.pinch(False)
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("without-keys")
+    with Place(folder, "--speed", SLOW, limits=PATIENT, order="any") as place:
+        yield place
+
+
+def page_of(place, browser, *headset, **options):
+    simulator = place.simulator
+    return open_page(browser, simulator.url, simulator.code, *headset, draws=False, **options)
+
+
+@pytest.fixture
+def thumbs(place, browser):
+    """Somebody whose trial runs, begun by tapping, and the page."""
+    page = page_of(place, browser, size=PHONE, has_touch=True)
+    trainee = TappingTrainee(place, page)
+    trainee.begin_by_taps("task-1")
+    page.wait_for_selector("#touch-controls")
+    yield trainee, page
+    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+    trainee.choose("abort")
+    trainee.choose("abort")
+    assert page.problems == []
+    page.context.close()
+
+
+@pytest.fixture
+def mouse(place, browser):
+    page = page_of(place, browser, size=SIZE)
+    trainee = ClickingTrainee(place.view, PageMouse(page))
+    yield trainee, page
+    trainee.go_home()
+    assert page.problems == []
+    page.context.close()
+
+
+@pytest.fixture
+def hand(place, browser):
+    """Somebody in Task 1, begun by a tracked hand."""
+    page = page_of(place, browser, "metaQuest3")
+    enter_headset(page)
+    trainee = HandTrainee(place.view, page)
+    begin(trainee)
+    yield trainee
+    assert page.problems == []
+    page.context.close()
+
+
+@pytest.mark.soak
+def test_a_finger_touches_undoes_pauses_and_resumes(place, thumbs):
+    steering, page = thumbs
+    steering.touch("1")
+    assert steering.touched == 1
+    page.wait_for_selector("#control:has-text('You drive: touch screen')")
+    steering.press("undo", lambda: steering.touched == 0, "the undo")
+    steering.press("menu", lambda: steering.menu is not None, "the menu")
+    steering.until(lambda: place.view.state["phase"] == "paused", "the pause")
+    page.wait_for_selector("#touch-controls", state="hidden")
+    steering.resume()
+
+
+def test_two_thumbs_steer_at_once_stop_the_arm_and_read_on_the_buttons_what_to_press(place, thumbs):
+    steering, page = thumbs
+    steering.until_still()
+    start = steering.tip.copy()
+    steering.hands.push(0.7, 0.0, 1.0)
+    steering.until(lambda: steering.tip[2] > start[2] + 0.02, "a move up")
+    aside = np.linalg.norm((steering.tip - start)[:2])
+    steering.hands.push(0.0, 0.0, 0.0)
+    assert aside > 0.005
+    steering.until_still()
+    buttons = page.locator("#touch-controls button:not([hidden])")
+
+    def are_written():
+        hints = {hint.control for hint in place.view.screen.hints if "stick" not in hint.control}
+        return hints == {*buttons.all_inner_texts()}
+
+    steering.until(are_written, "the hints on the buttons")
+
+
+@pytest.mark.soak
+def test_by_two_thumbs_alone_a_whole_trial_is_touched_and_scored(tmp_path, browser):
+    with Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any") as place:
+        page = page_of(place, browser, size=PHONE, has_touch=True)
+        trainee = SteeringTrainee(place, page)
+        trainee.begin_by_taps("task-1")
+        page.wait_for_selector("#touch-controls .stick")
+        trainee.play_to_result()
+        assert len(place.entries("touch")) == 15
+        assert {entry["operator"] for entry in place.entries("input")} <= {"touch screen", ""}
+        assert page.problems == []
+
+
+def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(mouse):
+    trainee, page = mouse
+    trainee.begin_by_sticks("task-1")
+    page.wait_for_selector("#touch-controls .stick")
+    assert page.query_selector("#touch-controls button:visible") is None
+    start = trainee.tip.copy()
+    # Gently: a busy machine lets go late, and the arm must not be far away then.
+    trainee.hands.push(0.0, 0.0, 0.5)
+    trainee.until(lambda: trainee.tip[2] > start[2] + 0.01, "a move up")
+    trainee.hands.push(-0.5, 0.0, 0.0)
+    trainee.until_moved()
+    trainee.hands.push(0.0, 0.0, 0.0)
+    trainee.until_still()
+    page.wait_for_selector("#control:has-text('You drive: mouse')")
+    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+    assert trainee.menu.name == "trial"
+    page.wait_for_selector("#touch-controls", state="hidden")
+    trainee.choose("resume")
+    assert np.isfinite(trainee.tip).all()
+
+
+class MouseLearner(ViewLearner):
+    """Drags with the right button."""
+
+    def turn_view(self):
+        self.hands.turn_view(200)
+
+
+@pytest.mark.soak
+def test_by_the_mouse_alone_the_tutorial_is_done_and_leads_to_the_trial_run(tmp_path, browser):
+    rules = {"order": "fixed", "tutorial": "required"}
+    with Place(tmp_path, "--speed", SLOWEST, limits=PATIENT, **rules) as place:
+        page = page_of(place, browser, size=SIZE)
+        trainee = ClickingTrainee(place.view, PageMouse(page))
+        trainee.begin_by_sticks("tutorial")
+        player = TutorialPlayer(MouseLearner(trainee), SourceKind.MOUSE)
+        player.play()
+        assert [step for step, _text in player.read] == list(steps_for(SourceKind.MOUSE, "desktop"))
+        trainee.until_menu("tutorial-done")
+        trainee.begin_task("trial-run")
+        page.wait_for_selector("#touch-controls .stick")
+        assert page.problems == []
+
+
+@pytest.mark.soak
+def test_the_first_touches_of_a_task_are_steered_by_the_mouse(place, mouse):
+    trainee, _page = mouse
+    trainee.begin_by_sticks("task-1")
+    for label in ("1", "2"):
+        trainee.touch(label)
+    assert trainee.touched == 2
+    assert {entry["operator"] for entry in place.entries("input")} <= {"mouse", ""}
+
+
+@pytest.mark.soak
+def test_by_the_mouse_alone_a_whole_trial_is_touched_and_scored(tmp_path, browser):
+    with Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any") as place:
+        page = page_of(place, browser, size=SIZE)
+        trainee = ClickingTrainee(place.view, PageMouse(page))
+        trainee.begin_by_sticks("task-1")
+        trainee.play_to_result()
+        assert len(place.entries("touch")) == 15
+        assert {entry["operator"] for entry in place.entries("input")} <= {"mouse", ""}
+        assert page.problems == []
+
+
+def begin(trainee):
+    """Go by the hand from the start menu into Task 1."""
+    trainee.go_to_experiment()
+    trainee.choose("trainee")
+    trainee.hands.choose("row0")
+    trainee.until(lambda: "A" in trainee.menu.facts[0].value, "the letter A")
+    trainee.choose("done")
+    trainee.begin_task("task-1")
+
+
+def test_a_tracked_hand_leads_the_tip_to_a_touch_takes_it_back_and_opens_the_menu(place, hand):
+    hand.touch("1")
+    hand.press("undo", lambda: hand.touched == 0, "the undo")
+    hand.press("menu", lambda: hand.menu is not None, "the menu")
+    hand.choose("abort")
+    inputs = place.entries("input")
+    assert {entry["operator"] for entry in inputs} <= {"headset's controllers", ""}
+
+
+@pytest.mark.soak
+def test_a_whole_trial_is_touched_and_scored_by_a_tracked_hand_alone(place, hand):
+    hand.play_to_result()
+    assert len(place.entries("touch")) == 15
