@@ -18,8 +18,9 @@ from rastrainer.json_checks import accepted, one_of, text
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.assets import NOT_BUILT, page_folder
 from rastrainer_simulator.board.class_table import ClassWatch
-from rastrainer_simulator.board.seat_client import RefusedError, SeatClient
-from rastrainer_simulator.board.seat_list import (
+from rastrainer_simulator.board.seats import (
+    RefusedError,
+    SeatClient,
     SeatEntry,
     SeatList,
     checked_address,

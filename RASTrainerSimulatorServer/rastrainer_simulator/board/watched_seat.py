@@ -28,13 +28,13 @@ from rastrainer.json_checks import (
 )
 from rastrainer.protocol import Phase
 from rastrainer_simulator.assets import NOT_BUILT, page_folder
-from rastrainer_simulator.board.seat_client import (
+from rastrainer_simulator.board.seats import (
     OtherCertificateError,
     RefusedError,
     SeatClient,
+    SeatEntry,
     UnpairedError,
 )
-from rastrainer_simulator.board.seat_list import SeatEntry
 from rastrainer_simulator.net.views.messages import (
     BOARD,
     HELLO,

@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
     from rastrainer_simulator.board.board_server import BoardServer
-    from rastrainer_simulator.board.seat_client import SeatClient
+    from rastrainer_simulator.board.seats import SeatClient
     from rastrainer_simulator.ops.processes import stop_on_signals
 
     tell, stop = partial(announce, "board"), asyncio.Event()

@@ -8,7 +8,7 @@ import aiohttp
 import pytest
 
 from rastrainer_simulator.board.board_server import SUBPROTOCOL, BoardServer
-from rastrainer_simulator.board.seat_client import SeatClient
+from rastrainer_simulator.board.seats import SeatClient
 from rastrainer_simulator.net.views.certificate import own_certificate
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from Testing.free_port import free_port

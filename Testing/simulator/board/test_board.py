@@ -8,7 +8,7 @@ import stat
 import aiohttp
 import pytest
 
-from rastrainer_simulator.board.seat_list import SEATS_FILE
+from rastrainer_simulator.board.seats import SEATS_FILE
 from rastrainer_simulator.board.watched_seat import checked_seat
 from rastrainer_simulator.net.views.presenter import Seat
 from rastrainer_simulator.net.views.sessions import BOARDS_FILE
