@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Sequence
-from concurrent.futures import Future
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +13,8 @@ from rastrainer.protocol import GhostRule, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.views.outgoing import GHOST_LINKS
+from rastrainer_simulator.replay.recorded_trial import JournalLoading
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import SimulationState
 
@@ -65,51 +63,20 @@ class Ghost:
         return tuple(self._moved @ placed[name] for name in (*self._links, self._tip))
 
 
-class GhostLoading:
-    """Loads the first usable one of some journals in a thread, beside the control loop.
-
-    Attributes:
-        ghost: None where no journal is usable.
-    """
-
-    def __init__(
-        self, journals: Sequence[Path], setup: SimulationSetup, head_to_world: np.ndarray
-    ) -> None:
-        """Start loading; HeadToWorld as of a `Ghost`."""
-        self.ghost: Future[Ghost | None] = Future()
-        self._is_canceled = False
-        threading.Thread(
-            target=self._load, args=(journals, setup, head_to_world), name="ghost", daemon=True
-        ).start()
-
-    def cancel(self) -> None:
-        """Stop loading, unless it is done."""
-        self._is_canceled = True
-
-    def _load(
-        self, journals: Sequence[Path], setup: SimulationSetup, head_to_world: np.ndarray
-    ) -> None:
-        # Set aside while it holds the interpreter, it would make the control loop wait.
-        raise_thread_priority()
+def _first_usable(
+    journals: Sequence[Path],
+    setup: SimulationSetup,
+    head_to_world: np.ndarray,
+    check: Callable[[], None],
+) -> Ghost | None:
+    """Return the ghost of the first usable journal; None where none is usable."""
+    for journal in journals:
         try:
-            self.ghost.set_result(self._first(journals, setup, head_to_world))
-        except Exception as error:
-            self.ghost.set_exception(error)
-
-    def _first(
-        self, journals: Sequence[Path], setup: SimulationSetup, head_to_world: np.ndarray
-    ) -> Ghost | None:
-        for journal in journals:
-            try:
-                return Ghost(read_track(journal, self._check), setup, head_to_world)
-            except (InputError, KeyError, TypeError, ValueError, AttributeError, IndexError):
-                # Of another head, damaged, or deleted meanwhile: the next best is one, too.
-                continue
-        return None
-
-    def _check(self) -> None:
-        if self._is_canceled:
-            raise InputError("Loading the ghost was canceled.")
+            return Ghost(read_track(journal, check), setup, head_to_world)
+        except (InputError, KeyError, TypeError, ValueError, AttributeError, IndexError):
+            # Of another head, damaged, or deleted meanwhile: the next best is one, too.
+            continue
+    return None
 
 
 _SHOWN = (Phase.RUNNING, Phase.PAUSED)
@@ -126,7 +93,7 @@ class TrialGhost:
         self.rule = GhostRule.OFF
         self._wanted = GhostRule.OFF
         self._trial_id = ""
-        self._loading: GhostLoading | None = None
+        self._loading: JournalLoading[Ghost | None] | None = None
         self._ghost: Ghost | None = None
 
     def begin(
@@ -141,7 +108,9 @@ class TrialGhost:
         self.close()
         self._wanted, self._trial_id = rule, trial_id
         if rule is not GhostRule.OFF:
-            self._loading = GhostLoading(journals, setup, head_to_world)
+            self._loading = JournalLoading(
+                lambda check: _first_usable(journals, setup, head_to_world, check)
+            )
 
     def close(self) -> None:
         """Show none."""
@@ -152,9 +121,9 @@ class TrialGhost:
 
     def has_just_loaded(self) -> bool:
         """Return whether loading has just ended, true once; `rule` says whether there is one."""
-        if self._loading is None or not self._loading.ghost.done():
+        if self._loading is None or not self._loading.loaded.done():
             return False
-        self._ghost, self._loading = self._loading.ghost.result(), None
+        self._ghost, self._loading = self._loading.loaded.result(), None
         if self._ghost is not None:
             self.rule = self._wanted
         return True

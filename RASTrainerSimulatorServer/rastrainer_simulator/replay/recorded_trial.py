@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import bisect
 import threading
+from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import read_head_mesh
@@ -21,6 +23,7 @@ from rastrainer_simulator.collision.collision import stand_pose
 from rastrainer_simulator.core.arm import moving_links
 from rastrainer_simulator.core.interrupted_trial import refusing_malformed
 from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.record.trial_records import procedure_after
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
@@ -171,34 +174,45 @@ class RecordedTrial:
         return tuple(map(_event, self._track.events[first:end]))
 
 
-class TrialLoading:
-    """Loads a trial beside the control loop, in a thread.
+T = TypeVar("T")
+
+
+class JournalLoading(Generic[T]):
+    """Reads journals in a thread, beside the control loop.
 
     Attributes:
-        trial: the loaded trial, or an `InputError` if it cannot be loaded.
+        loaded: what is made of them, or an `InputError` if that cannot be.
     """
 
-    def __init__(self, journal: Path, setup: SimulationSetup) -> None:
-        """Start loading; the journal is only read."""
-        self.trial: Future[RecordedTrial] = Future()
+    def __init__(self, load: Callable[[Callable[[], None]], T]) -> None:
+        """Start; `load` is given a function that raises InputError as soon as it is canceled."""
+        self.loaded: Future[T] = Future()
         self._is_canceled = False
-        threading.Thread(
-            target=self._load, args=(journal, setup), name="trial loading", daemon=True
-        ).start()
+        threading.Thread(target=self._load, args=(load,), name="loading", daemon=True).start()
 
     def cancel(self) -> None:
         """Stop loading, unless it is done."""
         self._is_canceled = True
 
-    def _load(self, journal: Path, setup: SimulationSetup) -> None:
+    def _load(self, load: Callable[[Callable[[], None]], T]) -> None:
+        # Set aside while it holds the interpreter, it would make the control loop wait.
+        raise_thread_priority()
         try:
-            self.trial.set_result(RecordedTrial(read_track(journal, self._check), setup))
+            self.loaded.set_result(load(self._check))
         except Exception as error:
-            self.trial.set_exception(error)
+            self.loaded.set_exception(error)
 
     def _check(self) -> None:
         if self._is_canceled:
             raise InputError("The trial cannot be shown again: loading it was canceled.")
+
+
+TrialLoading = JournalLoading[RecordedTrial]
+
+
+def load_trial(journal: Path, setup: SimulationSetup) -> TrialLoading:
+    """Start loading a trial; its journal is only read."""
+    return JournalLoading(lambda check: RecordedTrial(read_track(journal, check), setup))
 
 
 def _situations(

@@ -61,7 +61,7 @@ class GhostPlace(Place):
         self.until_menu(None)
         loading = ghost._loading
         if loading is not None:
-            loading.ghost.result(PATIENCE_S)
+            loading.loaded.result(PATIENCE_S)
         self.step()
 
     def noted(self):

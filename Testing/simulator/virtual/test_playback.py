@@ -25,7 +25,7 @@ from rastrainer_simulator.net.views.screen import Screen
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay import recorded_trial
 from rastrainer_simulator.replay.playback import Playback
-from rastrainer_simulator.replay.recorded_trial import RecordedTrial, TrialLoading
+from rastrainer_simulator.replay.recorded_trial import RecordedTrial, load_trial
 from rastrainer_simulator.replay.replay_presenter import ReplayPresenter
 from rastrainer_simulator.virtual.cohort import RECORDS
 from Testing.simulator.net.views.served import ViewClient
@@ -200,7 +200,7 @@ def test_the_simulator_loads_the_same_trial_in_a_thread_and_only_reads_the_journ
     journal, setup, trial
 ):
     before = journal.read_bytes()
-    loaded = TrialLoading(journal, setup).trial.result(60)
+    loaded = load_trial(journal, setup).loaded.result(60)
     assert (loaded.worst, loaded.duration_s) == (trial.worst, trial.duration_s)
     ours, theirs = loaded.state_at(7.0), trial.state_at(7.0)
     assert (ours.q, ours.training) == (theirs.q, theirs.training)
@@ -210,7 +210,7 @@ def test_the_simulator_loads_the_same_trial_in_a_thread_and_only_reads_the_journ
 def test_what_cannot_be_loaded_is_one_sentence(setup, tmp_path):
     (tmp_path / "no.journal").write_text("nothing")
     with pytest.raises(InputError, match=r"is not a trial's journal"):
-        TrialLoading(tmp_path / "no.journal", setup).trial.result(60)
+        load_trial(tmp_path / "no.journal", setup).loaded.result(60)
 
 
 def test_a_trial_of_another_scenario_is_not_shown(track, setup):
@@ -234,12 +234,12 @@ def test_loading_that_is_canceled_ends(journal, setup, monkeypatch):
         return read_track(path, rest)
 
     monkeypatch.setattr(recorded_trial, "read_track", read)
-    loading = TrialLoading(journal, setup)
+    loading = load_trial(journal, setup)
     assert started.wait(60)
     loading.cancel()
     may_go_on.set()
     with pytest.raises(InputError, match="was canceled"):
-        loading.trial.result(60)
+        loading.loaded.result(60)
 
 
 def test_the_program_serves_it_to_views_until_escape(journal, tmp_path, loop_thread):

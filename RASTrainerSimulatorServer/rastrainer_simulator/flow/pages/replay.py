@@ -59,7 +59,7 @@ class ReplayPage(SessionPage):
         """Play, as soon as the trial is loaded."""
         if self.playback is not None:
             self.playback.advance(dt)
-        elif self._loading.trial.done():
+        elif self._loading.loaded.done():
             self._begin()
 
     def accept(self, item: str) -> None:  # noqa: ARG002
@@ -87,7 +87,7 @@ class ReplayPage(SessionPage):
     def _begin(self) -> None:
         session = self.session
         try:
-            trial = self._loading.trial.result()
+            trial = self._loading.loaded.result()
         except InputError as error:
             self.back()
             session.complain(str(error))

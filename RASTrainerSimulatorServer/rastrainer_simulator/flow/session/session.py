@@ -51,7 +51,7 @@ from rastrainer_simulator.net.views.screen import Tone
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
-from rastrainer_simulator.replay.recorded_trial import TrialLoading
+from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
 from rastrainer_simulator.state import Answer, OperatorInput, SimulationState, TrainingState
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
@@ -289,7 +289,7 @@ class TrainingSession:
         found = journals_of(self._services.records, self.training.trial_id)
         if not found:
             raise InputError(self.texts.say("replay.no journal"))
-        return TrialLoading(found[0], self._control_loop.setup)
+        return load_trial(found[0], self._control_loop.setup)
 
     def note_done(self) -> None:
         """Count the present trial's task as done."""
