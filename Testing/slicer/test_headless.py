@@ -131,12 +131,18 @@ def check_saved_scene(path, results):
     assert scene.GetFirstNodeByName("ToolTipToWorld") is None
 
 
-def test_files_are_written_for_a_trial_whose_true_error_nobody_revealed(colin_record, tmp_path):
+def test_files_are_written_for_a_trial_whose_true_error_nobody_revealed(
+    colin_record, tmp_path, monkeypatch
+):
+    captions = []
+    monkeypatch.setattr(headless, "writeResidualPicture", lambda *words: captions.extend(words[-1]))
     scenario = load_scenario(COLIN)
     analysis = analyze_trial(TrialRecord.from_json(colin_record), scenario)
     files = writeOutput(tmp_path, HeadlessScene(), scenario, analysis)
     assert results_json(analysis)["truth"] is None
-    assert Path(files["picture"]).stat().st_size > 1000
+    assert Path(files["scene"]).stat().st_size > 1000
+    assert "expected TRE" in captions[1]
+    assert "true TRE" not in captions[1]
 
 
 def test_trials_that_do_not_come_end_with_status_1_and_a_sentence(simulator, tmp_path, capfd):

@@ -63,21 +63,18 @@ def shown_fre(host):
     return None if shown is None else float(shown.text())
 
 
-def test_a_replay_of_another_task_registers_its_own_touches_and_all_of_them(host, trials):
+def test_a_replay_registers_all_its_touches_and_to_its_own_tasks_fiducials(host, trials):
     replay(host, trials, 1, "task-1")
     host.choose("residualsTable", 3)
     host.press("excludeButton")
     assert host.find("residualsTable").rowCount == 14
     replay(host, trials, 2, "task-2")
-
-
-def test_touches_are_not_paired_with_another_tasks_fiducials(host, trials):
-    replay(host, trials, 1, "task-1")
-    host.choose("taskComboBox", "Task 2")
+    # They are not paired with another task's fiducials.
+    host.choose("taskComboBox", "Task 1")
     host.press("showScenarioButton")
     host.wait_until(lambda: "show the task" in host.text("registrationText"), "it is said")
     assert host.find("fitsTable").item(0, 1) is None
-    host.choose("taskComboBox", "Task 1")
+    host.choose("taskComboBox", "Task 2")
     host.press("showScenarioButton")
     host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "they are registered")
 
