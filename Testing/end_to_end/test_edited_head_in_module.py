@@ -15,7 +15,7 @@ from vtk.util.numpy_support import numpy_to_vtk
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.scenario.library import user_library
 from rastrainer.scenario.points import LABELS
-from rastrainer.slicer.head.segment import SEGMENT_NAME
+from rastrainer.slicer.head.volume import SEGMENT_NAME
 from rastrainer.slicer.logic import scenario_maker
 from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.end_to_end.module.story import Story, unfold

@@ -14,8 +14,7 @@ from rastrainer.scenario.library import pack, unpack, user_library
 from rastrainer.scenario.setup import SetUp
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer.slicer.head.extraction import findHead
-from rastrainer.slicer.head.segment import forSegment, volumeOfSegment
-from rastrainer.slicer.head.volume import HeadSettings, Volume
+from rastrainer.slicer.head.volume import HeadSettings, Volume, forSegment, volumeOfSegment
 from rastrainer.slicer.logic import head_preview, scenario_logic, scenario_maker
 from rastrainer.slicer.logic.head_preview import HeadPreview
 from rastrainer.slicer.program.own_process import OwnProcess

@@ -112,7 +112,7 @@ def test_showing_a_head_imports_no_scipy_and_finding_it_neither_slicer_nor_qt():
     program = (
         "import sys; sys.modules['slicer'] = sys.modules['qt'] = None\n"
         f"sys.path.insert(0, {str(LOGIC)!r})\n"
-        "import rastrainer.slicer.head.segment, rastrainer.slicer.head.volume\n"
+        "import rastrainer.slicer.head.volume\n"
         "import rastrainer.slicer.program.own_process\n"
         "assert 'scipy' not in sys.modules\n"
         "import rastrainer.slicer.head.head_draft"

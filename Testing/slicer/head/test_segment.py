@@ -8,8 +8,14 @@ import vtk
 from rastrainer.errors import InputError
 from rastrainer.progress import no_progress
 from rastrainer.slicer.head.extraction import findHead, skinOf
-from rastrainer.slicer.head.segment import forSegment, readSegment, showSegment, volumeOfSegment
-from rastrainer.slicer.head.volume import HeadBody, HeadSettings
+from rastrainer.slicer.head.volume import (
+    HeadBody,
+    HeadSettings,
+    forSegment,
+    readSegment,
+    showSegment,
+    volumeOfSegment,
+)
 from Testing.slicer.head.placed import add_transform, vtk_matrix
 
 BASE = -40.3

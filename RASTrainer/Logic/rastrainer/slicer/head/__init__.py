@@ -1,5 +1,5 @@
 """From a volume of a patient's head to a closed surface that the simulator can train on.
 
-Needs VTK, numpy and scipy, which Slicer brings along. `volume` and `segment` know MRML; what
-comes between them works on arrays.
+Needs VTK, numpy and scipy, which Slicer brings along. Only `volume` knows MRML; the rest works on
+arrays.
 """

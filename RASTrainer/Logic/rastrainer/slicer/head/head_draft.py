@@ -15,15 +15,17 @@ from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.slicer.head import mask, surface
 from rastrainer.slicer.head.extraction import CT_AIR, findHead, isHounsfield, skinOf
-from rastrainer.slicer.head.segment import SegmentImage, forSegment, volumeOfSegment
 from rastrainer.slicer.head.volume import (
     SPACING_MM,
     HeadBody,
     HeadSettings,
+    SegmentImage,
     Volume,
     asFloat,
+    forSegment,
     onRasGrid,
     sampled,
+    volumeOfSegment,
 )
 
 

@@ -14,8 +14,7 @@ from rastrainer.slicer.translation import _
 
 if TYPE_CHECKING:
     from rastrainer.head.mesh import HeadMesh
-    from rastrainer.slicer.head.segment import SegmentImage
-    from rastrainer.slicer.head.volume import HeadBody, HeadSettings
+    from rastrainer.slicer.head.volume import HeadBody, HeadSettings, SegmentImage
 
 FIND_SKIN = "rastrainer.slicer.head.head_draft:findSkin"
 PREVIEWED_ATTRIBUTE = "RASTrainer.previewed"
@@ -71,7 +70,7 @@ class HeadPreview:
         Raises:
             InputError: the volume cannot be used, or there is no head in it.
         """
-        from rastrainer.slicer.head.segment import showSegment
+        from rastrainer.slicer.head.volume import showSegment
 
         found, skin, warnings = findSkin(self._run, volumeNode, settings, progress)
         node = self._node("vtkMRMLSegmentationNode", Role.HEAD_SEGMENT, "Head to be edited")
@@ -99,7 +98,7 @@ class HeadPreview:
         Raises:
             InputError: the head was found with other settings, or its segment cannot be used.
         """
-        from rastrainer.slicer.head.segment import SEGMENT_NAME, readSegment
+        from rastrainer.slicer.head.volume import SEGMENT_NAME, readSegment
 
         node = findNode(self._scene, "vtkMRMLSegmentationNode", Role.HEAD_SEGMENT)
         if node is None or node.GetAttribute(PREVIEWED_ATTRIBUTE) != volumeNode.GetID():
