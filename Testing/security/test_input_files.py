@@ -326,7 +326,7 @@ def test_a_package_of_a_scenario_leads_nowhere_else_and_is_no_bomb(tmp_path):
     for name in ("../../evil.txt", "/evil.txt", "a\\..\\evil.txt", "con", "a/../evil.txt"):
         with zipfile.ZipFile(package, "w") as archive:
             archive.writestr(name, "evil")
-        with pytest.raises(InputError, match="is no package of a scenario"):
+        with pytest.raises(InputError, match="is not a scenario package"):
             unpack(package, library)
     with zipfile.ZipFile(package, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("head.ply", bytes(200_000_000))

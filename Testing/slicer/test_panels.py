@@ -474,7 +474,7 @@ def test_a_trial_has_feedback_and_is_shown_again(panels, add_trial):
     panels.wait_until(lambda: panels.text("feedbackText").startswith("Score "), "it is judged")
     assert "This is your first trial of this task" in panels.text("feedbackText")
     panels.press("replayButton")
-    assert "only on the computer whose simulator has recorded it" in panels.messages[-1].text
+    assert "only on the computer whose simulator recorded it" in panels.messages[-1].text
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
     panels.press("replayButton")
     assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1").GetNumberOfItems() > 150

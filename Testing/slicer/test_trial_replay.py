@@ -134,7 +134,7 @@ def test_a_journal_of_another_robot_or_none_at_all_is_reported(scene, tips, tmp_
     with pytest.raises(InputError, match="another robot"):
         showReplay(scene, "Trial 1", track, other, WORLD_TO_HEAD)
     assert findReplay(scene) is None
-    with pytest.raises(InputError, match="only on the computer whose simulator has recorded it"):
+    with pytest.raises(InputError, match="only on the computer whose simulator recorded it"):
         find_track(tmp_path, TRIAL[:-1] + "2")
 
 

@@ -88,7 +88,7 @@ def _is_deeper_than(deepest: int, value: Any) -> bool:
 
 
 def _refuse_constant(word: str) -> float:
-    raise ValueError(f"{word} is no number")
+    raise ValueError(f"{word} is not a number")
 
 
 def _finite_float(digits: str) -> float:

@@ -43,7 +43,7 @@ def refusing_malformed(sentence: str) -> Iterator[None]:
         raise InputError(f"{sentence} ({error!r}).") from None
 
 
-MALFORMED = "An entry of the journal is not as it should be"
+MALFORMED = "A journal entry is malformed"
 
 
 class RecordedFeed:

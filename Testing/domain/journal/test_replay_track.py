@@ -38,10 +38,10 @@ def test_a_track_has_the_joint_angles_of_each_sample(written):
 @pytest.mark.parametrize(
     ("posture", "sentence"),
     [
-        ([0.0] * 6, "no movement that could be shown"),
-        (["left"] * 7, "is not as it should be"),
-        ([10**400] * 7, "is not as it should be"),
-        (None, "is not as it should be"),
+        ([0.0] * 6, "no movement to replay"),
+        (["left"] * 7, "is malformed"),
+        ([10**400] * 7, "is malformed"),
+        (None, "is malformed"),
     ],
     ids=["six joints", "words", "huge", "none"],
 )

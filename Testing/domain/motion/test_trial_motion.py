@@ -215,5 +215,5 @@ def test_touches_that_could_not_be_written_do_not_count():
     ids=["missing", "words", "two coordinates", "huge"],
 )
 def test_a_malformed_entry_raises_one_sentence(malformed):
-    with pytest.raises(InputError, match="An entry of the journal is not as it should be"):
+    with pytest.raises(InputError, match="A journal entry is malformed"):
         Recording.of([malformed])

@@ -181,7 +181,7 @@ def test_misfit_to_the_stated_errors_is_seldom_a_false_alarm(sets):
         ([*[1.0] * 11, np.nan], "rigid", "weight of point 12 must be a number above 0"),
         ([*[1.0] * 11, 1e13], "rigid", "at most 1e[+]12 times"),
         ("many", "rigid", "weights must be numbers"),
-        (np.ones(12), "affine", "affine knows none"),
+        (np.ones(12), "affine", "affine has none"),
     ],
     ids=["few", "zero", "none", "far apart", "words", "affine"],
 )
@@ -274,4 +274,4 @@ def test_weights_are_refused_for_other_kinds_than_rigid(files, capsys):
     moving, fixed, *_ = files
     status, out = run(capsys, moving, fixed, "--fle", moving, "--type", "similarity")
     assert status != 0
-    assert "similarity knows none" in out.err
+    assert "similarity has none" in out.err

@@ -68,7 +68,7 @@ def test_a_volume_is_read_back_and_optional(tmp_path):
 def test_a_folder_that_is_not_empty_is_not_written_into(tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "notes.txt").write_text("mine")
-    with pytest.raises(InputError, match="is there already"), new_folder(tmp_path / "mine"):
+    with pytest.raises(InputError, match="already exists"), new_folder(tmp_path / "mine"):
         pass
     assert [path.name for path in tmp_path.rglob("*")] == ["mine", "notes.txt"]
 

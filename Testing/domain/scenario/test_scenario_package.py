@@ -72,7 +72,7 @@ def test_a_scenario_is_packed_and_unpacked(folder, library):
 
 def test_nothing_is_overwritten(folder, library):
     package = pack(folder, folder.parent / "good.zip")
-    with pytest.raises(InputError, match="is there already"):
+    with pytest.raises(InputError, match="already exists"):
         pack(folder, package)
     goal = unpack(package, library)
     before = (goal / "scenario.json").stat().st_mtime_ns
@@ -188,7 +188,7 @@ def test_a_name_with_a_path_is_refused(folder, library):
 def test_a_file_that_is_not_a_zip_file_is_refused(folder, library, content):
     bad = folder.parent / "bad.zip"
     bad.write_bytes(content)
-    refused(bad, library, "is no zip file, or a damaged one")
+    refused(bad, library, "is not a zip file, or is damaged")
 
 
 def test_a_damaged_package_is_refused(folder, library):

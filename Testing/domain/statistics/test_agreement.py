@@ -114,7 +114,7 @@ def test_who_agrees_everywhere_or_but_once_leaves_no_limits(second):
 
 
 def test_one_and_the_same_mark_throughout_tells_nothing():
-    with pytest.raises(InputError, match="one and the same mark"):
+    with pytest.raises(InputError, match="every object the same mark"):
         quadratic_kappa([4, 4, 4, 4], [4, 4, 4, 4], 1, 5)
     with pytest.raises(InputError, match="three objects"):
         quadratic_kappa([1, 2], [2, 1], 1, 5)

@@ -195,7 +195,7 @@ def test_progress_reports_best_score_pass_mark_and_competence():
     assert progress.sentences[1] == "Passed: the mark is 45."
     early = progress_of(history, history[2].trial_id, pass_mark=45.0)
     assert early.scores == (40.0, 41.0, 42.0)
-    assert early.sentences[1] == "Not passed yet: 3 points to the mark of 45."
+    assert early.sentences[1] == "Not passed yet: 3 points short of the mark of 45."
     assert early.sentences[2].startswith(
         "0 % of the way to demonstrated competence (LC-CUSUM; trials so far: 3)"
     )
@@ -227,7 +227,7 @@ def test_competence_is_shown_by_passed_trials_in_the_same_mode():
     progress = progress_of(history, history[-1].trial_id, pass_mark=60.0)
     assert progress.competence.competent_at is not None
     assert progress.competence.false_discovery <= 0.05
-    assert "show competence since number" in progress.sentences[2]
+    assert "shown competence since number" in progress.sentences[2]
     long = [past(i, 80.0) for i in range(100)]
     told = progress_of(long, long[-1].trial_id, pass_mark=60.0)
     assert told.competence.false_discovery > 0.05

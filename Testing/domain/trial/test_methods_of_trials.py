@@ -90,7 +90,7 @@ def test_an_open_trial_is_registered_from_what_the_simulator_answers(scenario, t
         pytest.param({"trace": [[1.0, 2.0, 3.0, 4.0]]}, "trace of 30 points", id="too short"),
         pytest.param({"touches": []}, "a list of landmarks", id="no landmark"),
         pytest.param({"method": "fiducials"}, "a list of 15", id="fiducials"),
-        pytest.param({"method": "laser"}, "there are fiducials, landmarks", id="unknown"),
+        pytest.param({"method": "laser"}, "methods are fiducials, landmarks", id="unknown"),
     ],
 )
 def test_an_answer_that_cannot_be_registered_is_refused_with_a_sentence(traced, changes, said):

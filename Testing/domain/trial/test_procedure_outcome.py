@@ -83,7 +83,7 @@ def test_the_outcome_of_a_procedure_is_submitted_with_the_score(record):
 
 def test_a_trial_with_another_version_of_the_plan_is_not_analyzed(record):
     done = replace(record.procedure, sha256="0" * 64)
-    with pytest.raises(InputError, match="with another plan than the procedure 'seeg'"):
+    with pytest.raises(InputError, match="with a different plan from the procedure 'seeg'"):
         analyze_trial(replace(record, procedure=done), SCENARIO, truth=REVEALED)
 
 

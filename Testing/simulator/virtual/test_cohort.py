@@ -119,7 +119,7 @@ def test_a_scheduler_that_is_missing_is_reported():
 
 def test_a_folder_that_holds_something_is_not_touched(protocol, population, tmp_path):
     (tmp_path / "thesis.txt").write_text("mine")
-    with pytest.raises(InputError, match="holds something"):
+    with pytest.raises(InputError, match="is not empty"):
         simulate_cohort(protocol, population, 2, 0, tmp_path, PlaySettings(), workers=1)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 

@@ -82,7 +82,7 @@ def make_empty_folder(folder: Path) -> None:
     """Make a folder; raise `InputError` if that fails or it is not empty."""
     make_folder(folder)
     if any(folder.iterdir()):
-        raise InputError(f"The folder {folder} holds something; choose one that is empty.")
+        raise InputError(f"The folder {folder} is not empty; choose an empty one.")
 
 
 def write_private_json(path: Path, value: object) -> None:

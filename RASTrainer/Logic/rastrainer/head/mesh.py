@@ -219,7 +219,7 @@ def _checked(path: Path, vertex_count: int, triangle_count: int, body: bytes) ->
     if not np.all(np.abs(vertices) <= RAS_LIMIT_MM):
         raise InputError(f"The mesh {path} has a vertex that is not within ±{RAS_LIMIT_MM:g} mm.")
     if (faces["count"] != 3).any() or corners.min() < 0 or corners.max() >= vertex_count:
-        raise InputError(f"The mesh {path} has a face that is no triangle of its vertices.")
+        raise InputError(f"The mesh {path} has a face that is not a triangle of its vertices.")
     return HeadMesh(vertices.astype(float), corners.astype(np.int32))
 
 

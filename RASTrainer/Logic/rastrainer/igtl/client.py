@@ -152,7 +152,7 @@ class Client:
                 return self.latest[device]
             if not self._is_open:
                 raise LinkError("The connection is lost.")
-            raise LinkError(f"Nothing that fits from {device} within {timeout:g} s.")
+            raise LinkError(f"No matching message from {device} within {timeout:g} s.")
 
     def _receive(self) -> None:
         try:

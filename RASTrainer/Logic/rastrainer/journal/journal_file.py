@@ -120,7 +120,7 @@ class JournalReading:
             InputError: the first line is incomplete.
         """
         if not self.entries:
-            raise InputError(f"{self.path} holds no whole line.")
+            raise InputError(f"{self.path} has no complete line.")
         return self.entries[0]
 
     @property
@@ -185,7 +185,7 @@ def _judged(
     ended = bool(steps) and steps[-1] in ENDS
     if whole and ended:
         return Integrity.INTACT, tuple(entries), end, f"intact: {len(entries)} lines"
-    why = "the trial was not ended" if whole else "the line after it is not whole"
+    why = "the trial was not ended" if whole else "the line after it is incomplete"
     sentence = f"cut short: recovered up to line {len(entries)}, {why}"
     return Integrity.CUT_SHORT, tuple(entries), end, sentence
 

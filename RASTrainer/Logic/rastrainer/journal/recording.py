@@ -64,9 +64,7 @@ class Recording:
             for entry in entries:
                 recording.add(entry)
         except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
-            raise InputError(
-                f"An entry of the journal is not as it should be ({error!r})."
-            ) from None
+            raise InputError(f"A journal entry is malformed ({error!r}).") from None
         return recording
 
     def add(self, entry: Mapping[str, Any]) -> None:
@@ -320,8 +318,8 @@ def find_track(records: Path, trial_id: str) -> ReplayTrack:
     paths = journals_of(records, trial_id)
     if not paths:
         raise InputError(
-            f"The journal of this trial is not in {records}: it can be shown again only on the "
-            "computer whose simulator has recorded it."
+            f"The journal of this trial is not in {records}: it can be replayed only on the "
+            "computer whose simulator recorded it."
         )
     return read_track(paths[0])
 
@@ -336,7 +334,7 @@ def read_track(path: Path, pause: Callable[[], None] = lambda: None) -> ReplayTr
     recording = _ReplayRecording.of(reading.entries)
     trajectory, postures = recording.trajectory(), recording.postures
     if len(postures) < 2 or any(len(posture) != 7 for posture in postures):
-        raise InputError(f"{path} holds no movement that could be shown again.")
+        raise InputError(f"{path} has no movement to replay.")
     q, feeds = np.array(postures), np.array(recording.feeds)
     return ReplayTrack(reading.header, trajectory, q, feeds, tuple(recording.events))
 

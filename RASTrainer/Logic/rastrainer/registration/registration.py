@@ -218,7 +218,7 @@ def check_weights(
     if weights is None:
         return None
     if kind != RIGID:
-        raise InputError(f"Weights are for rigid registrations; {kind} knows none.")
+        raise InputError(f"Weights are for rigid registrations; {kind} has none.")
     try:
         array = np.array(weights, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -297,11 +297,11 @@ def _check_extent(points: np.ndarray, which: str, kind: str, labels: tuple[str, 
         raise InputError(f"All {which} points ({names}) are at the same place.")
     if across < FLAT * along:
         raise InputError(
-            f"The {which} points ({names}) lie on one line, so the rotation about it is open; "
-            "add a point well away from it."
+            f"The {which} points ({names}) lie on one line, so the rotation about it is "
+            "undetermined; add a point well away from it."
         )
     if kind == AFFINE and out_of_plane < FLAT * along:
         raise InputError(
-            f"The {which} points ({names}) lie in one plane, so an affine registration is open; "
-            "add a point well away from it, or choose rigid."
+            f"The {which} points ({names}) lie in one plane, so an affine registration is "
+            "undetermined; add a point well away from it, or choose rigid."
         )

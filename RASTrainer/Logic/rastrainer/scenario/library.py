@@ -139,7 +139,7 @@ def pack(folder: Path, package: Path) -> Path:
     """
     scenario, package = checked_scenario(folder), Path(package)
     if package.exists():
-        raise InputError(f"{package} is there already; name a file that is new.")
+        raise InputError(f"{package} already exists; name a new file.")
     head = read_head_mesh(scenario.head_mesh)
     skull = read_head_mesh(scenario.skull_mesh) if scenario.skull_mesh else None
     volume = read_head_volume(scenario.volume) if scenario.volume else None
@@ -251,7 +251,7 @@ def _read_archive(package: Path, folder: Path, progress: Progress) -> None:
     except InputError:
         raise
     except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError):
-        raise _refused(package, "is no zip file, or a damaged one") from None
+        raise _refused(package, "is not a zip file, or is damaged") from None
 
 
 def _extract(package: Path, archive: zipfile.ZipFile, folder: Path, progress: Progress) -> None:
@@ -305,4 +305,4 @@ def _checked(package: Path, folder: Path) -> Scenario:
 
 
 def _refused(package: Path, reason: str) -> InputError:
-    return InputError(f"{package} {reason}: it is no package of a scenario.")
+    return InputError(f"{package} {reason}: it is not a scenario package.")

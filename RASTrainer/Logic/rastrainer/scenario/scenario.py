@@ -311,7 +311,7 @@ def method_of(name: str | None) -> RegistrationMethod:
         if method.value == (name or RegistrationMethod.FIDUCIALS.value):
             return method
     names = ", ".join(method.value for method in PLAYED_METHODS)
-    raise InputError(f"No trial is registered by such a method; there are {names}.")
+    raise InputError(f"There is no such registration method; the methods are {names}.")
 
 
 def playable_methods(scenario: Scenario) -> tuple[RegistrationMethod, ...]:

@@ -40,7 +40,7 @@ def new_folder(folder: Path) -> Iterator[Path]:
     """
     folder = Path(folder).absolute()
     if folder.is_symlink() or folder.is_file() or (folder.is_dir() and any(folder.iterdir())):
-        raise InputError(f"{folder} is there already; name a folder that is new or empty.")
+        raise InputError(f"{folder} already exists; name a new or empty folder.")
     partial = folder.parent / f".{uuid.uuid4().hex}.partial"
     try:
         # The head may have a recognizable face.

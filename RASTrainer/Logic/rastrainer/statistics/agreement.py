@@ -161,7 +161,9 @@ def kappa_of_table(table: np.ndarray, weights: np.ndarray) -> float:
     observed = float(np.sum(weights * shares))
     by_chance = float(shares.sum(axis=1) @ weights @ shares.sum(axis=0))
     if by_chance >= 1.0 - 1e-12:
-        raise InputError("Both raters gave one and the same mark: agreement cannot be computed.")
+        raise InputError(
+            "Both raters gave every object the same mark: agreement cannot be computed."
+        )
     return (observed - by_chance) / (1 - by_chance)
 
 

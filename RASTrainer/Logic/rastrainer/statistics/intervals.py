@@ -30,7 +30,7 @@ def scipy_module(name: str) -> ModuleType:
             raise
         raise InputError(
             "The statistics of studies need scipy, which is not installed here: "
-            "pip install scipy (3D Slicer brings it along)."
+            "pip install scipy (3D Slicer includes it)."
         ) from None
 
 

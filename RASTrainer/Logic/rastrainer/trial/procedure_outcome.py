@@ -81,8 +81,8 @@ def procedure_outcome(
     meshes = read_procedure_meshes(procedure, skull)
     if done.sha256 != procedure.sha256(skull):
         raise InputError(
-            f"The trial was carried out with another plan than the procedure {procedure.name!r} of "
-            f"the scenario {scenario.name} here."
+            "The trial was carried out with a different plan from the procedure "
+            f"{procedure.name!r} of the scenario {scenario.name} here."
         )
     analysis = analyze_procedure(done, procedure, meshes, head_to_world)
     touching = score_reference(scenario, record.task, references, record.method).time_s

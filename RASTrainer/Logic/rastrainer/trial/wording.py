@@ -51,27 +51,28 @@ ENGLISH: Mapping[str, str] = {
     "touch.",
     "repeated touches": "{count} touches were refused or undone: check the number of the point "
     "before you touch.",
-    "pace": "You took {time:.0f} s where {usual:.0f} s are usual: travel faster between the points "
+    "pace": "You took {time:.0f} s where {usual:.0f} s is usual: travel faster between the points "
     "and slow down only near the skin.",
     "first trial": "This is your first trial of this task in this mode.",
     "first of this score": "Your earlier trials of this task have scores of an earlier version, "
     "which cannot be compared with this one.",
     "more points": "{points:.0f} points more than the mean of your last {trials} trials of this "
     "task.{best}",
-    "less points": "{points:.0f} points less than the mean of your last {trials} trials of this "
+    "less points": "{points:.0f} points fewer than the mean of your last {trials} trials of this "
     "task.{best}",
     "more points than last": "{points:.0f} points more than in your last trial of this task.{best}",
-    "less points than last": "{points:.0f} points less than in your last trial of this task.{best}",
+    "less points than last": "{points:.0f} points fewer than in your last trial of this "
+    "task.{best}",
     "best": " It is your best so far.",
     "unacceptable": "Not passed: the true error in the brain, the bias that all touches share, or "
     "the contact with the head is beyond what is acceptable.",
     "passed": "Passed: the mark is {mark:.0f}.",
-    "not passed": "Not passed yet: {points:.0f} points to the mark of {mark:.0f}.",
+    "not passed": "Not passed yet: {points:.0f} points short of the mark of {mark:.0f}.",
     "no mark": "Neither passed nor failed: the pass mark of this study is for another version of "
     "the score.",
-    "competent": "Your trials show competence since number {number}: of those who still fail in "
-    "{failing:.0f} % of their trials, {risk:.0f} % get this far by chance within {trials} trials "
-    "(LC-CUSUM).",
+    "competent": "Your trials have shown competence since number {number}: of those who still fail "
+    "in {failing:.0f} % of their trials, {risk:.0f} % get this far by chance within {trials} "
+    "trials (LC-CUSUM).",
     "not competent": "{share:.0f} % of the way to demonstrated competence (LC-CUSUM; trials so "
     "far: {trials}).",
 }
