@@ -137,7 +137,7 @@ class TaskSetProposer:
         if len(positions) < len(LABELS):
             raise InputError(
                 f"The robot can touch only {len(positions)} of {len(vertices)} places of this head "
-                "where a fiducial could be; bring the head nearer to the robot."
+                "where a fiducial could be; move the head closer to the robot."
             )
         self._report("Finding what the view shows", 0.2)
         return places_seen_from(planning.mesh, positions, normals, planning.eye)

@@ -44,7 +44,7 @@ def surface_points(vertices: np.ndarray, triangles: np.ndarray, spacing: float) 
     counts = np.ceil(np.linalg.norm(end - start, axis=1) / spacing).astype(int) + 1
     if counts.sum() > _MAX_POINTS:
         raise InputError(
-            f"A collision mesh has {len(start)} edges of {counts.sum() * spacing:.0f} m in all; "
+            f"A collision mesh has {len(start)} edges of {counts.sum() * spacing:.0f} m in total; "
             "it should be a coarse hull of its link."
         )
     rows = np.repeat(np.arange(len(start)), counts)

@@ -22,7 +22,7 @@ SHORTEST_TRAJECTORY_M = 1e-3
 _UP = np.array([0.0, 0.0, 1.0])
 
 OUT_OF_REACH = "The target is out of the robot's reach."
-NO_ROOM = "The robot reaches the target, but its links come too near to the head or the table."
+NO_ROOM = "The robot reaches the target, but its links come too close to the head or the table."
 NOT_BEFORE = (
     "The robot cannot hold the guide on the line before its entry; choose another entry point."
 )

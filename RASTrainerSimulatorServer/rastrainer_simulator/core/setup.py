@@ -64,13 +64,15 @@ def _fingerprint(urdf: Path) -> str:
 def model_to_json(model: RobotModel, folder: Path) -> dict[str, Any]:
     """Return a model as a JSON object; its mesh files are named from `folder` on."""
     meshes = [asdict(part) | {"path": part.path.relative_to(folder)} for part in model.meshes]
-    return {
-        "name": model.name,
-        "tip": model.tip.name,
-        "joints": [_plain(asdict(joint)) for joint in model.joints],
-        "links": [_plain(asdict(link)) for link in model.links],
-        "meshes": [_plain(mesh) for mesh in meshes],
-    }
+    return _plain(
+        {
+            "name": model.name,
+            "tip": model.tip.name,
+            "joints": [asdict(joint) for joint in model.joints],
+            "links": [asdict(link) for link in model.links],
+            "meshes": meshes,
+        }
+    )
 
 
 def model_from_json(value: Mapping[str, Any], folder: Path) -> RobotModel:
@@ -88,14 +90,15 @@ def model_from_json(value: Mapping[str, Any], folder: Path) -> RobotModel:
     return make_model(value["name"], joints, links, value["tip"], meshes)
 
 
-def _plain(value: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: _plain_part(part) for name, part in value.items()}
-
-
-def _plain_part(part: Any) -> Any:
-    if isinstance(part, np.ndarray):
-        return part.tolist()
-    return part.as_posix() if isinstance(part, Path) else part
+def _plain(value: Any) -> Any:
+    """Return a value ready for JSON: arrays as lists, paths as text."""
+    if isinstance(value, dict):
+        return {name: _plain(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(part) for part in value]
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value.as_posix() if isinstance(value, Path) else value
 
 
 def _arrays(value: Mapping[str, Any], *names: str) -> dict[str, Any]:
@@ -107,22 +110,14 @@ def _arrays(value: Mapping[str, Any], *names: str) -> dict[str, Any]:
 
 def shape_to_json(shape: RobotShape) -> dict[str, Any]:
     """Return a shape as a JSON object."""
-    links = [_link_to_json(link) for link in shape.links]
-    return {"links": links, "tool": _link_to_json(shape.tool), "tipName": shape.tip_name}
+    links = [asdict(link) for link in shape.links]
+    return _plain({"links": links, "tool": asdict(shape.tool), "tipName": shape.tip_name})
 
 
 def shape_from_json(value: Mapping[str, Any]) -> RobotShape:
     """Return the shape that a JSON object holds."""
     links = tuple(_link_from_json(link) for link in value["links"])
     return RobotShape(links, _link_from_json(value["tool"]), value["tipName"])
-
-
-def _link_to_json(link: LinkShape) -> dict[str, Any]:
-    capsules = [
-        {"start": capsule.start.tolist(), "end": capsule.end.tolist(), "radius": capsule.radius}
-        for capsule in link.capsules
-    ]
-    return {"name": link.name, "joint": link.joint, "capsules": capsules}
 
 
 def _link_from_json(value: Mapping[str, Any]) -> LinkShape:

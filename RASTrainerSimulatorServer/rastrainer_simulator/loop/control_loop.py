@@ -50,7 +50,7 @@ from rastrainer_simulator.training.true_error import Truth
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
 COMMANDS_PER_TICK = 16
-TOO_MANY_STARTS = "Trials are started too often: wait some seconds, then start again."
+TOO_MANY_STARTS = "Trials are being started too often: wait a few seconds, then try again."
 TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenario."
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."

@@ -115,7 +115,9 @@ def _replay(
     if not start.tick <= last <= start.tick + LONGEST_TRIAL_TICKS:
         raise InputError(f"{reading.path} has {last - start.tick} ticks: no trial is that long.")
     if not SHORTEST_TICK_S <= header["tickS"] <= LONGEST_TICK_S:
-        raise InputError(f"{reading.path} claims ticks of {header['tickS']} s: no loop has them.")
+        raise InputError(
+            f"{reading.path} claims ticks of {header['tickS']} s: no control loop has such."
+        )
     simulation = Simulation(setup, header["seed"])
     simulation.restart_from(start)
     player = _Player(simulation, header["tickS"], watch)

@@ -23,9 +23,9 @@ from rastrainer_simulator.robot.srs_arm import (
 )
 from rastrainer_simulator.vectors import Vector, add, dot, length, scale
 
-OUT_OF_REACH = "The target is out of reach; the tool is as near to it as the arm gets."
+OUT_OF_REACH = "The target is out of reach; the tool is as close to it as the arm can bring it."
 ROLL_BLOCKED = (
-    "The joint limits do not allow this roll of the tool there; it is as near as it gets."
+    "The joint limits do not allow this roll of the tool there; it is as close as they allow."
 )
 BLOCKED = "No posture inside the joint limits holds the tool like that; the arm does not move."
 

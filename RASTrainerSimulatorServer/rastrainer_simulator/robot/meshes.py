@@ -76,7 +76,7 @@ def _check_shape(part: MeshPart, vertices: np.ndarray, faces: np.ndarray) -> Non
         raise InputError(f"{part.path} has {len(faces)} triangles; at most {MAX_TRIANGLES} fit.")
     is_surface = vertices.shape[1:] == faces.shape[1:] == (3,)
     if not is_surface or faces.min() < 0 or faces.max() >= len(vertices):
-        raise InputError(f"{part.path} has faces that are no triangles of its vertices.")
+        raise InputError(f"{part.path} has faces that are not triangles of its vertices.")
     if not np.all(np.abs(vertices * part.scale) <= FARTHEST):
         raise InputError(
             f"{part.path} has vertices that are not finite or beyond {FARTHEST:g} m; robot meshes "

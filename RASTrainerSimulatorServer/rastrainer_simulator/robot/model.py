@@ -122,7 +122,7 @@ def _walk(robot: yourdfpy.Robot) -> tuple[tuple[Joint, ...], tuple[RobotLink, ..
             joints.append(_movable(found, origin))
             links.append(RobotLink(found.child, len(joints), _constant(np.eye(4))))
     if len(joints) != 7:
-        raise InputError(f"FABRIK here needs seven revolute joints in a row, not {len(joints)}.")
+        raise InputError(f"FABRIK needs seven revolute joints in a row, not {len(joints)}.")
     return tuple(joints), tuple(links)
 
 
