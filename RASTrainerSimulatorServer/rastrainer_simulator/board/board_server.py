@@ -94,7 +94,7 @@ class BoardServer:
         return await self._http.listen(host, port)
 
     async def close(self) -> None:
-        """Watch nothing any more, and end all pages."""
+        """Stop watching, and close the connections of all pages."""
         self._http.stop_listening()
         await asyncio.gather(*(seat.close() for seat in self._seats.values()))
         await self._http.close()

@@ -111,7 +111,7 @@ def _standing(study: Study) -> ClassStanding:
     if len(names) > MOST_TRAINEES:
         raise InputError(
             f"The study has {len(names)} active trainees, and a table shows at most "
-            f"{MOST_TRAINEES}: archive those who do not train any more."
+            f"{MOST_TRAINEES}: archive those who no longer train."
         )
     standings = CurriculumStore(study).standings()
     without = tuple(name for name in names if name not in standings)
@@ -149,7 +149,7 @@ class ClassWatch:
         self._task = asyncio.create_task(self._keep_reading(self._thread))
 
     async def close(self) -> None:
-        """Read no longer."""
+        """Stop reading."""
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)

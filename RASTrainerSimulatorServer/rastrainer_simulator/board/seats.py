@@ -181,7 +181,7 @@ class OtherCertificateError(InputError):
 
 
 class UnpairedError(InputError):
-    """The simulator does not know the board's key any more."""
+    """The simulator no longer knows the board's key."""
 
 
 class RefusedError(InputError):
@@ -231,7 +231,7 @@ class SeatClient:
 
         Raises:
             RefusedError: the code is wrong.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: as their names say.
+            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
             InputError: something else answers.
         """
         entry = SeatEntry("", "", address, "", fingerprint)
@@ -250,7 +250,7 @@ class SeatClient:
 
         Raises:
             RefusedError: the PIN is wrong, or it cannot be done now.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: as their names say.
+            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
         """
         body = {"pin": pin, "order": order.value, "text": text}
         await self._request(entry, hdrs.METH_POST, "/instructor", body)
@@ -260,7 +260,7 @@ class SeatClient:
 
         Raises:
             RefusedError: there is none.
-            SeatUnreachableError, OtherCertificateError, UnpairedError: as their names say.
+            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
         """
         headers: dict[str, str] = {}
         content = await self._request(entry, hdrs.METH_GET, path, None, headers)
@@ -270,7 +270,7 @@ class SeatClient:
         """Open the stream of a simulator; the hello is to be sent.
 
         Raises:
-            SeatUnreachableError, OtherCertificateError, UnpairedError: as their names say.
+            SeatUnreachableError, OtherCertificateError, UnpairedError: see there.
         """
         try:
             return await self._session.ws_connect(
@@ -351,5 +351,5 @@ def _no_connection(entry: SeatEntry, error: Exception) -> InputError:
 
 def _problem(entry: SeatEntry, status: int) -> InputError:
     if status == 401:
-        return UnpairedError("The simulator does not know this board any more: pair again.")
+        return UnpairedError("The simulator no longer knows this board: pair again.")
     return SeatUnreachableError(AWAY.format(address=entry.address))

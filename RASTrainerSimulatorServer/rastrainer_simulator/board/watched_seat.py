@@ -141,7 +141,7 @@ class WatchedSeat:
         }
 
     async def close(self) -> None:
-        """Watch no longer."""
+        """Stop watching."""
         self._task.cancel()
         await asyncio.gather(self._task, return_exceptions=True)
 

@@ -1,1 +1,1 @@
-"""What leaves a study for other programs beside its tables: Motion-BIDS, xAPI, Slicer's files."""
+"""What leaves a study for other programs besides its tables: Motion-BIDS, xAPI, Slicer's files."""

@@ -212,7 +212,7 @@ class GradeReturn:
             except InputError as error:
                 _log.warning("Grades wait: %s", error)
             except Exception:
-                # Launches go on, and nobody would notice that nothing is sent any more.
+                # Launches go on, and nobody would notice that no grade is sent any more.
                 _log.exception("Grades wait because of an unexpected error")
             await asyncio.sleep(ROUND_S)
 

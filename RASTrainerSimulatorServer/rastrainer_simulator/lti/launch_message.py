@@ -93,7 +93,7 @@ MODES = ("desktop", "hmd")
 
 
 class RefusedLaunchError(InputError):
-    """The message is none that this tool may follow."""
+    """The message is not one that this tool may accept."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -132,7 +132,7 @@ class OpenLogins:
         """Return the login of a state, which is valid no more.
 
         Raises:
-            RefusedLaunchError: there is none, it is over, or it was begun in another browser.
+            RefusedLaunchError: there is none, it has expired, or it was begun in another browser.
         """
         login = self._logins.pop(state, None)
         if login is None or login.until < self._clock():
@@ -176,7 +176,7 @@ async def read_launch(
 ) -> PlatformLaunch:
     """Return the launch in an `id_token`.
 
-    Nothing in the token says where its key is to be had.
+    Nothing in the token says where to fetch its key.
 
     Args:
         token: As it was posted.
@@ -187,7 +187,7 @@ async def read_launch(
 
     Raises:
         RefusedLaunchError: it is forged, for others, too old, or not what was asked for.
-        PlatformUnreachableError: the platform's keys cannot be had.
+        PlatformUnreachableError: the platform's keys cannot be fetched.
     """
     key = await key_sets.key(platform.key_set_url, _key_id(token))
     if key is None:

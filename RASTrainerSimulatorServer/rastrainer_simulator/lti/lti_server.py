@@ -1,4 +1,4 @@
-"""What a learning platform and its users' browsers ask this tool for."""
+"""The server that learning platforms and their users' browsers talk to."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ _SECRET = re.compile(r"[\w-]{43}")
 
 
 class LtiServer:
-    """Serves launches, and returns grades meanwhile.
+    """Serves launches, and returns grades in the background.
 
     Attributes:
         grades: what returns them.
@@ -99,11 +99,11 @@ class LtiServer:
         return await self._http.listen(host, port, tls)
 
     def return_grades(self) -> None:
-        """Begin to return grades, again and again."""
+        """Begin to return grades periodically."""
         self._returning = asyncio.create_task(self.grades.run())
 
     async def close(self) -> None:
-        """End everything; what is not confirmed is sent after the next start."""
+        """Stop the server; grades that are not confirmed are sent after the next start."""
         self._http.stop_listening()
         if self._returning is not None:
             self._returning.cancel()

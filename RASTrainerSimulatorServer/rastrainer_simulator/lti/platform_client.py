@@ -24,7 +24,7 @@ BUSY = (401, 408, 425, 429)
 """Statuses by which a platform asks for patience, or for another token."""
 MOST_KEYS = 30
 KEPT_S = 3600.0
-"""After which keys are asked for again, so that one that was withdrawn counts no longer."""
+"""After which keys are asked for again, so that a revoked one is no longer accepted."""
 REST_S = 30.0
 """Between two requests: tokens with made-up key IDs cause no more of them."""
 SHORTEST_BITS, LONGEST_BITS = 2048, 8192
@@ -35,10 +35,10 @@ class PlatformUnreachableError(InputError):
 
 
 class PlatformClient:
-    """Asks platforms; use it in an `async with` statement."""
+    """Sends requests to platforms; use it in an `async with` statement."""
 
     def __init__(self, timeout_s: float = TIMEOUT_S) -> None:
-        """Give up what has taken so long."""
+        """Give up requests that take longer than `timeout_s`."""
         self._timeout = aiohttp.ClientTimeout(total=timeout_s)
 
     async def __aenter__(self) -> PlatformClient:
@@ -109,7 +109,7 @@ class KeySets:
         """Return a key of the set at an address of the settings; None if it is not there.
 
         Raises:
-            PlatformUnreachableError: the keys cannot be had.
+            PlatformUnreachableError: the keys cannot be fetched.
         """
         async with self._locks.setdefault(url, asyncio.Lock()):
             now = self._clock()

@@ -1,4 +1,4 @@
-"""How far the raters of replays agree, and whether their marks go with the computed score."""
+"""How well the raters of replays agree, and whether their marks match the computed score."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ def agreement_text(agreement: Agreement) -> str:
 
 
 def _beside_the_score(form: RatingForm, marks: Marks, data: StudyData) -> list[str]:
-    """Return how the mean total of the raters goes with the computed score of the same trials."""
+    """Return how the mean total of the raters relates to the computed score of the same trials."""
     scores = {
         trial.trial_id: trial.values["score"] for trial in data.trials if "score" in trial.values
     }

@@ -1,1 +1,1 @@
-"""What was stored of all trainees, what it shows, and as what it is given to others."""
+"""What is stored of all trainees, what it shows, and how it is exported."""

@@ -82,7 +82,7 @@ class PlatformLinks:
     """
 
     def __init__(self, study: Path) -> None:
-        """Use the file beside a study; it is made when something is written to it."""
+        """Use the file beside a study; it is created when something is first written to it."""
         self.path = study.with_name(f"{study.name}.lti.db")
 
     def pseudonym(self, issuer: str, subject: str) -> str | None:
@@ -120,7 +120,7 @@ class PlatformLinks:
     def copy_to(self, other: PlatformLinks) -> int:
         """Copy everything beside a new copy of the study; return the number of users.
 
-        Without this, learners would begin anew, and lower grades would replace theirs.
+        Without this, learners would start over, and lower grades would replace theirs.
         """
         if not self.path.exists():
             return 0
@@ -170,7 +170,7 @@ class PlatformLinks:
 
     @contextlib.contextmanager
     def _opened(self) -> Iterator[sqlite3.Connection]:
-        """Give the file for one transaction."""
+        """Yield the file for one transaction."""
         try:
             # Private before there is anything in it.
             with contextlib.suppress(FileExistsError):

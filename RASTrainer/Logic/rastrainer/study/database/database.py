@@ -278,11 +278,11 @@ class StudyDatabase(ABC):
 
     @abstractmethod
     def reading(self) -> AbstractContextManager[Connection]:
-        """Give the connection for several reads of one state."""
+        """Yield the connection for several reads of one state."""
 
     @abstractmethod
     def writing(self) -> AbstractContextManager[Connection]:
-        """Give the connection for changes in one transaction, when those of others are done.
+        """Yield the connection for changes in one transaction, once those of others are done.
 
         Raises:
             InputError: the study cannot be changed.
@@ -298,7 +298,7 @@ class StudyDatabase(ABC):
 
     @abstractmethod
     def continue_numbers(self) -> None:
-        """Have new rows numbered after all copied ones, within a transaction of `writing`."""
+        """Number new rows after all copied ones, within a transaction of `writing`."""
 
     @abstractmethod
     def _connect(self) -> Any:
@@ -310,4 +310,4 @@ class StudyDatabase(ABC):
 
     @abstractmethod
     def _sentences(self) -> AbstractContextManager[None]:
-        """Raise what the database reports as sentences for users."""
+        """Turn the database's errors into sentences for users."""

@@ -31,7 +31,7 @@ _folders: list[Path] = []
 """In which Psycopg is searched where this Python has none of its own."""
 CONNECT_TIMEOUT_S = 10
 SILENCE_S = 10
-"""After which a connection is given up if the other side no longer confirms what it gets."""
+"""After which a connection is given up if the other side no longer acknowledges what it gets."""
 INTERACTIVE_SILENCE_S = 2
 ANSWER_S = 75
 """After which one is given up that confirms everything and answers nothing, as a server that hangs.
@@ -104,7 +104,7 @@ _BY_WORDS = {
 
 
 def search_driver_in(folder: Path) -> None:
-    """Have the package loaded from a private folder where this Python has none of its own."""
+    """Load the package from a private folder where this Python has none of its own."""
     if folder not in _folders:
         _folders.append(folder)
 
@@ -131,7 +131,7 @@ def postgres_driver() -> ModuleType:
 
 
 def refuse_infinite_numbers(connection: Any) -> None:
-    """Have numbers refused that SQLite and JSON cannot hold; only other programs store them."""
+    """Refuse numbers that SQLite and JSON cannot hold; only other programs store them."""
     base = importlib.import_module("psycopg.types.numeric").FloatLoader
     connection.adapters.register_loader("float8", type("FiniteLoader", (base,), {"load": _finite}))
 
@@ -190,7 +190,7 @@ def _begun(address: PostgresAddress) -> Future[Any]:
 
 
 def _impatient(driver: ModuleType, answer_s: float) -> Any:
-    """Return psycopg's class of connections, which waits without end, with an end to it."""
+    """Return psycopg's class of connections, which waits forever, with a time limit."""
 
     def waits(self: Any, gen: _Waiting, *arguments: Any, **options: Any) -> Any:
         return driver.Connection.wait(self, answers(self, gen), *arguments, **options)

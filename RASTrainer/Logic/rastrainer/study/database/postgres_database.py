@@ -4,7 +4,7 @@ A reader sees one state of the study, however long it reads. A writer first chan
 `rastrainer_study` and so waits for all writers before it, as those of an SQLite file do; the
 number in that row tells the others that something has changed.
 
-A lost connection is made anew by the next transaction. Where it was lost during a COMMIT, nobody
+The next transaction reconnects if the connection was lost. If that was during a COMMIT, nobody
 knows whether the change was stored. That is safe: trials, marks and truths are stored once by their
 UUID and offered again until they are acknowledged, and steps are stored once by their name.
 """
@@ -219,13 +219,13 @@ class PostgresDatabase(StudyDatabase):
 
     @contextmanager
     def reading(self) -> Iterator[PostgresStatements]:
-        """Give the connection for several reads of one state."""
+        """Yield the connection for several reads of one state."""
         with self._transaction(_READ) as statements:
             yield statements
 
     @contextmanager
     def writing(self) -> Iterator[PostgresStatements]:
-        """Give the connection for changes in one transaction, when those of others are done."""
+        """Yield the connection for changes in one transaction, once those of others are done."""
         if not self._may_change:
             raise InputError(f"The study {self._address} is read-only here.")
         with self._transaction(f"{self._begin_waiting()}; {LOCKED}") as statements:
@@ -242,7 +242,7 @@ class PostgresDatabase(StudyDatabase):
         return changes - self._own_changes
 
     def continue_numbers(self) -> None:
-        """Have new rows numbered after all copied ones, within a transaction of `writing`."""
+        """Number new rows after all copied ones, within a transaction of `writing`."""
         for table in study_tables():
             if table.order in ("id", "rowid") and table.name != "trainee_numbers":
                 self._connection.execute(

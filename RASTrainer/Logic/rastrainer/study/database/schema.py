@@ -234,7 +234,7 @@ class Table:
     """A table of the newest schema.
 
     Attributes:
-        name: of it.
+        name: Of the table.
         columns: all that are stored, with `rowid` last where SQLite numbers the rows.
         order: the column by which the rows are in order of storing, or always in the same order.
     """

@@ -56,13 +56,13 @@ class SqliteDatabase(StudyDatabase):
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
-        """Give the connection for several reads of one state."""
+        """Yield the connection for several reads of one state."""
         with self._transaction("BEGIN") as connection:
             yield connection
 
     @contextmanager
     def writing(self) -> Iterator[sqlite3.Connection]:
-        """Give the connection for changes in one transaction; see `StudyDatabase`."""
+        """Yield the connection for changes in one transaction; see `StudyDatabase`."""
         with self._transaction("BEGIN IMMEDIATE") as connection:
             yield connection
 
@@ -107,7 +107,7 @@ class SqliteDatabase(StudyDatabase):
             raise InputError(f"There is no folder {self.path.parent} for the study database.")
 
     def _keep_private(self) -> None:
-        """Keep others out of the file and its temporary companions."""
+        """Make the file and its temporary companions readable by their owner alone."""
         # Only a new file is opened: closing an existing one would release our other locks on it.
         with contextlib.suppress(OSError):
             os.close(open_private(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL))
