@@ -13,7 +13,7 @@ from hypothesis import strategies as some
 from rastrainer.errors import InputError
 from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message, pack
-from rastrainer_simulator.net.igtl.outgoing import Outgoing, OutgoingQueue
+from rastrainer_simulator.net.igtl.connection import Outgoing, OutgoingQueue
 from Testing.security.wire_police import SENT_TYPES, OffenseError, WirePolice
 
 SIMULATOR = Path(__file__).parents[2] / "RASTrainerSimulatorServer/rastrainer_simulator"
@@ -153,7 +153,7 @@ def test_no_other_part_of_the_simulator_packs_messages_or_sends_over_sockets_of_
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom) and node.module == "rastrainer.igtl.message":
                 packing |= {place for alias in node.names if alias.name == "pack"}
-    assert packing == {"net/igtl/outgoing.py"}
+    assert packing == {"net/igtl/connection.py"}
     assert sending == {("net/igtl/server.py", "create_connection")}
 
 

@@ -28,10 +28,9 @@ from rastrainer_simulator.board.seats import (
 )
 from rastrainer_simulator.board.watched_seat import SEAT_PATH, LiveView, WatchedSeat
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.gate import ROLE, PairingCode
+from rastrainer_simulator.net.views.gate import ROLE, PairingCode, Sessions, ViewRole
 from rastrainer_simulator.net.views.limited_server import GuardedServer
 from rastrainer_simulator.net.views.presenter import InstructorOrder
-from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
 
 SUBPROTOCOL = "rastrainer.board.1"
 TILES_S = 0.25

@@ -35,6 +35,7 @@ from rastrainer_simulator.board.seats import (
     SeatEntry,
     UnpairedError,
 )
+from rastrainer_simulator.net.views.gate import ViewRole
 from rastrainer_simulator.net.views.messages import (
     BOARD,
     HELLO,
@@ -43,7 +44,6 @@ from rastrainer_simulator.net.views.messages import (
     check_message,
 )
 from rastrainer_simulator.net.views.outgoing import SEAT
-from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.ops.texts.typesetting import NARROW_SPACE, NO_BREAK_SPACE
 from rastrainer_simulator.state import TouchStage
 

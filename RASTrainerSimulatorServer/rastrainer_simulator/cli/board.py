@@ -9,8 +9,13 @@ from pathlib import Path
 
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.database import StudyPlace
-from rastrainer_simulator.cli.options import STUDY_HELP, add_config, add_study, check_ports
-from rastrainer_simulator.cli.output import announce
+from rastrainer_simulator.cli.options import (
+    STUDY_HELP,
+    add_config,
+    add_study,
+    announce,
+    check_ports,
+)
 
 DEFAULT_BOARD_PORT = 18955
 

@@ -15,7 +15,7 @@ from rastrainer.study.protocol.steps import mode_order
 from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
 from rastrainer.trial.score_reference import score_reference
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.output import text_table
+from rastrainer_simulator.cli.options import text_table
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from rastrainer_simulator.virtual.population import ModeEffect, Population
 from rastrainer_simulator.virtual.scripted_trainee import Skill

@@ -21,8 +21,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.tidy_csv import csv_text
 from rastrainer.trial.touch_registration import GivenPoints
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.cli.options import add_json, add_study
-from rastrainer_simulator.cli.output import json_text, text_table
+from rastrainer_simulator.cli.options import add_json, add_study, json_text, text_table
 from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE
 from rastrainer_simulator.virtual.method_trials import (
     MethodResult,

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 from rastrainer.errors import InputError
 from rastrainer.files.reading import failure_reason, printable_name
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer_simulator.cli.options import add_config, add_study, check_ports
-from rastrainer_simulator.cli.output import announce
+from rastrainer_simulator.cli.options import add_config, add_study, announce, check_ports
 
 if TYPE_CHECKING:
     from rastrainer_simulator.lti.settings import LtiSettings, ToolKey

@@ -9,8 +9,7 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.motion.trial_motion import trial_motion
-from rastrainer_simulator.cli.options import add_json
-from rastrainer_simulator.cli.output import json_text, text_table
+from rastrainer_simulator.cli.options import add_json, json_text, text_table
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

@@ -10,8 +10,13 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.study.database.study import Study
 from rastrainer.study.ratings import FORMS, RatingStore, find_form
-from rastrainer_simulator.cli.options import add_playback, add_records, add_study, check_ports
-from rastrainer_simulator.cli.output import announce
+from rastrainer_simulator.cli.options import (
+    add_playback,
+    add_records,
+    add_study,
+    announce,
+    check_ports,
+)
 from rastrainer_simulator.rating.rating_pages import RatingWork
 
 REPLAYS = 20

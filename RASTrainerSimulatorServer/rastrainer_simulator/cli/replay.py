@@ -8,8 +8,7 @@ from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
-from rastrainer_simulator.cli.options import add_playback, check_ports
-from rastrainer_simulator.cli.output import announce
+from rastrainer_simulator.cli.options import add_playback, announce, check_ports
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

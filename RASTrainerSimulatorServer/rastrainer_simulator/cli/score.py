@@ -12,8 +12,7 @@ from rastrainer.trial.ctps import (
     score_cohort,
     trials_by_mode,
 )
-from rastrainer_simulator.cli.options import add_json, mean_times
-from rastrainer_simulator.cli.output import json_text, text_table
+from rastrainer_simulator.cli.options import add_json, json_text, mean_times, text_table
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:

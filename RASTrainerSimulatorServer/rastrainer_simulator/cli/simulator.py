@@ -9,8 +9,7 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
-from rastrainer_simulator.cli.options import add_config, add_records, check_ports
-from rastrainer_simulator.cli.output import announce
+from rastrainer_simulator.cli.options import add_config, add_records, announce, check_ports
 from rastrainer_simulator.ops.processes import has_display
 
 FASTEST = 1000.0

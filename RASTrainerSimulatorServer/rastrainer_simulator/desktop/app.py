@@ -1,4 +1,4 @@
-"""The window's process: events in, messages out, and the latest state as a picture."""
+"""The window's process: events in, messages out, and the latest state as picture and sounds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import json
 import logging
 import os
 import time
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -16,6 +16,7 @@ from typing import IO, Any
 import pygame
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.desktop.connection import ServerConnection
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox
@@ -40,7 +41,6 @@ from rastrainer_simulator.desktop.screenshot import (
     save_screenshot,
     write_picture,
 )
-from rastrainer_simulator.desktop.sounds import Sounds
 from rastrainer_simulator.net.views.messages import FRAMES, ITEM
 
 POLL_S = 0.004
@@ -54,6 +54,8 @@ OWN_KEYS = (pygame.K_F11, pygame.K_F12)
 """Full screen, and screenshot: these are not sent to the simulator."""
 
 _log = logging.getLogger(__name__)
+CHANNELS = 8
+BUFFER_SAMPLES = 512
 
 
 @dataclass(frozen=True)
@@ -274,3 +276,38 @@ def _lower_priority() -> None:
             # What has a place of its own, such as SDL's sound, keeps it.
             if os.getpriority(os.PRIO_PROCESS, thread) == ordinary:
                 os.setpriority(os.PRIO_PROCESS, thread, max(ordinary, NICENESS))
+
+
+class Sounds:
+    """The loudspeaker; silent where there is none."""
+
+    def __init__(self) -> None:
+        self._sounds: dict[str, pygame.mixer.Sound] = {}
+        try:
+            pygame.mixer.init(buffer=BUFFER_SAMPLES)
+        except pygame.error as error:
+            _log.warning("There will be no sound: %s", error)
+            return
+        pygame.mixer.set_num_channels(CHANNELS)
+        for path in sorted(asset_path("sounds").glob("*.wav")):
+            self._sounds[path.stem] = pygame.mixer.Sound(path)
+
+    @property
+    def names(self) -> Iterable[str]:
+        """The sounds there are."""
+        return self._sounds.keys()
+
+    def play(self, name: str, volume: float) -> bool:
+        """Play a sound at a volume from 0 to 1; return whether it can be heard."""
+        sound = self._sounds.get(name)
+        if sound is None or volume <= 0.0:
+            return False
+        channel = sound.play()
+        if channel is None:
+            return False
+        channel.set_volume(min(1.0, volume))
+        return True
+
+    def close(self) -> None:
+        """Give the loudspeaker back."""
+        pygame.mixer.quit()

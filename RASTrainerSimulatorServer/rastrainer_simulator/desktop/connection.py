@@ -1,4 +1,7 @@
-"""Connect to the simulator, receive its stream, and reconnect whenever the connection is lost."""
+"""Connect to the simulator, receive its stream, and reconnect whenever the connection is lost.
+
+What is not understood of a screen is left out.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +19,23 @@ from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, read_parts
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
-from rastrainer_simulator.desktop.screen_reader import screen_from_json
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.messages import HELLO, SUBPROTOCOL
-from rastrainer_simulator.net.views.screen import focused_picture
+from rastrainer_simulator.net.views.screen import (
+    DepthRuler,
+    ErrorArrow,
+    Fact,
+    Hint,
+    ItemKind,
+    Menu,
+    MenuItem,
+    ScoreTrend,
+    Screen,
+    ScreenMessage,
+    Tone,
+    focused_picture,
+)
+from rastrainer_simulator.vectors import vector
 
 RETRY_S = 1.0
 ANSWER_S = 10.0
@@ -31,6 +47,7 @@ LARGEST_PICTURE = 2**22
 UNAUTHORIZED = 401
 
 _log = logging.getLogger(__name__)
+Json = Mapping[str, Any]
 
 
 class ServerConnection:
@@ -203,3 +220,84 @@ async def pair(url: str, code: str) -> str:
             return str((await answer.json())["key"])
     except (aiohttp.ClientError, OSError, asyncio.TimeoutError) as error:
         raise InputError(f"There must be a simulator at {url}: {error}.") from None
+
+
+def screen_from_json(value: Json) -> Screen:
+    """Return the screen of a `screen` message.
+
+    Raises:
+        ValueError, KeyError, TypeError: it is none.
+    """
+    menu = value["menu"]
+    return Screen(
+        menu=None if menu is None else _menu(menu),
+        instruction=_message(value["instruction"]),
+        warnings=tuple(_message(warning) for warning in value["warnings"]),
+        status=tuple(str(fact) for fact in value["status"]),
+        hints=tuple(
+            Hint(str(hint["control"]), str(hint["action"]), str(hint["item"]))
+            for hint in value["hints"]
+        ),
+        language=str(value["language"]),
+        is_spoken=bool(value["is_spoken"]),
+        has_sticks=bool(value["has_sticks"]),
+        has_arrow=bool(value["has_arrow"]),
+        errors=tuple(_error(arrow) for arrow in value["errors"]),
+        is_head_clear=bool(value["is_head_clear"]),
+        coverage=str(value["coverage"]),
+        ruler=None if value["ruler"] is None else _ruler(value["ruler"]),
+    )
+
+
+def _ruler(value: Json) -> DepthRuler:
+    outer, inner = value["outer"], value["inner"]
+    return DepthRuler(
+        float(value["entry"]),
+        None if outer is None else float(outer),
+        None if inner is None else float(inner),
+        float(value["target"]),
+    )
+
+
+def _error(value: Json) -> ErrorArrow:
+    return ErrorArrow(vector(value["begin"]), vector(value["end"]), Tone(value["tone"]))
+
+
+def _menu(value: Json) -> Menu:
+    return Menu(
+        name=str(value["name"]),
+        title=str(value["title"]),
+        paragraphs=tuple(str(text) for text in value["paragraphs"]),
+        facts=tuple(
+            Fact(str(fact["label"]), str(fact["value"]), Tone(fact["tone"]))
+            for fact in value["facts"]
+        ),
+        items=tuple(_item(item) for item in value["items"]),
+        focus=str(value["focus"]),
+        picture=str(value["picture"]),
+        trend=None if value["trend"] is None else _trend(value["trend"]),
+    )
+
+
+def _trend(value: Json) -> ScoreTrend:
+    return ScoreTrend(
+        text=str(value["text"]),
+        scores=tuple(min(max(float(score), 0.0), 100.0) for score in value["scores"]),
+        mark=float(value["mark"]),
+    )
+
+
+def _item(value: Json) -> MenuItem:
+    return MenuItem(
+        name=str(value["name"]),
+        label=str(value["label"]),
+        kind=ItemKind(value["kind"]),
+        value=str(value["value"]),
+        is_enabled=bool(value["is_enabled"]),
+        help=str(value["help"]),
+        picture=str(value["picture"]),
+    )
+
+
+def _message(value: Json) -> ScreenMessage:
+    return ScreenMessage(str(value["text"]), Tone(value["tone"]))

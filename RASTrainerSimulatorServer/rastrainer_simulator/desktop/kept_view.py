@@ -1,11 +1,13 @@
 """One view of the scene, in which what stands still is drawn once and kept with its depths.
 
 A processor that draws spends most of a picture's time on the head and the room, which are the same
-in the next picture while the camera stands: copying them is several times faster.
+in the next picture while the camera stands: copying them is several times faster. What cannot be
+kept is drawn at a fraction of the window's resolution.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR
@@ -25,6 +27,12 @@ _GL_READ_FRAMEBUFFER, _GL_DRAW_FRAMEBUFFER = 0x8CA8, 0x8CA9
 _GL_SCISSOR_TEST = 0x0C11
 COLORS, DEPTHS = 0x4000, 0x0100
 NEAREST, LINEAR = 0x2600, 0x2601
+_DEPTH_BITS = 32
+"""As VTK's own framebuffer has them: depths are only copied between equal formats."""
+SPARE = 0.5
+"""So much nearer than the nearest, and as much farther, a camera sees, so that the arm may move."""
+MAX_PIXELS = 1_200_000
+"""So many are drawn fast enough by a processor; more than 1366 × 768, fewer than 1600 × 900."""
 
 
 def copy_frame(
@@ -45,12 +53,6 @@ def copy_frame(
     target.Bind(_GL_DRAW_FRAMEBUFFER)
     vtkOpenGLFramebufferObject.Blit(of, to, what, filtering)
     state.PopFramebufferBindings()
-
-
-_DEPTH_BITS = 32
-"""As VTK's own framebuffer has them: depths are only copied between equal formats."""
-SPARE = 0.5
-"""So much nearer than the nearest, and as much farther, a camera sees, so that the arm may move."""
 
 
 class KeptView:
@@ -183,3 +185,52 @@ def _fill(renderer: vtkRenderer, actors: Iterable[vtkActor]) -> None:
     renderer.RemoveAllViewProps()
     for actor in actors:
         renderer.AddActor(actor)
+
+
+class ReducedScene:
+    """Draws one view into a corner of its window, and then that corner over all of it.
+
+    What is drawn after it, such as texts, keeps the window's resolution.
+
+    Attributes:
+        divisor: by which width and height are divided; 1 draws as usual.
+        is_coarse: whether the last picture was drawn at a fraction.
+    """
+
+    def __init__(self, window: GlWindow, view: KeptView) -> None:
+        self.divisor = 1
+        self.is_coarse = False
+        self._window = window
+        self._view = view
+        # VTK's stubs leave out that events have names.
+        view.moving.AddObserver("EndEvent", lambda *_event: self._enlarge())  # type: ignore[arg-type]
+
+    def fit(self, is_reduced: bool) -> None:
+        """Set what the next picture is drawn with, by the size of the window."""
+        width, height = self._window.size
+        self.divisor = math.ceil(math.sqrt(width * height / MAX_PIXELS)) if is_reduced else 1
+        self._view.place(self._corner)
+
+    @property
+    def _corner(self) -> Rectangle:
+        width, height = self._window.size
+        return 0, width // self.divisor, 0, height // self.divisor
+
+    def _enlarge(self) -> None:
+        self.is_coarse = self.divisor > 1
+        if not self.is_coarse:
+            return
+        width, height = self._window.size
+        _, right, _, top = corner = self._corner
+        window = self._window
+        drawn = window.render_window.GetRenderFramebuffer()
+        spare = window.render_window.GetDisplayFramebuffer()
+        # By way of another buffer: no part of a buffer may be copied over itself.
+        copy_frame(window, drawn, corner, spare, corner)
+        # Its last pixels are mixed with those beyond: the same again, not those of another picture.
+        last_row, beyond = (0, right, top - 1, top), (0, right, top, top + 1)
+        copy_frame(window, drawn, last_row, spare, beyond)
+        last_column, beside = (right - 1, right, 0, top), (right, right + 1, 0, top)
+        copy_frame(window, drawn, last_column, spare, beside)
+        whole = (0, width, 0, height)
+        copy_frame(window, spare, corner, drawn, whole, filtering=LINEAR)

@@ -9,12 +9,11 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 
 from rastrainer_simulator.desktop.camera import CameraTransition, Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
-from rastrainer_simulator.desktop.kept_view import KeptView
+from rastrainer_simulator.desktop.kept_view import KeptView, ReducedScene
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.canvas import Box
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.plain_light import add_plain_lights
-from rastrainer_simulator.desktop.reduced_scene import ReducedScene
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.rendering.lighting import Shadows, light_room
 

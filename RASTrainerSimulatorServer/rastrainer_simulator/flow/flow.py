@@ -18,8 +18,7 @@ from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
 from rastrainer_simulator.flow.pages.tutorial import TutorialDonePage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
-from rastrainer_simulator.flow.session.chosen_trial import begin_ghost
-from rastrainer_simulator.flow.session.obstacles import needs_tutorial
+from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen, points_in_world
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial

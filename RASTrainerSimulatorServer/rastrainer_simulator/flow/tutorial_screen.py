@@ -1,11 +1,13 @@
-"""What the trainee reads during the tutorial, and what the controls do in it."""
+"""What the trainee reads and does during the tutorial, and how the arm gets to its start."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
+from rastrainer.protocol import CommandName
+from rastrainer.transforms import MM_PER_M
+from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.homing import Homing
 from rastrainer_simulator.flow.pages.errors import error_arrow, error_tone
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, stick_hints
 from rastrainer_simulator.flow.pages.tutorial import TutorialPage
@@ -18,7 +20,7 @@ from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, ScreenMessag
 from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
-from rastrainer_simulator.vectors import Vector, in_meters
+from rastrainer_simulator.vectors import Vector, distance, in_meters
 
 STEP_MM, STEP_DEG = 5, 5
 """How much of a step is done is shown in such steps: a running figure cannot be read."""
@@ -58,6 +60,12 @@ _AMOUNTS: Mapping[TutorialStep, str] = {
 }
 """Key of the text that says how much of a step is done."""
 _HEARD_ANYWAY = (TutorialStep.TOUCH, TutorialStep.UNDO, TutorialStep.GUIDED)
+NEAR_M = 0.02
+"""From here on the arm counts as being there."""
+SPEED_MM_S = 250.0
+LONGEST_S = 6.0
+TAKEN_OVER = 0.2
+"""A stick that is pushed farther is meant."""
 
 
 class TutorialScreen(ArmScreen):
@@ -254,3 +262,38 @@ class TutorialScreen(ArmScreen):
 def _banner(error_mm: float) -> Tone:
     """Return the tone of a sentence about a touch: one that could be better is no alarm."""
     return Tone.GOOD if error_tone(error_mm) is Tone.GOOD else Tone.WARNING
+
+
+class Homing:
+    """Moves the tip up, then across, and down to the start; who takes the sticks ends it."""
+
+    def __init__(self, session: TrainingSession) -> None:
+        self._session = session
+        goal = start_tip(session.scenario, session.setup.settings.start_height)
+        tip = session.tip
+        high = max(tip[2], goal[2])
+        self._way: list[Vector] = [(*tip[:2], high), (*goal[:2], high), goal]
+        self._is_commanded = False
+        self._left_s = LONGEST_S
+        if distance(tip, goal) < NEAR_M:
+            self._way.clear()
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the arm is there, or was taken over."""
+        return not self._way
+
+    def advance(self, dt: float) -> None:
+        """Command the next part of the way once the one before is done."""
+        session = self._session
+        self._left_s -= dt
+        is_taken_over = max(map(abs, session.held.translation)) > TAKEN_OVER
+        if self._left_s < 0.0 or is_taken_over:
+            self._way.clear()
+        while self._way and distance(session.tip, self._way[0]) < NEAR_M / 4.0:
+            del self._way[0]
+            self._is_commanded = False
+        if self._way and not self._is_commanded:
+            self._is_commanded = True
+            place = [MM_PER_M * value for value in self._way[0]]
+            session.do(CommandName.MOVE_TIP_TO, {"positionMm": place, "speedMmS": SPEED_MM_S})

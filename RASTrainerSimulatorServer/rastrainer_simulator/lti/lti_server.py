@@ -35,8 +35,7 @@ from rastrainer_simulator.lti.platform_client import (
 )
 from rastrainer_simulator.lti.settings import KEYS, LAUNCH, LOGIN, LtiSettings, ToolKey
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.connections import Connections
-from rastrainer_simulator.net.views.limited_server import LimitedServer
+from rastrainer_simulator.net.views.limited_server import Connections, LimitedServer
 from rastrainer_simulator.ops.study_thread import StudyThread
 
 _log = logging.getLogger(__name__)

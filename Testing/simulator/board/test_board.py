@@ -10,8 +10,8 @@ import pytest
 
 from rastrainer_simulator.board.seats import SEATS_FILE
 from rastrainer_simulator.board.watched_seat import checked_seat
+from rastrainer_simulator.net.views.gate import BOARDS_FILE
 from rastrainer_simulator.net.views.presenter import Seat
-from rastrainer_simulator.net.views.sessions import BOARDS_FILE
 from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
 from Testing.simulator.board.conftest import PIN, WatchedSimulator
 from Testing.simulator.net.views.served import HELLO, request

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer_simulator.desktop import reduced_scene
+from rastrainer_simulator.desktop import kept_view
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
@@ -105,7 +105,7 @@ def test_a_large_picture_is_coarse_while_the_view_turns_and_then_fine(
 ):
     picture = make()
     fine = show(picture, times_drawn=3, view=SIDE)
-    monkeypatch.setattr(reduced_scene, "MAX_PIXELS", 200_000)
+    monkeypatch.setattr(kept_view, "MAX_PIXELS", 200_000)
     picture = make()
     coarse = show(picture, view=SIDE)
     assert picture.viewports.main.GetViewport() == (0.0, 0.0, 0.5, 0.5)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rastrainer_simulator.desktop import reduced_scene
+from rastrainer_simulator.desktop import kept_view
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
@@ -25,8 +25,8 @@ def draw(glb, monkeypatch):
     inbox.scene = LoadedScene(read_parts(glb, BODIES), views, FIDUCIALS)
     window = GlWindow(SIZE, is_fullscreen=False)
 
-    def draw(quality, most=reduced_scene.MAX_PIXELS):
-        monkeypatch.setattr(reduced_scene, "MAX_PIXELS", most)
+    def draw(quality, most=kept_view.MAX_PIXELS):
+        monkeypatch.setattr(kept_view, "MAX_PIXELS", most)
         picture = Picture(window, inbox, quality)
         inbox.take_state(state_text())
         assert picture.is_due(0.0)

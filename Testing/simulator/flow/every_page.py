@@ -13,12 +13,10 @@ from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.study.ratings import FORMS
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
-    assignments,
     bindings,
     errors,
     experiment,
     introduction,
-    match,
     procedure,
     result,
     start,
@@ -26,10 +24,10 @@ from rastrainer_simulator.flow.pages import (
     trial,
     tutorial,
 )
-from rastrainer_simulator.flow.pages.match import MatchReport
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
+from rastrainer_simulator.flow.pages.trial import MatchReport
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.net.views.screen import Screen, without_secrets
@@ -204,7 +202,7 @@ def _pages(session) -> Iterator[SessionPage]:
     yield bindings.ConflictPage(session, keys, touch, "KeyC")
     with_curriculum(session)
     yield experiment.ExperimentPage(session)
-    yield assignments.AssignmentsPage(session)
+    yield experiment.AssignmentsPage(session)
     yield trainee_id.KeyboardPage(session, lambda *_: None)
     yield trainee_id.ClickedIdPage(session, lambda *_: None)
     yield trainee_id.CharacterPage(session, lambda *_: None, trainee_id.ROWS[0])
@@ -212,7 +210,7 @@ def _pages(session) -> Iterator[SessionPage]:
     yield QuestionnairePage(session, QUESTIONNAIRE)
     for over_a_trial in (trial.TrialPage, trial.AbortPage, trial.PracticePage, trial.CompletePage):
         yield over_a_trial(session)
-    yield match.MatchPage(session, _matched())
+    yield trial.MatchPage(session, _matched())
     yield result.WaitingPage(session)
     yield result.ResultPage(session)
     yield errors.ErrorsPage(session)

@@ -6,7 +6,7 @@ import pytest
 from rastrainer import transforms
 from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
-from rastrainer_simulator.flow.pages.match import match_report
+from rastrainer_simulator.flow.pages.trial import match_report
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import given
 from rastrainer_simulator.trial_state import TouchState, TracedPoint, TraceState

@@ -9,7 +9,7 @@ import pytest
 from rastrainer.protocol import MIN_TRACE_POINTS, Phase
 from rastrainer.registration.surface_error import COVERED_MM
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.pages.match import MatchPage, MatchReport
+from rastrainer_simulator.flow.pages.trial import MatchPage, MatchReport
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
 from rastrainer_simulator.net.views.presenter import TraceGuidance
 from Testing.simulator.landmarked import LANDMARKS, with_landmarks

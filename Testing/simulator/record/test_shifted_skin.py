@@ -13,7 +13,7 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.net.views.news import TraceNews
+from rastrainer_simulator.net.views.outgoing import TraceNews
 from rastrainer_simulator.net.views.presenter import TraceGuidance
 from rastrainer_simulator.record.aborted_archive import interrupted_attempt
 from rastrainer_simulator.record.trial_archive import archived_trial

@@ -1,6 +1,6 @@
 """The experiment menu: who trains, in which mode, on which head, and which task.
 
-With it the list of heads, which it opens.
+With it the lists that it opens: of heads, and of the assignments of a trainee's curriculum.
 """
 
 from __future__ import annotations
@@ -9,20 +9,21 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import Mode, StepKind, TutorialRule
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.scenario.scenario import method_of, playable_methods
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
-from rastrainer_simulator.flow.pages.assignments import AssignmentsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import (
     ClickedIdPage,
     KeyboardPage,
     QuestionnairePage,
 )
-from rastrainer_simulator.flow.session.chosen_trial import offered_method, start_task
-from rastrainer_simulator.flow.session.obstacles import (
+from rastrainer_simulator.flow.session.chosen_trial import (
     assignment_obstacle,
     needs_tutorial,
     obstacle,
+    offered_method,
+    start_task,
     tutorial_obstacle,
     tutorial_rule,
 )
@@ -34,8 +35,10 @@ LONGEST_ID = 32
 
 _TYPES = (SourceKind.KEYBOARD, SourceKind.MOUSE)
 _CLICKS = (SourceKind.MOUSE,)
-_PREFIX = "head "
+_HEAD = "head "
 """No scenario's name has a space: no head is taken for the way back."""
+_ASSIGNMENT = "assignment "
+"""No assignment's name has a space: none is taken for the way back."""
 
 
 class ExperimentPage(SessionPage):
@@ -228,7 +231,7 @@ class ScenarioPage(SessionPage):
 
     def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
-        self.first = _PREFIX + session.scenario.name
+        self.first = _HEAD + session.scenario.name
         self._listing = session.list_scenarios()
         self._wanted = ""
 
@@ -249,7 +252,7 @@ class ScenarioPage(SessionPage):
         if item == "back":
             self.back()
             return
-        self._wanted = item.removeprefix(_PREFIX)
+        self._wanted = item.removeprefix(_HEAD)
         self.session.setting_up.use_scenario(self._wanted)
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
@@ -267,10 +270,58 @@ class ScenarioPage(SessionPage):
         value = "scenario.loading" if entry.name == self._wanted and is_loading else ""
         value = "scenario.present" if is_present and not value else value
         return MenuItem(
-            _PREFIX + entry.name,
+            _HEAD + entry.name,
             entry.title,
             value=self.say(value) if value else "",
             is_enabled=not entry.problem and not is_loading,
             help=entry.problem or self.say("scenario.help"),
             picture=f"/scenarios/{entry.name}.png" if entry.preview else "",
+        )
+
+
+class AssignmentsPage(SessionPage):
+    """Lists the assignments, the one to practice next in focus; each begins its trial."""
+
+    name = "assignments"
+
+    def __init__(self, session: TrainingSession) -> None:
+        super().__init__(session)
+        told = session.curriculum
+        self.first = "" if told is None else _ASSIGNMENT + told.next
+
+    def menu(self) -> Menu:
+        """Return the list as Slicer told it last."""
+        told = self.session.curriculum
+        back = self.button("back")
+        if told is None:
+            return Menu(self.name, self.say("assignments.title"), items=(back,))
+        said = (told.title, self.session.assignment_words.advice(told))
+        items = tuple(self._item(each) for each in told.assignments)
+        return Menu(self.name, self.say("assignments.title"), said, items=(*items, back))
+
+    def accept(self, item: str) -> None:
+        """Begin a trial of an assignment, or go back."""
+        session, told = self.session, self.session.curriculum
+        each = None if told is None else told.find(item.removeprefix(_ASSIGNMENT))
+        if item == "back" or each is None:
+            self.back()
+            return
+        session.mode = each.mode or session.mode
+        session.method, session.procedure = method_of(each.method), each.procedure
+        start_task(session, each.task)
+
+    def advance(self, dt: float) -> None:  # noqa: ARG002
+        """Close where the trainee has no curriculum any more."""
+        if self.session.curriculum is None:
+            self.back()
+
+    def _item(self, each: AssignmentMessage) -> MenuItem:
+        words = self.session.assignment_words
+        reason = assignment_obstacle(self.session, each)
+        return MenuItem(
+            _ASSIGNMENT + each.name,
+            words.label(each),
+            value=words.progress(each),
+            is_enabled=not reason,
+            help=reason or f"{words.title(each)}. {words.goal(each)}",
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rastrainer_simulator.flow.session.open_pages import Page
-from rastrainer_simulator.flow.session.screen_sticks import SHOW, TILT
+from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.net.views.screen import PRESS, Hint, ItemKind, MenuItem

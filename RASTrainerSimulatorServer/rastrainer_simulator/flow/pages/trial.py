@@ -1,14 +1,127 @@
-"""The pages over a trial that is open: the menu, what is paused, giving up, registering."""
+"""The pages over a trial that is open: the menu, what is paused, giving up, registering.
+
+A trace is registered once its match has been looked at: a small residual does not mean a small
+error, so that both are shown, and what looks wrong with the match.
+"""
 
 from __future__ import annotations
 
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+
+from rastrainer.errors import RASTrainerError
 from rastrainer.protocol import TRIAL_RUN, AbortReason, CommandName, Phase
+from rastrainer.registration.fits import RIGID
+from rastrainer.scenario.scenario import Scenario
+from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.flow.pages.introduction import ControlsPage
-from rastrainer_simulator.flow.pages.match import MatchPage, look_at_match
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.start import SettingsPage
+from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.net.views.screen import Menu
+from rastrainer_simulator.loop.timing import raise_thread_priority
+from rastrainer_simulator.net.views.screen import Fact, Menu, Tone
+from rastrainer_simulator.state import TrainingState
+from rastrainer_simulator.training.replies import given
+
+
+@dataclass(frozen=True)
+class MatchReport:
+    """A match as numbers, lengths in mm, and the codes of what looks wrong with it.
+
+    Attributes:
+        residual_mm: root mean square of the distances of the points that count from the skin.
+        inlier_share: share of the points that count.
+        expected_mm: expected TRE at the target.
+        interval_mm: the 95 % interval of the TRE there.
+        slide_mm: how far the head may be off where the trace determines it least.
+        codes: as of `find_match_warnings`.
+    """
+
+    residual_mm: float
+    inlier_share: float
+    expected_mm: float
+    interval_mm: tuple[float, float]
+    slide_mm: float
+    codes: tuple[str, ...] = ()
+
+
+def look_at_match(training: TrainingState, scenario: Scenario) -> Future[MatchReport]:
+    """Have the trace of an open trial matched as it will be when it is registered.
+
+    The result raises an InputError where it cannot be.
+    """
+    # Set aside while it holds the interpreter, it would make the control loop wait.
+    worker = ThreadPoolExecutor(1, "match", raise_thread_priority)
+    looked = worker.submit(match_report, training, scenario)
+    worker.shutdown(wait=False)
+    return looked
+
+
+def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
+    """Return what is shown of the match of a trial's trace.
+
+    Raises:
+        InputError: the trace cannot be matched.
+    """
+    answer = {"task": training.task, "method": training.method.value, **given(training)}
+    registered = register_trial(GivenPoints.of_answer(answer), scenario)
+    match, error = registered.match, registered.target_errors[RIGID]
+    assert match is not None, "the method has a trace"
+    return MatchReport(
+        match.rms_mm,
+        match.inlier_share,
+        error.expected_mm,
+        error.interval_mm,
+        match.slide.distance_mm,
+        tuple(warning.code for warning in match.warnings),
+    )
+
+
+class MatchPage(SessionPage):
+    """Tells what is known of a match; the trial is registered only when it is accepted."""
+
+    name = "match"
+    # Nobody who presses twice accepts what they have not read.
+    first = "draw"
+
+    def __init__(self, session: TrainingSession, looked: Future[MatchReport]) -> None:
+        super().__init__(session)
+        self._looked = looked
+
+    def menu(self) -> Menu:
+        """Return what is known so far; what cannot be matched cannot be accepted."""
+        if not self._looked.done():
+            return self._menu(self.say("match.looking"))
+        try:
+            report = self._looked.result()
+        except (RASTrainerError, OSError) as error:
+            return self._menu(self.say("match.impossible", reason=str(error)))
+        wrong = (self.say(f"match.{code}", slide=report.slide_mm) for code in report.codes)
+        return self._menu(*wrong, self.say("match.residual and error"), report=report)
+
+    def accept(self, item: str) -> None:
+        """Register the trial, or continue to draw."""
+        if item == "accept":
+            self.session.do(CommandName.REGISTER)
+        else:
+            self.session.pages.show(None)
+
+    def _menu(self, *said: str, report: MatchReport | None = None) -> Menu:
+        accept = self.button("accept", is_enabled=report is not None)
+        facts = () if report is None else self._facts(report)
+        return Menu(self.name, self.say("match.title"), said, facts, (accept, self.button("draw")))
+
+    def _facts(self, report: MatchReport) -> tuple[Fact, ...]:
+        low, high = report.interval_mm
+        tone = Tone.WARNING if report.codes else Tone.PLAIN
+        expected = self.say("result.mm", error=report.expected_mm)
+        return (
+            Fact(self.say("match.residual"), self.say("result.mm", error=report.residual_mm)),
+            Fact(self.say("match.counts"), f"{100.0 * report.inlier_share:.0f} %"),
+            Fact(self.say("result.expected tre"), expected, tone),
+            Fact(self.say("match.interval"), self.say("match.interval value", low=low, high=high)),
+        )
 
 
 class TrialPage(SessionPage):

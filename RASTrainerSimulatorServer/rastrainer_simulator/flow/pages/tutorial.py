@@ -6,8 +6,7 @@ from rastrainer.protocol import TRIAL_RUN, TutorialRule
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.introduction import ControlsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
-from rastrainer_simulator.flow.session.chosen_trial import start_task
-from rastrainer_simulator.flow.session.obstacles import obstacle, tutorial_rule
+from rastrainer_simulator.flow.session.chosen_trial import obstacle, start_task, tutorial_rule
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.net.views.screen import Fact, Menu

@@ -1,11 +1,20 @@
-"""What a trial is like: as the study asks for it, or else as the trainee has chosen."""
+"""A trial as the study asks for it or the trainee has chosen it, and what has to come before it."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.protocol import TRIAL_RUN, CommandName, GhostRule, Guidance, RegistrationMethod
+from rastrainer.protocol import (
+    TRIAL_RUN,
+    CommandName,
+    GhostRule,
+    Guidance,
+    RegistrationMethod,
+    StepKind,
+    TutorialRule,
+)
 from rastrainer.scenario.scenario import method_of, playable_methods
+from rastrainer.study.curriculum.curriculum_message import AssignmentMessage
 from rastrainer_simulator.flow.session.preferences import faded_guidance
 from rastrainer_simulator.flow.session.session import TrainingSession
 
@@ -72,3 +81,107 @@ def begin_ghost(session: TrainingSession, head_to_world: np.ndarray) -> None:
     who = training.trainee if rule is GhostRule.OWN else session.preferences.expert
     journals = () if rule is GhostRule.OFF else session.history.best(who, training.task)
     session.ghost.begin(rule, journals, training.trial_id, session.setup, head_to_world)
+
+
+def obstacle(session: TrainingSession, task: str) -> str:
+    """Return why the trainee cannot begin a task; "" where nothing is in the way."""
+    unready = _unready(session)
+    if unready:
+        return unready
+    step = session.study.step_of(session.trainee.strip())
+    if step is not None:
+        is_asked = step.is_played and (step.task, step.mode) == (task, session.mode)
+        if not is_asked:
+            return session.texts.say("experiment.study", step=session.step_sentence(step))
+        return _tutorial_first(session, task)
+    told = session.curriculum
+    method, procedure = registration_method(session, task).value, procedure_of(session, task)
+    played_as = (session.mode, method, procedure)
+    assigned = () if told is None else told.assignments
+    head = session.scenario.name
+    own = [each for each in assigned if each.is_played_as(head, task, *played_as)]
+    if told is not None and own and all(each.is_locked for each in own):
+        return session.assignment_words.gate(told, own[0])
+    return _missing_before(session, task, is_assigned=bool(own))
+
+
+def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> str:
+    """Return why the trainee cannot begin a trial of an assignment; "" if nothing is in the way."""
+    unready, told = _unready(session), session.curriculum
+    if unready or told is None:
+        return unready
+    if each.is_locked:
+        return session.assignment_words.gate(told, each)
+    scenario = session.scenario
+    is_on_head = (
+        each.scenario in ("", scenario.name)
+        and each.task in {task.name for task in scenario.tasks}
+        and each.procedure in {"", *(procedure.name for procedure in scenario.procedures)}
+        and (not each.method or each.method in {m.value for m in playable_methods(scenario)})
+    )
+    if not is_on_head:
+        return session.texts.say("assignments.other head")
+    return _missing_before(session, each.task, is_assigned=True)
+
+
+def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> str:
+    """Return what has to be done first outside of a study; of assignments, their gates say that."""
+    if session.preferences.order == "any":
+        return ""
+    if task == TRIAL_RUN:
+        return _tutorial_first(session, task)
+    scenario = session.scenario
+    order = [
+        each.name for each in scenario.tasks if not is_assigned or each.name in (TRIAL_RUN, task)
+    ]
+    missing = session.progress.missing_before(session.trainee.strip(), scenario.name, task, order)
+    if not missing:
+        return ""
+    key = "experiment.trial run first" if missing == TRIAL_RUN else "experiment.order"
+    return session.texts.say(key, task=session.task_title(missing))
+
+
+def _tutorial_first(session: TrainingSession, task: str) -> str:
+    is_missing = task == TRIAL_RUN and needs_tutorial(session)
+    return session.texts.say("experiment.tutorial first") if is_missing else ""
+
+
+def tutorial_obstacle(session: TrainingSession) -> str:
+    """Return why the trainee cannot begin the tutorial; "" where nothing is in the way.
+
+    In a study it is practice, and comes where the study has it: before a trial run, once.
+    """
+    unready = _unready(session)
+    if unready:
+        return unready
+    say = session.texts.say
+    trainee = session.trainee.strip()
+    step = session.study.step_of(trainee)
+    if step is None:
+        return ""
+    is_asked = step.kind == StepKind.TRIAL_RUN and step.mode == session.mode
+    has_done = session.tutorials.has_done(trainee, session.operator.learned)
+    if is_asked and not has_done:
+        return ""
+    return say("experiment.study", step=session.step_sentence(step))
+
+
+def _unready(session: TrainingSession) -> str:
+    """Return why nothing can begin yet; "" where trainee and robot are ready."""
+    if not session.trainee.strip():
+        return session.texts.say("experiment.no trainee")
+    return session.texts.say("experiment.being set up") if session.setting_up.is_under_way else ""
+
+
+def tutorial_rule(session: TrainingSession) -> TutorialRule:
+    """Return whether the tutorial comes before the trial run: by the study, or by the setting."""
+    step = session.study.step_of(session.trainee.strip())
+    chosen = step.tutorial if step is not None and step.tutorial else session.preferences.tutorial
+    return TutorialRule(chosen)
+
+
+def needs_tutorial(session: TrainingSession) -> bool:
+    """Return whether the trial run waits for the tutorial with the device in use."""
+    if tutorial_rule(session) is not TutorialRule.REQUIRED:
+        return False
+    return not session.tutorials.has_done(session.trainee.strip(), session.operator.learned)

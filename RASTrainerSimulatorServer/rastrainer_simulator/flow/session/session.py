@@ -21,14 +21,13 @@ from rastrainer_simulator.flow.session.curricula import AssignmentWords, newly_r
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.flow.session.notices import Notices
 from rastrainer_simulator.flow.session.open_pages import OpenPages
-from rastrainer_simulator.flow.session.operator_device import OperatorDevice
+from rastrainer_simulator.flow.session.operator_device import OperatorDevice, ScreenSticks
 from rastrainer_simulator.flow.session.own_score import OwnScore
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     Preferences,
     write_preferences,
 )
-from rastrainer_simulator.flow.session.screen_sticks import ScreenSticks
 from rastrainer_simulator.flow.session.services import FlowServices, SettingUp
 from rastrainer_simulator.flow.session.study_steps import step_sentence
 from rastrainer_simulator.flow.session.trace_places import TracePlaces

@@ -2,23 +2,122 @@
 
 from __future__ import annotations
 
+import asyncio
+import contextlib
+import logging
+import socket
 import ssl
 from collections.abc import Sequence
 from pathlib import Path
 
 from aiohttp import web
+from aiohttp.http_exceptions import HttpProcessingError
 from aiohttp.typedefs import Middleware
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
-from rastrainer_simulator.net.views.connections import KEEP_ALIVE_S, Connections, http_log
-from rastrainer_simulator.net.views.gate import Gate, PairingCode, add_security_headers
-from rastrainer_simulator.net.views.sessions import Sessions
+from rastrainer_simulator.net.views.gate import (
+    Gate,
+    PairingCode,
+    Sessions,
+    ViewRole,
+    add_security_headers,
+)
 
+KEEP_ALIVE_S = 75.0
 SHUTDOWN_S = 1.0
 LARGEST_BODY = 1024
+
+
+def http_log() -> logging.Logger:
+    """Return a log of our own mistakes only: what strangers send is not written down."""
+    log = logging.getLogger(f"{__name__}.http")
+    if not log.filters:
+        log.addFilter(_is_own_mistake)
+    return log
+
+
+def _is_own_mistake(record: logging.LogRecord) -> bool:
+    error = record.exc_info[1] if record.exc_info else None
+    return not isinstance(error, HttpProcessingError)
+
+
+class Connections:
+    """Makes who talks to each new connection; a protocol factory for `loop.create_server`.
+
+    Where there are as many as may be, the oldest that has shown no key yields to a new one, and
+    where all have, the oldest that only watches: whoever takes places and does not even read what
+    was asked for keeps nobody out, and who watches keeps out nobody who takes part.
+    """
+
+    def __init__(self, most: int, first_request_s: float) -> None:
+        """Allow `most` connections at once, each of which asks for something within that time."""
+        self._most = most
+        self._first_request_s = first_request_s
+        self._silent: dict[asyncio.BaseProtocol, asyncio.TimerHandle] = {}
+        self._paired: dict[asyncio.BaseProtocol, ViewRole] = {}
+        self._sent_away: set[asyncio.BaseProtocol] = set()
+        self.server: web.Server | None = None
+        """Talks to the connections; set once it is there."""
+
+    def __call__(self) -> asyncio.BaseProtocol:
+        """Return who talks to a new connection."""
+        if self.server is None or not self._has_room(self.server.connections):
+            return _Refused()
+        protocol = self.server()
+        self._silent[protocol] = asyncio.get_running_loop().call_later(
+            self._first_request_s, self._end_if_silent, protocol
+        )
+        return protocol
+
+    def note(self, request: web.BaseRequest) -> None:
+        """Take note that a connection has asked for something."""
+        timer = self._silent.pop(request.protocol, None)
+        if timer is not None:
+            # It would keep a connection that has long ended in memory.
+            timer.cancel()
+
+    def note_key(self, request: web.BaseRequest, role: ViewRole) -> None:
+        """Take note that a connection has shown the key of a session."""
+        self._paired[request.protocol] = role
+
+    def _has_room(self, there: list[web.RequestHandler]) -> bool:
+        """Return whether one more connection may be; one that matters less makes room for it."""
+        self._paired = {each: self._paired[each] for each in there if each in self._paired}
+        self._sent_away.intersection_update(there)
+        if len(there) - len(self._sent_away) < self._most:
+            return True
+        may_yield = [each for each in there if each not in self._sent_away]
+        for role in (None, ViewRole.SPECTATOR, ViewRole.BOARD):
+            oldest = next((each for each in may_yield if self._paired.get(each) is role), None)
+            if oldest is not None:
+                break
+        else:
+            return False
+        self._sent_away.add(oldest)
+        _send_away(oldest)
+        return True
+
+    def _end_if_silent(self, protocol: web.RequestHandler) -> None:
+        if self._silent.pop(protocol, None) is not None:
+            protocol.force_close()
+
+
+def _send_away(protocol: web.RequestHandler) -> None:
+    """End a connection to which something may be on its way."""
+    if protocol.transport is not None:
+        # Closed, it would wait for its peer to read; so the write that is under way fails.
+        with contextlib.suppress(OSError):
+            protocol.transport.get_extra_info("socket").shutdown(socket.SHUT_RDWR)
+
+
+class _Refused(asyncio.Protocol):
+    """Ends a connection at once."""
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        transport.close()
 
 
 class LimitedServer:

@@ -12,8 +12,8 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_VIEW_PORT
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.state_feed import StateSource
+from rastrainer_simulator.net.views.gate import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.net.views.presenter import Presenter
-from rastrainer_simulator.net.views.sessions import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE

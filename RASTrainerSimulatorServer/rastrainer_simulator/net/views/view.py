@@ -16,7 +16,6 @@ from rastrainer_simulator.loop.timing import RateLimit
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.views import messages
 from rastrainer_simulator.net.views.messages import Received, Worn, check_message
-from rastrainer_simulator.net.views.news import Mirror
 from rastrainer_simulator.net.views.outgoing import (
     CONTROL,
     PAIRING,
@@ -25,6 +24,7 @@ from rastrainer_simulator.net.views.outgoing import (
     SEAT,
     STATE,
     WELCOME,
+    Mirror,
 )
 from rastrainer_simulator.net.views.presenter import Frames, Hello, Presenter
 

@@ -19,11 +19,10 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, StateSource
 from rastrainer_simulator.net.views.boards import InstructorOrders
-from rastrainer_simulator.net.views.gate import ROLE, PairingCode
+from rastrainer_simulator.net.views.gate import BOARDS_FILE, ROLE, PairingCode, Sessions, ViewRole
 from rastrainer_simulator.net.views.limited_server import GuardedServer
 from rastrainer_simulator.net.views.messages import HELLO, ONLY_WATCH, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.presenter import Hello, Presenter
-from rastrainer_simulator.net.views.sessions import BOARDS_FILE, Sessions, ViewRole
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.net.views.views import Views
 from rastrainer_simulator.ops.instructor_pin import PinGuesses

@@ -16,7 +16,7 @@ from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.boards import Boards
 from rastrainer_simulator.net.views.messages import DESKTOP, HEADSET
-from rastrainer_simulator.net.views.news import Mirror, TraceNews
+from rastrainer_simulator.net.views.outgoing import Mirror, TraceNews
 from rastrainer_simulator.net.views.presenter import Control, Feedback, Presenter, ViewUpdate
 from rastrainer_simulator.net.views.screen import Screen, without_secrets
 from rastrainer_simulator.net.views.view import View

@@ -11,9 +11,9 @@ import aiohttp
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.limits import ViewLimits
+from rastrainer_simulator.net.views.gate import ViewRole
 from rastrainer_simulator.net.views.presenter import Control, Seat, TraceGuidance
 from rastrainer_simulator.net.views.screen import Screen
-from rastrainer_simulator.net.views.sessions import ViewRole
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures

@@ -7,8 +7,8 @@ import stat
 
 import pytest
 
+from rastrainer_simulator.net.views.gate import BOARDS_FILE, Sessions, ViewRole
 from rastrainer_simulator.net.views.presenter import Seat
-from rastrainer_simulator.net.views.sessions import BOARDS_FILE, Sessions, ViewRole
 from rastrainer_simulator.ops.instructor_pin import PIN_FILE, GuessLimit, InstructorPin
 from Testing.simulator.net.views.served import request
 

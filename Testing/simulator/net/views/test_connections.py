@@ -6,7 +6,7 @@ import gc
 import aiohttp
 from aiohttp import web
 
-from rastrainer_simulator.net.views.connections import Connections
+from rastrainer_simulator.net.views.limited_server import Connections
 from Testing.simulator.net.igtl.servers import HOST
 
 LONG_S = 1000.0

@@ -4,8 +4,7 @@ import logging
 import pytest
 
 from rastrainer_simulator.net.views import view_server as view_server_module
-from rastrainer_simulator.net.views.gate import COOKIE, PairingCode
-from rastrainer_simulator.net.views.sessions import Sessions, ViewRole
+from rastrainer_simulator.net.views.gate import COOKIE, PairingCode, Sessions, ViewRole
 from Testing.simulator.net.views.served import SUBPROTOCOL, raw_request, request
 
 UPGRADE = {

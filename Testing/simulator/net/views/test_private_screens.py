@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from rastrainer_simulator.net.views.gate import ViewRole
 from rastrainer_simulator.net.views.presenter import Control, Feedback
 from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem, Screen
-from rastrainer_simulator.net.views.sessions import ViewRole
 
 SECRET = Screen(
     menu=Menu(

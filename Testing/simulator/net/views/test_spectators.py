@@ -5,11 +5,11 @@ import json
 import aiohttp
 import pytest
 
+from rastrainer_simulator.net.views.gate import ViewRole
 from rastrainer_simulator.net.views.messages import ALIVE, MEMBERS, Worn
-from rastrainer_simulator.net.views.news import Mirror
+from rastrainer_simulator.net.views.outgoing import Mirror
 from rastrainer_simulator.net.views.presenter import Control, Feedback
 from rastrainer_simulator.net.views.screen import Screen, ScreenMessage
-from rastrainer_simulator.net.views.sessions import ViewRole
 from Testing.security.stream_attack import MESSAGES
 from Testing.simulator.net.views.served import HELLO
 
