@@ -39,7 +39,7 @@ class Window:
                     "--connect",
                     url,
                 ),
-                *("--size", "640x360", "--frame-log", str(self.frames)),
+                *("--size", "320x320", "--frame-log", str(self.frames)),
                 *("--log-folder", str(folder / "logs")),
             ],
             env={

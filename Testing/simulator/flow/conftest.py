@@ -14,6 +14,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.session import FlowServices
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.ops import instructor_pin
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.state import Answer, OperatorCommand, OperatorInput, StartingPoint
 from rastrainer_simulator.viewpoint.best_view import TouchViews
@@ -35,6 +36,13 @@ def _known_marks():
         return known[key]
 
     with mock.patch.object(TouchViews, "_on_skin", kept):
+        yield
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _cheap_pins():
+    """Make the hash of a PIN cheap: what it costs to guess one is none of these tests' business."""
+    with mock.patch.dict(instructor_pin._COST, n=2):
         yield
 
 

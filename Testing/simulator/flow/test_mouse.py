@@ -1,16 +1,24 @@
-"""By the mouse alone: menus, the ID, the sticks on the screen, touches, undo and the menu."""
+"""The flow by the mouse alone: menus, hints and sticks that are dragged, up to a scored trial."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from rastrainer.journal.journal_file import read_journal
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.flow.session.trainee_history import DoneTasks
-from rastrainer_simulator.input.inputs import ControlName
-from Testing.simulator.flow.mouse import VIEW, Mouse
+from rastrainer_simulator.flow.flow_presenter import FlowPresenter
+from rastrainer_simulator.flow.session.preferences import Preferences
+from rastrainer_simulator.flow.session.trainee_history import DoneTasks, FinishedTutorials
+from rastrainer_simulator.flow.tutorial.steps import TutorialStep
+from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
+from rastrainer_simulator.input.inputs import ControlName, SourceKind
+from Testing.simulator.flow.learner import FlowLearner
+from Testing.simulator.flow.mouse import VIEW, ClickingTrainee, Mouse
 from Testing.simulator.flow.trainee import Trainee
+from Testing.tutorial_player import TutorialPlayer
 
 
 @pytest.fixture(params=["desktop", "page"])
@@ -96,3 +104,88 @@ def test_who_holds_a_gamepad_is_not_shown_what_is_for_a_mouse(pilot):
     items = [hint.item for hint in pilot.presenter.screen.hints]
     assert "press sticks" not in items
     assert f"press {ControlName.TOUCH.value}" in items
+
+
+REGISTRATION = {"matrix": np.eye(4).ravel().tolist(), "freMm": 1.25, "expectedTreMm": 1.5}
+
+
+class MouseLearner(FlowLearner):
+    """Turns the view by dragging with the right button."""
+
+    def turn_view(self):
+        self.hands.turn_view(25.0)
+
+
+@pytest.fixture(params=["desktop", "page"])
+def newcomer(loop, outside, request):
+    """A trainee with a mouse, whom the tutorial is asked of, as from the first start on."""
+    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+    trainee = ClickingTrainee(loop, presenter, lambda it: Mouse(it, request.param))
+    trainee.until_menu("start")
+    yield trainee
+    trainee.close()
+    presenter.close()
+
+
+def enter_id(newcomer):
+    for menu, item in (("start", "train"), ("introduction", "skip"), ("controls", "next")):
+        newcomer.until_menu(menu)
+        newcomer.choose(item)
+    newcomer.until_menu("experiment")
+    for item in ("clicked", "row 1", "P", "row 3", "7", "done"):
+        newcomer.choose(item)
+    assert newcomer.item("trainee").value == "P7"
+
+
+def train_and_look_at_the_result(newcomer, outside, task):
+    """Touch all points of a task that runs, register them and read the score."""
+    newcomer.play(task)
+    assert len(newcomer.state.training.touches) == 15
+    trial_id = newcomer.register()
+    outside.has_slicer = True
+    assert newcomer.submit("SubmitRegistration", trialId=trial_id, **REGISTRATION).ok
+    assert newcomer.submit("TrialScored", trialId=trial_id, score=81.0, details={}).ok
+    newcomer.until_menu("result")
+    assert newcomer.menu.facts[0].value == "81 / 100"
+    (path,) = outside.services.records.glob(f"*{trial_id}.journal")
+    operators = {entry["operator"] for entry in read_journal(path).of_kind("input")}
+    assert "mouse" in operators
+    assert operators <= {"mouse", ""}
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("newcomer", ["desktop"], indirect=True)
+def test_by_the_mouse_the_tutorial_is_done_and_a_trial_is_touched_and_scored(newcomer, outside):
+    enter_id(newcomer)
+    assert not newcomer.item("trial-run").is_enabled
+    newcomer.choose("tutorial")
+    newcomer.until_menu(None)
+    newcomer.hands.click("press sticks")
+    player = TutorialPlayer(MouseLearner(newcomer), SourceKind.MOUSE)
+    player.play()
+    assert {step for step, _ in player.read} >= {TutorialStep.UNDO, TutorialStep.PAUSE}
+    assert newcomer.menu.name == "tutorial-done"
+    told = FinishedTutorials(outside.services.records).latest("P7")
+    assert (told.device, told.mode) == ("mouse", "desktop")
+    assert max(told.errors_mm) < 3.0
+    newcomer.choose("trial-run")
+    newcomer.until_menu(None)
+    train_and_look_at_the_result(newcomer, outside, "trial-run")
+
+
+@pytest.mark.parametrize("newcomer", ["page"], indirect=True)
+def test_by_the_mouse_an_optional_tutorial_is_skipped_and_a_trial_is_touched_and_scored(
+    newcomer, outside
+):
+    newcomer.presenter._session.prefer(Preferences(tutorial="optional"))
+    enter_id(newcomer)
+    newcomer.choose("tutorial")
+    newcomer.until_menu(None)
+    newcomer.tap("menu")
+    newcomer.until_menu("tutorial")
+    newcomer.choose("leave")
+    newcomer.until_menu("experiment")
+    newcomer.choose("trial-run")
+    newcomer.until_menu(None)
+    newcomer.hands.click("press sticks")
+    train_and_look_at_the_result(newcomer, outside, "trial-run")

@@ -68,28 +68,20 @@ def test_what_is_no_limit_is_refused_with_what_would_be_one(tmp_path, content, s
     assert sentence in str(refused.value)
 
 
-def test_the_simulator_turns_away_one_client_more_than_the_file_allows(tmp_path):
-    write(tmp_path / "records-config", {"clients": {"clients": 1}})
-    with (
-        SimulatorProcess(tmp_path / "records", "--no-views") as simulator,
-        Client(port=simulator.port) as client,
-    ):
-        assert client.send_command("Hello", HELLO, timeout=60).ok
-        with pytest.raises(LinkError), Client(port=simulator.port) as one_more:
-            one_more.send_command("Hello", HELLO, timeout=60)
-        assert client.send_command("Hello", HELLO, timeout=60).ok
-
-
-def test_the_simulator_starts_no_more_trials_than_the_file_allows(tmp_path):
-    write(tmp_path / "records-config", {"trials": {"starts_per_s": 1e-6, "starts_at_once": 1}})
+def test_the_simulator_accepts_no_more_clients_and_trials_than_the_file_allows(tmp_path):
+    trials = {"starts_per_s": 1e-6, "starts_at_once": 1}
+    write(tmp_path / "records-config", {"clients": {"clients": 1}, "trials": trials})
     task = {"task": "task-1", "trainee": "P01"}
-    with (
-        SimulatorProcess(tmp_path / "records", "--no-views") as simulator,
-        Client(port=simulator.port) as client,
-    ):
-        assert client.send_command("StartTask", task, timeout=60).ok
-        assert client.send_command("Abort", timeout=60).ok
-        assert "too often" in client.send_command("StartTask", task, timeout=60).error
+    with SimulatorProcess(tmp_path / "records", "--no-views") as simulator:
+        with Client(port=simulator.port) as client:
+            assert client.send_command("Hello", HELLO, timeout=60).ok
+            with pytest.raises(LinkError), Client(port=simulator.port) as one_more:
+                one_more.send_command("Hello", HELLO, timeout=60)
+            assert client.send_command("Hello", HELLO, timeout=60).ok
+            assert client.send_command("StartTask", task, timeout=60).ok
+            assert client.send_command("Abort", timeout=60).ok
+            assert "too often" in client.send_command("StartTask", task, timeout=60).error
+        assert simulator.stop()[0] == 0
 
 
 def test_a_wrong_file_ends_the_start_with_one_sentence_and_status_2(tmp_path):

@@ -26,16 +26,17 @@ def test_a_connection_that_has_asked_for_something_and_ended_is_let_go_of():
         connections.note(request)
         return web.Response()
 
-    async def ask_and_leave(url: str) -> None:
+    async def ask_and_leave(url: str, is_last: bool) -> None:
         async with aiohttp.ClientSession() as session, session.get(url) as response:
             assert response.status == 200
-            assert in_memory() == before + 1
+            # It takes long to look: once is enough, when others have come and gone.
+            assert not is_last or in_memory() == before + 1
 
     async def run() -> None:
         connections.server = web.Server(answer)
         server = await asyncio.get_running_loop().create_server(connections, HOST, 0)
-        for _ in range(3):
-            await ask_and_leave(f"http://{HOST}:{server.sockets[0].getsockname()[1]}")
+        for is_last in (False, False, True):
+            await ask_and_leave(f"http://{HOST}:{server.sockets[0].getsockname()[1]}", is_last)
             while connections.server.connections:
                 await asyncio.sleep(0.01)
         server.close()

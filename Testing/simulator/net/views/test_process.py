@@ -1,6 +1,5 @@
 """The view server as a user starts it: in the simulator's process, by the command."""
 
-import secrets
 import socket
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -12,7 +11,9 @@ from Testing.simulator.net.igtl.servers import HOST
 from Testing.simulator.net.views.served import ViewClient, request
 
 
-def test_a_view_pairs_by_the_code_that_the_simulator_prints(tmp_path, loop_thread):
+def test_a_view_pairs_by_the_printed_code_and_does_not_keep_the_simulator_from_ending(
+    tmp_path, loop_thread
+):
     with ViewedSimulator(tmp_path / "records", "--view-port", "0") as simulator:
         status, headers, _ = request(simulator.url, "/pair", "POST", json={"code": simulator.code})
         assert status == 200
@@ -24,30 +25,18 @@ def test_a_view_pairs_by_the_code_that_the_simulator_prints(tmp_path, loop_threa
             assert second["tick"] > first["tick"]
             view.send("{")
             assert view.closing()[0] == 1008
-        with ViewClient(loop_thread, simulator.url, key) as again:
+        with ViewClient(loop_thread, simulator.url, key) as again, ThreadPoolExecutor() as reading:
             assert again.join()["view"] == 2
             scene = again.next("scene")["url"]
             headers = {"Authorization": f"Bearer {key}"}
             assert request(simulator.url, scene, headers=headers)[2][:4] == b"glTF"
-        status, errors = simulator.stop()
+            # It reads all the time: the simulator waits only shortly for who does not.
+            closing = reading.submit(again.closing)
+            status, errors = simulator.stop()
+            assert closing.result() == (1001, "The simulator has been stopped.")
         assert status == 0
         assert key not in errors
         assert simulator.code not in errors
-
-
-def test_a_joined_view_does_not_keep_the_simulator_from_ending(tmp_path, loop_thread):
-    key = secrets.token_urlsafe()
-    with (
-        ViewedSimulator(tmp_path / "records", "--view-port", "0", key=key) as simulator,
-        ViewClient(loop_thread, simulator.url, key) as view,
-        ThreadPoolExecutor() as reading,
-    ):
-        view.join()
-        view.next("state")
-        # It reads all the time: the simulator waits only shortly for who does not.
-        closing = reading.submit(view.closing)
-        assert simulator.stop()[0] == 0
-        assert closing.result() == (1001, "The simulator has been stopped.")
 
 
 def test_a_port_that_is_taken_is_told_or_replaced(tmp_path):
@@ -76,11 +65,6 @@ def _usual_port_taken():
         except OSError:
             assert time.monotonic() < give_up, "another program keeps port 18945"
             time.sleep(0.05)
-
-
-def test_without_views_there_are_none(tmp_path):
-    with SimulatorProcess(tmp_path / "records", "--no-views") as simulator:
-        assert simulator.stop()[0] == 0
 
 
 @pytest.mark.parametrize(
