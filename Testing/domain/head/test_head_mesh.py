@@ -88,7 +88,7 @@ def test_a_missing_mesh_is_named(tmp_path):
         (lambda content: content.replace(b"float x", b"double x"), "must be a binary"),
         (lambda content: content[:-5], "cut short"),
         (lambda content: content + b"\0", "bytes left over"),
-        (lambda content: content[:-4] + b"\xff\xff\xff\x7f", "no triangle of its vertices"),
+        (lambda content: content[:-4] + b"\xff\xff\xff\x7f", "not a triangle of its vertices"),
         (lambda content: _first_vertex(content, np.nan), "not within"),
         (lambda content: _first_vertex(content, 1e9), "not within"),
         (lambda content: content.replace(b"face 320", b"face 999999999"), "must have 4 to"),
