@@ -62,10 +62,8 @@ def _viridis() -> Any:
     node.SetName("Viridis")
     node.SetTypeToUser()
     node.SetNumberOfColors(COLORS)
-    shares = np.linspace(0.0, 1.0, len(VIRIDIS))
-    for index, share in enumerate(np.linspace(0.0, 1.0, COLORS)):
-        color = [
-            np.interp(share, shares, channel) / 255.0 for channel in zip(*VIRIDIS, strict=True)
-        ]
+    known, shares = np.linspace(0.0, 1.0, len(VIRIDIS)), np.linspace(0.0, 1.0, COLORS)
+    channels = [np.interp(shares, known, channel) / 255.0 for channel in zip(*VIRIDIS, strict=True)]
+    for index, color in enumerate(zip(*channels, strict=True)):
         node.SetColor(index, f"{index}", *color, 1.0)
     return node
