@@ -202,7 +202,6 @@ def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_aga
     assert [bool(node.GetDisplayVisibility()) for node in draft] == [True, True]
 
 
-@pytest.mark.usefixtures("own_processes")
 def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 5.0), size=SIZE), "MRI")
     volume.SetAndObserveTransformNodeID(add_transform(host.scene, [0.0, 0.0, 100.0]).GetID())
