@@ -20,7 +20,7 @@ SEEN_OFF_MM = 0.3
 """So far above the skin, the tip is seen to have left it."""
 TURN_BACK_M = 0.006
 STROKE_POINTS = 12
-TRACING = "to parts that face different ways"
+TRACING = "over parts that face different ways"
 """What is read while a stroke is on."""
 
 

@@ -31,7 +31,7 @@ def test_it_is_saved_without_face_and_names_and_the_panel_says_so(host, tmp_path
     host.press("exportScenarioButton")
     assert host.messages == []
     told = host.text("scenarioText")
-    assert "out.zip is written. Removed: the face, the skull, its title, its name" in told
+    assert "out.zip was written. Removed: the face, the skull, its title, its name" in told
     given = read_scenario(tmp_path)
     assert given.title in told
     assert given.title.startswith("Head ")

@@ -105,7 +105,7 @@ def test_a_deletion_that_has_begun_goes_on_and_says_so(panel, journal, monkeypat
     panel.press("deleteTraineeButton")
     timer.stop()
     assert {enabled for enabled, _tip in told} == {False}
-    assert "cannot be canceled any more" in told[-1][1]
+    assert "can no longer be canceled" in told[-1][1]
     assert (journal.exists(), stored(panel)) == (False, [])
 
 

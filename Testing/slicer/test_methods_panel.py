@@ -53,8 +53,8 @@ def test_what_the_program_has_written_is_read(scenario):
 @pytest.mark.parametrize(
     ("text", "script", "said"),
     [
-        pytest.param("{}", WRITES, "of another version", id="no methods"),
-        pytest.param('{"methods": {"scan": {}}}', WRITES, "of another version", id="no numbers"),
+        pytest.param("{}", WRITES, "a different version", id="no methods"),
+        pytest.param('{"methods": {"scan": {}}}', WRITES, "a different version", id="no numbers"),
         pytest.param("{", WRITES, "is not JSON", id="no JSON"),
         pytest.param(
             "", "print('rastrainer: The head has holes.'); exit(2)", "^The head", id="refused"

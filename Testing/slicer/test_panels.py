@@ -209,7 +209,7 @@ def test_a_file_gets_its_suffix_and_replaces_another_only_after_a_yes(panels, ad
     (tmp_path / "export.csv").write_text("mine")
     for answer, words in (("No", "mine"), ("Yes", "T-001")):
         panels.answer("Export the history", str(tmp_path / "export"))
-        panels.answer("is there already", answer)
+        panels.answer("already exists", answer)
         panels.press("exportHistoryButton")
         assert words in (tmp_path / "export.csv").read_text()
     panels.answer("Export the history", str(tmp_path / "EXPORT.CSV"))

@@ -134,7 +134,7 @@ def test_touches_that_cannot_be_registered_can_only_be_touched_again(surgery):
     tell(host, simulator, "verifying", registrationInUse=False)
     host.wait_until(lambda: host.find("registerAgainButton").enabled, "they can be touched again")
     assert not host.find("acceptButton").enabled
-    assert "could not be registered: let all points be" in host.text("procedureInstructionText")
+    assert "could not be registered: have all points" in host.text("procedureInstructionText")
     assert "were not registered: " in host.text("procedureMessageText")
     host.press("registerAgainButton")
     host.wait_until(lambda: sent(simulator, "RegisterAgain"), "they are touched again")

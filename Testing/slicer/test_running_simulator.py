@@ -101,7 +101,7 @@ def test_what_was_left_behind_is_ended_with_its_window(left_behind, running, mon
     running.connect()
     running.end()
     assert running.isEnding
-    assert running.sentence == "The simulator that was running already is ending."
+    assert running.sentence == "The simulator that was already running is ending."
     assert running._link.made[-1] is None
     wait_until(lambda: running.holder is None, running.process, LONG_S)
     # The window holds the other end of this pipe.

@@ -35,7 +35,7 @@ def test_source_size_and_folder_are_reported_before_anything_is_fetched(host, mo
     sizes = setup.package.sizes()
     assert "comes from the package index https://mirror.example/simple" in told
     assert str(setup.folder) in told
-    assert f"About {sizes.downloadMB} MB are downloaded, and {sizes.keptMB} MB stay." in told
+    assert f"About {sizes.downloadMB} MB will be downloaded, and {sizes.keptMB} MB kept." in told
     host.type("indexLineEdit", "")
     assert "comes from the public package index of Python" in host.text("setupText")
     host.type("wheelsPathLineEdit", "/media/wheels")

@@ -265,7 +265,7 @@ def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installe
     program.stop()
     here = "In a browser or a headset open http://127.0.0.1:18945"
     everywhere = f"{here} or https://192.0.2.7:18946 or https://192.0.2.8:18946"
-    warning = "The browser warns of a certificate made here; its SHA-256 fingerprint is AB:01."
+    warning = "The browser warns about a certificate made here; its SHA-256 fingerprint is AB:01."
     assert told == [
         "",
         f"{here} and enter the code 012345.",
@@ -311,7 +311,7 @@ def test_a_set_up_can_be_canceled(setup, source):
     ends = []
     setup.finished.connect(ends.append)
     setup.begin(source)
-    with pytest.raises(InputError, match="being set up already"):
+    with pytest.raises(InputError, match="already being set up"):
         setup.begin(source)
     with pytest.raises(InputError, match="Cancel the set-up first"):
         setup.remove()

@@ -220,7 +220,7 @@ def test_a_trial_that_will_not_count_is_reported_while_it_is_played(enrolled):
     enrolled.logic.answer([0] * 16)
     enrolled.tell(phase="running", task="task-3")
     assert (
-        "plays task-3 by fiducials in the mode hmd, which the study does not ask for"
+        "is doing task-3 by fiducials in the mode hmd, which the study does not ask for"
         in enrolled.logic.offProtocolSentence()
     )
     enrolled.tell(phase="running", task="trial-run")
@@ -465,4 +465,4 @@ def test_a_trial_of_a_study_is_started_by_the_method_of_its_protocol(lab):
     lab.tell(phase="running", mode="desktop", task="task-1", method="landmarks-surface")
     assert lab.logic.offProtocolSentence() == ""
     lab.tell(phase="running", mode="desktop", task="task-1", method="fiducials")
-    assert "plays task-1 by fiducials in the mode desktop" in lab.logic.offProtocolSentence()
+    assert "is doing task-1 by fiducials in the mode desktop" in lab.logic.offProtocolSentence()

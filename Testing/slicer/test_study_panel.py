@@ -99,7 +99,7 @@ def test_a_step_is_skipped_only_with_a_reason_and_started_only_in_its_turn(begun
     begun.press("skipStepButton")
     assert begun.messages[-1].details == "no sheets"
     assert outcomes(begun)[:2] == ["skipped: the sheets were missing", "next"]
-    assert begun.text("stepTimeText") == "0:00 of 5 min are over."
+    assert begun.text("stepTimeText") == "0:00 of 5 min have passed."
     with pytest.raises(AssertionError, match="Connect to the simulator first"):
         begun.press("startStepButton")
     begun.press("createTraineeButton")

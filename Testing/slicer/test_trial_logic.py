@@ -404,7 +404,7 @@ def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_reporte
     for number in range(3 * waiting):
         lab.link.trialCompleted.emit(make_record(str(uuid.UUID(int=100 + number))))
     assert lab.problems == [
-        "Trials arrive faster than they can be scored; they are offered again later."
+        "Trials arrive faster than they can be scored; they will be offered again later."
     ]
     before = 0
     while len(kept) < waiting:

@@ -49,7 +49,7 @@ def test_the_trial_is_shown_sought_and_left_by_the_keyboard(place, browser):
     trainee.until_menu("result")
     trainee.choose("replay")
     trainee.until_menu(None)
-    wait_for(page, "page.screen.instruction.text === 'Task 1 of P07, shown again'")
+    wait_for(page, "page.screen.instruction.text === 'Replay: Task 1 of P07'")
     trainee.until(lambda: trainee.view.state["phase"] == "running", "the replay")
     for _ in range(3):
         trainee.hands.tap("right")

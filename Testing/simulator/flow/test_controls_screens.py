@@ -38,13 +38,13 @@ def test_unplugging_the_gamepad_in_use_stops_the_robot_and_the_clock_until_the_t
     pilot.step(15)
     assert np.array_equal(tip(pilot), stopped)
     pilot.until_menu("trial")
-    assert "unplugged: the robot stands still" in str(pilot.presenter.screen.warnings)
+    assert "unplugged: the robot has stopped" in str(pilot.presenter.screen.warnings)
     assert pilot.presenter.control.holder == ""
     elapsed = pilot.state.elapsed
     pilot.hands.plugged.plug_in()
     pilot.step(20)
     assert pilot.state.elapsed == elapsed
-    assert "robot stands still" not in str(pilot.presenter.screen.warnings)
+    assert "robot has stopped" not in str(pilot.presenter.screen.warnings)
     pilot.choose("resume")
     pilot.until_menu(None)
     assert pilot.presenter.screen.warnings == ()
@@ -135,7 +135,7 @@ def test_who_no_longer_sees_the_trial_gives_the_control_up(trainee):
     [
         (lambda presenter: presenter.view_left(1), "was closed or lost"),
         (lambda presenter: presenter.on_visibility(1, False), "out of sight"),
-        (lambda presenter: presenter.on_silence(1), "the picture stood still"),
+        (lambda presenter: presenter.on_silence(1), "the picture froze"),
     ],
 )
 def test_a_trial_that_nobody_could_see_is_paused_and_says_why_until_it_goes_on(trainee, lose, why):
@@ -201,7 +201,7 @@ def test_a_key_that_is_taken_is_exchanged_only_on_request(trainee, answer):
     trainee.until_menu("listen")
     trainee.hands.key("KeyC")
     trainee.until_menu("conflict")
-    assert trainee.menu.paragraphs == ("C is Front view now. Exchange it with Touch?",)
+    assert trainee.menu.paragraphs == ("C is now Front view. Swap it with Touch?",)
     trainee.choose(answer)
     trainee.until_menu("bindings")
     trainee.step(20)

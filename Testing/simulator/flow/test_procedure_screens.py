@@ -257,7 +257,7 @@ def shown_in_world(operation: Operation, point_ras) -> np.ndarray:
 
 
 def test_a_procedure_is_chosen_beside_the_tasks(operation):
-    assert operation.seen["procedures"] == ["Nothing: touches alone", "Dbs", "Seeg", "Biopsy"]
+    assert operation.seen["procedures"] == ["Nothing: touches only", "Dbs", "Seeg", "Biopsy"]
 
 
 def test_the_registration_is_accepted_only_once_there_is_one(operation):

@@ -120,7 +120,7 @@ def test_the_trial_is_shown_again_to_the_views_while_the_arm_stands(result):
     result.show_again()
     result.shown.clear()
     result.until(lambda: len(result.replay.training.touches) == 3, "the third touch")
-    assert result.presenter.screen.instruction.text == "Task 1 of P07, shown again"
+    assert result.presenter.screen.instruction.text == "Replay: Task 1 of P07"
     tips = {tuple(state.tool_tip_to_world[:3, 3]) for state in result.shown}
     assert len(tips) > 50
     assert {state.training.phase for state in result.shown} == {"running"}

@@ -44,7 +44,7 @@ def test_a_teacher_s_sentence_is_read_and_goes_after_its_time(trainee, presenter
 
 
 def test_a_teacher_pauses_a_trial_and_the_trainee_reads_who_did(trainee, presenter):
-    nothing = "Nothing is running at this seat that could be paused."
+    nothing = "Nothing that could be paused is running at this seat."
     assert presenter.instruct(InstructorOrder.PAUSE, "") == nothing
     trainee.start("task-1")
     assert presenter.instruct(InstructorOrder.PAUSE, "") == ""

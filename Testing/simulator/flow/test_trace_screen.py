@@ -140,7 +140,7 @@ def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_con
         trainee.until(lambda number=number: trainee.touched > number, "the touch")
         trainee.step()
     assert trainee.presenter.screen.status[1] == "0 of 30–500 points traced"
-    assert "draw the tip over the skin" in trainee.presenter.screen.instruction.text
+    assert "trace the skin with the tip" in trainee.presenter.screen.instruction.text
     assert "Begin or end a stroke" in [hint.action for hint in trainee.presenter.screen.hints]
     draw_stroke(trainee)
     trainee.until(lambda: not trainee.state.training.trace.is_on, "the end of the stroke")

@@ -206,7 +206,7 @@ def test_its_menu_lets_it_wait_begin_again_or_be_left(learner):
     go_to_step(learner, TutorialStep.UP)
     learner.tap("menu")
     learner.until_menu("tutorial")
-    assert learner.menu.paragraphs == ("The tutorial waits at step 5 of 14.",)
+    assert learner.menu.paragraphs == ("The tutorial is paused at step 5 of 14.",)
     assert learner.item("leave").label == "Leave the tutorial"
     learner.tap("pause")
     learner.until_menu(None)
@@ -306,7 +306,7 @@ def test_the_arm_is_first_brought_to_where_trials_start(learner, setup):
     learner.until(lambda: np.linalg.norm(learner.tip - start) > 0.15, "the arm elsewhere")
     session_of(learner).begin_tutorial()
     learner.step(20)
-    assert instruction(learner) == "The robot moves to where you begin."
+    assert instruction(learner) == "The robot is moving to the start."
     learner.until(lambda: "to the right" in instruction(learner), "the first step")
     assert np.linalg.norm(learner.tip - start) < 0.02
 

@@ -73,7 +73,7 @@ def test_a_surface_trial_has_three_landmarks_touched_and_then_waits_for_the_trac
     assert early.message == "0 of 3 landmarks are touched: Capture point Nasion before Trace."
     trial.touch(3)
     assert (trial.state.phase, trial.state.next_point) == (Phase.RUNNING, None)
-    assert "draw the tip over the skin" in trial.state.instruction
+    assert "trace the skin with the tip" in trial.state.instruction
     assert "Trace the skin now" in trial.do(CommandName.CAPTURE, (0, 0, 0)).message
     assert "0 points are traced: Register needs 30" in trial.do(CommandName.REGISTER).message
 
@@ -135,8 +135,8 @@ def test_the_five_hundredth_point_ends_the_stroke_and_no_more_are_taken(landmark
     trial = traced(landmarked, MAX_TRACE_POINTS + 5)
     assert len(trial.state.trace.points) == MAX_TRACE_POINTS
     assert trial.state.phase is Phase.COMPLETE
-    assert "the most that a trial takes" in trial.state.instruction
-    assert "the most that a trial takes" in trial.do(CommandName.TRACE, on=True).message
+    assert "the most a trial can have" in trial.state.instruction
+    assert "the most a trial can have" in trial.do(CommandName.TRACE, on=True).message
     trial.must(CommandName.UNDO)
     assert trial.must(CommandName.TRACE, on=True).ok
 

@@ -119,7 +119,7 @@ def test_a_replay_is_watched_and_marked_by_keys_one_domain_after_the_other(rater
 def test_marks_are_given_by_clicks_and_the_three_sentences_are_there(rater):
     rater.click("rate")
     labels = [item.label for item in rater.menu.items if item.name.startswith("mark")]
-    assert labels[0] == "1: Misjudges depth again and again; far off or pressed in"
+    assert labels[0] == "1: Misjudges depth repeatedly; far off or pressed in"
     assert (labels[1], labels[3]) == ("2", "4")
     assert rater.menu.focus == "watch"
     rater.click("mark 4", "mark 2", "undo", "mark 5")

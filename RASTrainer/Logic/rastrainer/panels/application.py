@@ -137,7 +137,7 @@ def askWhereToSave(caption: str, proposed: str, kind: str) -> Path | None:
         return Path(chosen)
     path = Path(chosen + suffix)
     # The dialog has checked only the name without the suffix.
-    question = _("{path} is there already. Replace it?").format(path=path)
+    question = _("{path} already exists. Replace it?").format(path=path)
     if path.exists() and not slicer.util.confirmYesNoDisplay(toolTip(question), caption):
         return None
     return path

@@ -118,7 +118,7 @@ class LandmarksPanel:
             self._seen = tuple(rows)
             fillTable(ui.landmarksTable, rows)
             self._chooseNext()
-        busy = _("Wait until the work under way is done.")
+        busy = _("Wait until the current work is done.")
         first = busy if isAtWork else _("Place landmarks first, or have them proposed.")
         ui.proposeLandmarksButton.text = _("Cancel") if isAtWork else _("Propose")
         setUsable(
@@ -130,7 +130,7 @@ class LandmarksPanel:
         setUsable(
             ui.undoLandmarkButton,
             points.canUndo,
-            _("Undo the last placing, removal or proposal."),
+            _("Undo the last placement, removal or proposal."),
             _("Nothing was changed."),
         )
         setUsable(

@@ -149,7 +149,7 @@ class PlanPanel:
         setUsable(
             ui.undoPlanButton,
             self._logic.points.canUndo,
-            _("Undo the last placing or removal of a point."),
+            _("Undo the last placement or removal of a point."),
             _("Nothing was placed or removed."),
         )
 

@@ -77,7 +77,7 @@ STEPS = (
         "startInsertionButton",
         _DRILL,
         _sends(CommandName.START_INSERTION),
-        _("Replace the drill by the instrument."),
+        _("Replace the drill with the instrument."),
     ),
     _Step(
         "releaseButton",
@@ -144,7 +144,7 @@ class ProcedurePanel:
 
     def _instruction(self) -> str:
         if self._logic.isRegistrationFailed:
-            return _("The touches could not be registered: let all points be touched again.")
+            return _("The touches could not be registered: have all points touched again.")
         return instruction(self._logic.status)
 
     def _action(self, step: _Step) -> Callable[[], None]:
@@ -217,7 +217,7 @@ def instruction(status: ProcedureStatus) -> str:
             + " "
             + _(
                 "Touch checkpoints to verify the registration; then accept it, or register again. "
-                "An offset common to all touches cannot be seen there."
+                "An offset common to all touches does not show there."
             )
         )
     return {
@@ -272,10 +272,10 @@ def _tip(errors: TrajectoryErrors) -> str:
             shown=fixed(depthShown, 2),
             hand=fixed(depthHand, 2),
         ),
-        _("Entry: by registration {shown} mm, by hand {hand} mm.").format(
+        _("Entry: registration {shown} mm, hand {hand} mm.").format(
             shown=fixed(errors.entry.registration_mm, 2), hand=fixed(errors.entry.hand_mm, 2)
         ),
-        _("Angle: by registration {shown}°, by hand {hand}°.").format(
+        _("Angle: registration {shown}°, hand {hand}°.").format(
             shown=fixed(errors.registration_angle_deg, 2), hand=fixed(errors.hand_angle_deg, 2)
         ),
         _("Plunge depth {plunge}.").format(plunge=plunge),

@@ -190,7 +190,7 @@ class ProcedurePlanPanel:
         setUsable(
             ui.raiseLineButton,
             line is not None and ui.linesTable.currentRow() > 0,
-            _("Carry the chosen line out before the one above it."),
+            _("Carry out the chosen line before the one above it."),
             _("Choose a line below the first one in the table."),
         )
         node = ui.noGoComboBox.currentNode()
@@ -198,7 +198,7 @@ class ProcedurePlanPanel:
         setUsable(
             ui.noGoButton,
             node is not None,
-            _("Let instruments keep away from this, or no longer."),
+            _("Make instruments keep away from this, or no longer."),
             _("Choose a model or a segmentation first."),
         )
         names = ", ".join(each.GetName() for each in noGoNodes(slicer.mrmlScene))
@@ -215,7 +215,7 @@ class ProcedurePlanPanel:
             ui.saveProcedureButton,
             hasLines and not isAtWork,
             _("Copy the scenario above with this procedure."),
-            _("Wait until the work under way is done.") if isAtWork else first,
+            _("Wait until the current work is done.") if isAtWork else first,
         )
         if not isAtWork:
             setSentence(ui.procedurePlanText, self._problem or self._verdict())

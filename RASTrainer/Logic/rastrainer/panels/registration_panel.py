@@ -77,7 +77,7 @@ class RegistrationPanel:
                 self._logic.localize(self._logic.shown.labels[row], self._ui.fleSpinBox.value)
 
     def undo(self) -> None:
-        """Undo the last change of the pairs."""
+        "Undo the last change to the pairs."
         with slicer.util.tryWithErrorDisplay(_("Nothing was undone.")):
             self._logic.undo()
 
@@ -146,7 +146,7 @@ class RegistrationPanel:
         setUsable(
             ui.undoButton,
             self._logic.canUndo,
-            _("Undo the last change of the pairs."),
+            _("Undo the last change to the pairs."),
             _("No pair was changed."),
         )
 
@@ -220,7 +220,7 @@ def _summary(comparison: Comparison) -> str:
         sentence += " " + _("Not touched yet: {labels}.").format(labels=", ".join(pairs.missing))
     if pairs.excluded:
         sentence += " " + _(
-            "Left out: {labels}; the score of the trial stays that of all pairs."
+            "Left out: {labels}; the score of the trial still uses all pairs."
         ).format(labels=", ".join(pairs.excluded))
     if comparison.fits[RIGID].weights is not None:
         sentence += " " + _(
@@ -236,7 +236,7 @@ def _treText(comparison: Comparison) -> str:
     low, high = error.interval_mm
     return _(
         "Expected TRE at the target, rigid: {expected:.2f} mm (95 %: {low:.2f} to {high:.2f} mm). "
-        "A small FRE does not promise a small TRE."
+        "A small FRE does not guarantee a small TRE."
     ).format(expected=error.expected_mm, low=low, high=high)
 
 

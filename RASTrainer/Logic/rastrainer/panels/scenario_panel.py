@@ -87,7 +87,7 @@ class ScenarioPanel:
             self._showMessage(
                 _("The simulator was asked to load {title}.").format(title=scenario.title)
             )
-            loaded = _("The simulator uses {title} now.").format(title=scenario.title)
+            loaded = _("The simulator now uses {title}.").format(title=scenario.title)
             self._session.training.loadScenario(scenario.name, lambda: self._showMessage(loaded))
 
     def showRobot(self, shown: bool) -> None:
@@ -105,7 +105,7 @@ class ScenarioPanel:
             if used is not None:
                 model, warnings = used
                 fitThreeDViews()
-                text = _("{name} is the head now; the simulator keeps its own head.")
+                text = _("{name} is now the head; the simulator keeps its own head.")
                 self._showHeadMessage(" ".join([text.format(name=model.GetName()), *warnings]))
 
     def importScenario(self) -> None:
@@ -122,7 +122,7 @@ class ScenarioPanel:
             )
             if added is not None:
                 self._fill(added.name)
-                self._showMessage(_("{title} is added.").format(title=added.title))
+                self._showMessage(_("{title} was added.").format(title=added.title))
 
     def exportScenario(self) -> None:
         """Write the chosen scenario as a zip file."""
@@ -140,7 +140,7 @@ class ScenarioPanel:
                     )
                 )
                 if taken is not None:
-                    self._showMessage(_("{path} is written.").format(path=path) + f" {taken}")
+                    self._showMessage(_("{path} was written.").format(path=path) + f" {taken}")
 
     def continueWith(self, name: str) -> None:
         """Choose a scenario that has just been made, show it, and have the simulator take it."""

@@ -87,7 +87,7 @@ class ScorePanel:
             showMotion(slicer.mrmlScene, motionRows(trial))
             showTable(self._session.layout, showScore(slicer.mrmlScene, rows))
             self._showMessage(
-                _("Score, Comparison and Motion metrics are tables of the scene now.")
+                _("Score, Comparison and Motion metrics are now tables in the scene.")
             )
 
     def exportScores(self) -> None:
@@ -100,7 +100,7 @@ class ScorePanel:
                 )
                 if written is not None:
                     text = _(
-                        "{count} trials are written to {path}. Trainees left out because they did "
+                        "{count} trials were written to {path}. Trainees left out because they did "
                         "not consent to research: {leftOut}."
                     )
                     self._showMessage(text.format(count=written[0], path=path, leftOut=written[1]))
@@ -235,7 +235,7 @@ class ScorePanel:
         ui, isAtWork = self._ui, self._work.isUnderWay
         hasTrial = bool(chosenData(ui.trialComboBox))
         reason = _("Choose a trial first.")
-        busy = _("Wait until the work under way is done.")
+        busy = _("Wait until the current work is done.")
         setUsable(
             ui.showTablesButton,
             hasTrial,
@@ -256,7 +256,7 @@ class ScorePanel:
             _("Show how point {label} was touched.").format(label=self._worst),
             busy if isAtWork else unjudged,
         )
-        allTrials = _("Write all trials of all trainees of the study into a CSV file.")
+        allTrials = _("Write all trials of all trainees of the study to a CSV file.")
         report = _("Write the report of the whole study as a printable page, and open it.")
         setUsable(ui.exportScoresButton, not isAtWork, allTrials, busy)
         setUsable(ui.reportButton, not isAtWork, report, busy)

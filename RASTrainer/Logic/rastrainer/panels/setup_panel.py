@@ -147,7 +147,7 @@ def costSentence(ui: Any, setup: SimulatorSetup) -> str:
     sizes = setup.package.sizes()
     if sizes is None:
         return where
-    size = _("About {download} MB are downloaded, and {kept} MB stay.").format(
+    size = _("About {download} MB will be downloaded, and {kept} MB kept.").format(
         download=sizes.downloadMB, kept=sizes.keptMB
     )
     return f"{where} {size}"

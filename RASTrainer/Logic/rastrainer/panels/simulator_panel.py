@@ -132,7 +132,7 @@ class SimulatorPanel:
             ui.startSimulatorButton,
             not ((program.isRunning and not isEnding) or setup.isRunning),
             _("Start the simulator on this computer and connect to it."),
-            _("It runs already.") if program.isRunning else _("It is being set up."),
+            _("It is running.") if program.isRunning else _("It is being set up."),
         )
         setUsable(
             ui.stopSimulatorButton,

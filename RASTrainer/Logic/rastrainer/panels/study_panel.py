@@ -132,7 +132,7 @@ class StudyPanel:
         else:
             setSentence(
                 self._ui.stepTimeText,
-                _("{over} of {minutes:g} min are over.").format(
+                _("{over} of {minutes:g} min have passed.").format(
                     over=_clock(self._logic.minutesOver(progress)), minutes=step.minutes
                 ),
             )
@@ -188,7 +188,7 @@ class StudyPanel:
         setUsable(
             ui.beginStudyButton,
             bool(ui.protocolPathLineEdit.currentPath),
-            _("Lead the trainees through this protocol from now on."),
+            _("Guide the trainees through this protocol from now on."),
             _("Choose the file of a protocol first."),
         )
         setUsable(

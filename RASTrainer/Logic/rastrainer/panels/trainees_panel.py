@@ -144,7 +144,7 @@ class TraineesPanel:
             with slicer.util.tryWithErrorDisplay(_("The trainee was not exported.")):
                 count = self._logic.export(path)
                 self._showMessage(
-                    _("{count} trials are written to {path}."), count=count, path=path
+                    _("{count} trials were written to {path}."), count=count, path=path
                 )
 
     def exportHistory(self) -> None:
@@ -155,7 +155,7 @@ class TraineesPanel:
             with slicer.util.tryWithErrorDisplay(_("The history was not exported.")):
                 count = self._logic.exportHistory(path)
                 self._showMessage(
-                    _("{count} trials are written to {path}."), count=count, path=path
+                    _("{count} trials were written to {path}."), count=count, path=path
                 )
 
     def deleteTrainee(self) -> None:
@@ -194,7 +194,7 @@ class TraineesPanel:
         ui.studyPathLineEdit.enabled = isFile and not isAtWork
         ui.deleteTraineeButton.text = _("Cancel") if isAtWork else _("Delete…")
         if isAtWork:
-            begun = _("The deletion has begun, and cannot be canceled any more.")
+            begun = _("The deletion has begun, and can no longer be canceled.")
             tip = _("Delete nothing; the study is still being opened.")
             setUsable(ui.deleteTraineeButton, not self._isErasing, tip, begun)
         else:
@@ -260,14 +260,14 @@ class TraineesPanel:
         self._isArchived = trainee is not None and trainee.archived
         ui.archiveButton.text = _("Bring back") if self._isArchived else _("Archive")
         for button, tip in (
-            (ui.archiveButton, _("Hide the trainee from the list, or show again.")),
+            (ui.archiveButton, _("Hide the trainee from the list, or show them again.")),
             (ui.exportTraineeButton, _("Write all that is known about the trainee to a file.")),
         ):
             setUsable(button, hasTrainee, tip, reason)
         hasTrials = _("The trainee has no trials yet.") if hasTrainee else reason
         for button, tip in (
             (ui.learningCurveButton, _("Show score and time over the trials.")),
-            (ui.exportHistoryButton, _("Write the trainee's trials into a CSV file.")),
+            (ui.exportHistoryButton, _("Write the trainee's trials to a CSV file.")),
         ):
             setUsable(button, bool(history), tip, hasTrials)
         if trainee is not None:
@@ -279,7 +279,7 @@ class TraineesPanel:
                 aborted=_aborted(aborted),
             )
         elif not ui.traineeText.text:
-            self._showMessage(_("Choose who trains, or create a new trainee."))
+            self._showMessage(_("Choose who is training, or create a new trainee."))
         fillTable(
             ui.historyTable,
             (_historyRow(number, trial) for number, trial in enumerate(history, start=1)),

@@ -147,7 +147,7 @@ class TrainingPanel:
         setUsable(
             box,
             len(methods) > 1,
-            _("What the trainee touches, and how the head is registered. A study says which."),
+            _("What the trainee touches, and how the head is registered. A study decides this."),
             _("The chosen scenario has no landmarks: only its fiducials can be touched."),
         )
         entries = [(_("none: only touches"), "")]

@@ -33,13 +33,13 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "undone": "{trainee}, point {label} was undone. Touch it again.",
         "complete": "{trainee}, all {count} points are touched. Register them now.",
         # Tracing the skin, one point a millimeter.
-        "trace": "{trainee}, the landmarks are touched. Now draw the tip over the skin: {least} "
-        "points or more, one a millimeter.",
-        "tracing": "{trainee}, draw the tip over the skin, to parts that face different ways.",
+        "trace": "{trainee}, the landmarks are touched. Now trace the skin with the tip: {least} "
+        "points or more, one per millimeter.",
+        "tracing": "{trainee}, trace the skin with the tip, over parts that face different ways.",
         "traced": "{trainee}, {traced} points are traced. Keep tracing: {least} are needed.",
         "traced enough": "{trainee}, {traced} points are traced. Register them, or keep tracing.",
-        "traced all": "{trainee}, {traced} points are traced, the most that a trial takes. "
-        "Register them now.",
+        "traced all": "{trainee}, {traced} points are traced, the most a trial can have. Register "
+        "them now.",
         "paused": "{trainee}, the trial is paused. Resume when you are ready.",
         "resumed": "{trainee}, continue with point {point}.",
         "registered": "{trainee}, your points are being registered and scored.",
@@ -65,10 +65,10 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "Continue the procedure when you are ready, or abort it.",
         # What a procedure does not allow.
         "no checkpoints": "This procedure has no checkpoints: AcceptRegistration or RegisterAgain.",
-        "too many checkpoints": "{most} checkpoints are touched, the most that a trial keeps: "
+        "too many checkpoints": "{most} checkpoints are touched, the most a trial can have: "
         "AcceptRegistration or RegisterAgain.",
-        "too many attempts": "The points were registered {most} times, the most that a trial "
-        "keeps: AcceptRegistration, or Abort.",
+        "too many attempts": "The points were registered {most} times, the most a trial allows: "
+        "AcceptRegistration, or Abort.",
         "too far from checkpoints": "No checkpoint is here: {name}, the nearest by your "
         "registration, is {distance:.1f} mm away; one counts within {radius:g} mm.",
         "above a checkpoint": "{height:.1f} mm above the skin: lower the tip onto the checkpoint.",
@@ -99,8 +99,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "another trial is open": "That trial is over. The one that is open now, {task} of "
         "{trainee}, was not aborted.",
         "trial is open": "{trainee} is still doing {task}: Register or Abort it before StartTask.",
-        "procedure is open": "{trainee} is still at the procedure after {task}: finish or Abort it "
-        "before StartTask.",
+        "procedure is open": "{trainee} is still doing the procedure after {task}: finish or Abort "
+        "it before StartTask.",
         "not at the procedure": "This comes after Register, in a trial that StartTask began with a "
         "procedure.",
         "verifying now": "The registration is being verified: Capture checkpoints, then "
@@ -113,14 +113,14 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "target, then ReleaseInstrument.",
         "not all touched": "{kept} of {count} points are touched: Register comes after the last; "
         "point {point} is next.",
-        "nothing is traced": "Nothing is traced in this trial: StartTask with the method surface "
-        "or landmarks-surface begins one in which the skin is.",
+        "nothing is traced": "No skin is traced in this trial: StartTask with the method surface "
+        "or landmarks-surface begins one with a trace.",
         "landmarks first": "{kept} of {count} landmarks are touched: Capture point {point} before "
         "Trace.",
         "landmarks touched": "All {count} landmarks are touched: Trace the skin now, or Undo the "
         "last landmark.",
-        "trace is full": "{traced} points are traced, the most that a trial takes: Register them, "
-        "or Undo the last stroke.",
+        "trace is full": "{traced} points are traced, the most a trial can have: Register them, or "
+        "Undo the last stroke.",
         "all traced": "{traced} points are traced: Register them, keep tracing, or Undo the last "
         "stroke.",
         "still tracing": "A stroke is being drawn: end it with Trace before Register.",
@@ -150,18 +150,18 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "interrupted complete": "{trainee}, this trial was interrupted; all {count} points are "
         "kept. Register them now.",
         "interrupted trace": "{trainee}, this trial was interrupted; {traced} traced points are "
-        "kept. Keep tracing when you are ready, or abort it; {least} points can be registered.",
+        "kept. Keep tracing when you are ready, or abort it; to register, {least} are needed.",
         # When nobody could see the trial, which pauses it.
         "unseen.left": "Paused: the view that showed the trial was closed or lost.",
         "unseen.unplugged": "Paused: the gamepad was unplugged.",
         "unseen.hidden": "Paused: the trial was out of sight.",
         "unseen.instructor": "Paused by your instructor.",
         "instructor.says": "Your instructor: {text}",
-        "instructor.nothing runs": "Nothing is running at this seat that could be paused.",
+        "instructor.nothing runs": "Nothing that could be paused is running at this seat.",
         "instructor.no result": "A replay can be shown while the result of a trial is on "
         "the screen of the seat.",
-        "unseen.still": "Paused: the picture stood still for some seconds, because this computer "
-        "was too busy to draw it. If that happens again, close other programs.",
+        "unseen.still": "Paused: the picture froze for some seconds, because this computer was too "
+        "busy to draw it. If that happens again, close other programs.",
         # The simulator's menus.
         "start.title": "RASTrainer",
         "start.text": "Train robot-assisted patient registration on a virtual KUKA LBR iiwa 7. "
@@ -179,7 +179,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "introduction.text.1": "Before a robot can help in brain surgery, it has to know where "
         "the head lies. You show it: with the robot's tool you touch fifteen numbered points on "
         "the head, one after the other, as accurately as you can.",
-        "introduction.title.2": "How a task goes",
+        "introduction.title.2": "How a task works",
         "introduction.text.2": "Follow the numbers and the arrows on the skin from point 1 to "
         "point 15. Within 20 mm of the head a tone sounds, and a ring around the tip closes as "
         "you come nearer. It turns green where a touch counts: record the point there. Red means "
@@ -187,8 +187,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "introduction.title.3": "What you get",
         "introduction.text.3": "After the last point you register: 3D Slicer matches your points "
         "with the MRI and shows you the error and your score. Accuracy and time both count. You "
-        "begin with a tutorial of two minutes and five minutes of free practice, then come Tasks "
-        "1 to 5.",
+        "begin with a two-minute tutorial and five minutes of free practice; then come Tasks 1 to "
+        "5.",
         "introduction.sheet": "Page {sheet} of {sheets}",
         "introduction.next": "Next",
         "introduction.skip": "Skip to the controls",
@@ -205,7 +205,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "controls.best_view": "Best view of the next point",
         "controls.turn_view": "View from the left, from the right",
         "controls.tilt_view": "View from above, from below",
-        "controls.zoom_view": "View from nearer, from farther away",
+        "controls.zoom_view": "Zoom in, zoom out",
         "controls.pause": "Pause",
         "controls.menu": "Menu",
         "controls.next": "Next",
@@ -239,7 +239,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "{questionnaire}, here or where 3D Slicer runs.",
         "study.answered": "Your answers to {questionnaire} are on their way to 3D Slicer, which "
         "will say what comes next.",
-        "study.trial-run": "Step {number} of {count}: get to know the trial run {mode} for "
+        "study.trial-run": "Step {number} of {count}: practice in the trial run {mode} for "
         "{minutes:g} minutes.",
         "study.trial": "Step {number} of {count}: play {task} {mode}.",
         "study.break": "Step {number} of {count}: take a break of at least {minutes:g} minutes, "
@@ -293,23 +293,23 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "questionnaire.ends": "{topic}: {lowest} is {low}, {highest} is {high}",
         "questionnaire.open": "Some lines are not answered yet.",
         "questionnaire.keep": "Done",
-        "questionnaire.back": "Back, without answers",
+        "questionnaire.back": "Back without answering",
         **_ITEMS,
         **_FEEDBACK,
         "experiment.trend": "Your scores in this mode; the line is the pass mark, {mark:.0f}.",
         "experiment.trend in study": "Your scores in this mode.",
         "experiment.scores": "Scores, oldest first: {scores}.",
         "experiment.method": "Registration",
-        "experiment.method help": "By what the head is registered in the next trial. Landmarks are "
-        "not marked on the skin: find them by their names.",
+        "experiment.method help": "How the head is registered in the next trial. Landmarks are not "
+        "marked on the skin: find them by their names.",
         "method.fiducials": "fiducials",
         "method.landmarks": "landmarks of the face",
         "method.surface": "trace over the skin",
         "method.landmarks-surface": "landmarks, then a trace",
         "experiment.procedure": "After the touches",
-        "experiment.procedure help": "What follows the registration: nothing, or a procedure, in "
-        "which an instrument is placed by it. The trial run has none.",
-        "experiment.touches alone": "Nothing: touches alone",
+        "experiment.procedure help": "What follows the registration: nothing, or a procedure that "
+        "places an instrument with it. The trial run has none.",
+        "experiment.touches alone": "Nothing: touches only",
         "experiment.scenario": "Head",
         "experiment.back": "Back",
         "scenario.title": "Heads",
@@ -330,7 +330,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "clicked-id.done": "Done",
         "character.back": "Back",
         "pin.title": "Instructor's PIN",
-        "pin.text": "It unlocks the settings, the order of the tasks and passing on the control, "
+        "pin.text": "It unlocks the settings, the order of the tasks and handing over control, "
         "until the trainee changes or a trial begins.",
         "pin.too short": "A PIN has 6 to 12 digits.",
         "pin.delete": "Delete",
@@ -373,7 +373,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "complete.abort": "Abort the task",
         "match.title": "Accept this match?",
         "match.looking": "The trace is being matched to the skin …",
-        "match.impossible": "The trace cannot be matched: {reason} Draw on, or undo strokes.",
+        "match.impossible": "The trace cannot be matched: {reason} Keep drawing, or undo strokes.",
         "match.residual and error": "The residual is how far the trace is off the skin. The error "
         "is how far the target is from where it seems to be. A small residual does not mean a "
         "small error. Once accepted, the points cannot be changed.",
@@ -390,9 +390,9 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "match.few-inliers": "Many points are off the skin. Keep the tip on the skin while you "
         "draw.",
         "match.far-points": "Some points are far off the skin and do not count.",
-        "match.poor-fit": "The trace does not fit this head. Were the landmarks exchanged?",
+        "match.poor-fit": "The trace does not fit this head. Were the landmarks swapped?",
         "match.accept": "Accept and register",
-        "match.draw": "Draw on",
+        "match.draw": "Keep drawing",
         "waiting.title": "Registered",
         "waiting.slicer": "{trainee}, 3D Slicer is scoring your points.",
         "waiting.nobody": "{trainee}, your points are saved. 3D Slicer is not connected; it will "
@@ -423,7 +423,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "result.mm": "{error:.2f} mm",
         "result.points": "{points:.1f}",
         "result.time": "Time",
-        "result.repeated": "Touches refused / taken back",
+        "result.repeated": "Touches refused / undone",
         "result.next": "Next: {task}",
         "result.again": "Again: {task}",
         "result.replay": "Show the trial again",
@@ -434,12 +434,12 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "procedure.title.drilling": "Drill",
         "procedure.title.inserting": "Insert the instrument",
         "procedure.accept": "Accept the registration",
-        "procedure.accept help": "The plan is shown by it from now on.",
+        "procedure.accept help": "It places the plan from now on.",
         "procedure.again": "Register again",
         "procedure.again help": "Touch all fifteen points once more.",
         "procedure.waits": "The points are still being registered.",
         "procedure.lock": "Lock the guide",
-        "procedure.lock help": "The arm is held from then on, and the drill is in the guide.",
+        "procedure.lock help": "The arm is then held, and the drill is put into the guide.",
         "procedure.align": "Let the robot align the guide",
         "procedure.align help": "It moves the guide onto the planned line, as your registration "
         "shows it. A stick stops it.",
@@ -452,8 +452,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "procedure.release help": "It stays where it is; the next line follows, or the score.",
         "procedure.work": "Back to work",
         "procedure-errors.title": "Errors: {name}",
-        "procedure-errors.text": "Against the truth. In brackets: what the registration caused / "
-        "what the hand caused. These lengths do not add up: the two may cancel out.",
+        "procedure-errors.text": "Against the truth. In parentheses: the parts due to registration "
+        "/ hand. These lengths do not add up: the two may cancel out.",
         "procedure-errors.trajectory": "Line",
         "procedure-errors.lines": "Show the lines in the head",
         "procedure-errors.back": "Back",
@@ -473,7 +473,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "procedure-errors.hit": "hit",
         "procedure-lines.title": "Green: plan. Yellow: by your registration. Blue: placed.",
         "procedure-lines.back": "Back",
-        "errors.title": "Your error at each point, {longer:.0f} times as long: green up to "
+        "errors.title": "Your error at each point, enlarged {longer:.0f} times: green up to "
         "{good:.0f} mm, red from {poor:.0f} mm",
         "errors.back": "Back",
         "result.worst": "Show the worst touch",
@@ -484,20 +484,20 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "tutorial.done mm": "{done} of {goal} mm",
         "tutorial.done degrees": "{done} of {goal}°",
         "tutorial.done points": "{done} of {goal} points",
-        "tutorial.homing": "The robot moves to where you begin.",
+        "tutorial.homing": "The robot is moving to the start.",
         "tutorial.right": "Move the tool 30 mm to the right: {control}.",
         "tutorial.left": "30 mm to the left: {control}.",
         "tutorial.forward": "30 mm forward, away from you: {control}.",
-        "tutorial.forward.robot": "30 mm forward, as the robot stands: {control}.",
+        "tutorial.forward.robot": "30 mm forward, as the robot faces: {control}.",
         "tutorial.back": "30 mm back, toward you: {control}.",
-        "tutorial.back.robot": "30 mm back, as the robot stands: {control}.",
+        "tutorial.back.robot": "30 mm back, as the robot faces: {control}.",
         "tutorial.up": "30 mm up: {control}.",
         "tutorial.down": "30 mm down: {control}.",
-        "tutorial.slow": "Hold {control} and move the tool 10 mm: near the skin it should be slow.",
-        "tutorial.slow.touch screen": "Press {control} and move the tool 10 mm: near the skin it "
-        "should be slow. Press again to be fast.",
-        "tutorial.slow.mouse": "Click on {control} and move the tool 10 mm: near the skin it "
-        "should be slow. Click again to be fast.",
+        "tutorial.slow": "Hold {control} and move the tool 10 mm: near the skin, go slowly.",
+        "tutorial.slow.touch screen": "Press {control} and move the tool 10 mm: near the skin, go "
+        "slowly. Press again to go fast.",
+        "tutorial.slow.mouse": "Click on {control} and move the tool 10 mm: near the skin, go "
+        "slowly. Click again to go fast.",
         "tutorial.turn view": "Turn the view by 20°: {control}.",
         "tutorial.turn view.keyboard": "Turn the view by 20°: {control}, or drag with the right "
         "mouse button.",
@@ -510,17 +510,17 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "the skin.",
         "tutorial.touch": "Record the touch: {control}. Only touches within 10 mm of the point "
         "count.",
-        "tutorial.undo": "Everyone slips. Take the touch back: {control}.",
+        "tutorial.undo": "Everyone slips. Undo the touch: {control}.",
         "tutorial.pause": "Open the menu: {control}. Everything waits meanwhile; then resume.",
-        "tutorial.guided": "Now touch {count} points, each as exactly as you can. Point {point} is "
-        "first.",
+        "tutorial.guided": "Now touch {count} points, each as accurately as you can. Point {point} "
+        "is first.",
         "tutorial.praise": "Well done.",
         "tutorial.recorded": "Recorded, {error:.1f} mm from the point.",
         "tutorial.touched": "Point {label}: {error:.1f} mm off. Now touch point {point}.",
         "tutorial.head is gone": "The tutorial has ended: another head is in use.",
-        "tutorial is open": "{trainee} is doing the tutorial: let it be finished, or leave it in "
+        "tutorial is open": "{trainee} is doing the tutorial: let them finish it, or leave it in "
         "the simulator's menu.",
-        "tutorial.paused": "The tutorial waits at step {step} of {steps}.",
+        "tutorial.paused": "The tutorial is paused at step {step} of {steps}.",
         "tutorial.resume": "Continue",
         "tutorial.controls": "Controls",
         "tutorial.restart": "Begin again",
@@ -528,8 +528,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "tutorial.skip": "Skip the tutorial",
         "tutorial.mm": "{error:.1f} mm",
         "tutorial-done.title": "You can drive the robot",
-        "tutorial-done.text": "{trainee}, next is the trial run: fifteen points, to practice as "
-        "long as its time lasts.",
+        "tutorial-done.text": "{trainee}, next is the trial run: fifteen points to practice on "
+        "until its time is over.",
         "tutorial-done.time": "Time",
         "tutorial-done.first": "Error of your first touch",
         "tutorial-done.touches": "Errors of the last three",
@@ -573,7 +573,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.axes": "Directions",
         "settings.axes help": "Whether right, forward and up are those of the view or the robot's.",
         "settings.axes.camera": "As the view shows them",
-        "settings.axes.robot": "As the robot stands",
+        "settings.axes.robot": "As the robot faces",
         "settings.touch": "A touch counts",
         "settings.touch help": "On the skin only, or anywhere within 10 mm of the point, as in the "
         "published study. The record says which.",
@@ -591,7 +591,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.view.always": "Automatically",
         "settings.view.never": "Only on request",
         "settings.guidance": "Guidance to the next point",
-        "settings.guidance help": "Directions in words, an arrow, or neither; where the skin is "
+        "settings.guidance help": "Directions in words, an arrow, or neither; while the skin is "
         "traced, also what is covered, and where to draw next. A study may set its own. The record "
         "says which.",
         "settings.guidance.fading": "Less from task to task",
@@ -599,8 +599,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "settings.guidance.arrow": "Arrow",
         "settings.guidance.none": "None",
         "settings.ghost": "Ghost beside the arm",
-        "settings.ghost help": "Shows the tool of an earlier trial of the same task, by the time "
-        "since the start. None in studies, unless their protocol has one. The record says so. The "
+        "settings.ghost help": "Shows the tool of an earlier trial of the same task at the same "
+        "elapsed time. None in studies, unless their protocol has one. The record says so. The "
         "expert's ID is in the file {file}.",
         "settings.ghost.off": "None",
         "settings.ghost.own best": "Your own best trial",
@@ -637,15 +637,15 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "bindings.back": "Back",
         "bindings.are default": "All controls are back to their defaults.",
         "bindings.changed": "{control} is now {input}.",
-        "bindings.impossible": "These two cannot be exchanged: one of them would do two things at "
+        "bindings.impossible": "These two cannot be swapped: one of them would do two things at "
         "once.",
         "listen.title": "{control}",
         "listen.gamepad": "Press the new button or push the new axis for {control} ({seconds} s).",
         "listen.keyboard": "Press the new key for {control} ({seconds} s).",
         "listen.cancel": "Cancel",
         "conflict.title": "Already in use",
-        "conflict.text": "{input} is {other} now. Exchange it with {control}?",
-        "conflict.exchange": "Exchange",
+        "conflict.text": "{input} is now {other}. Swap it with {control}?",
+        "conflict.exchange": "Swap",
         "conflict.another": "Choose another",
         "conflict.cancel": "Cancel",
         "test.title": "Try the controls",
@@ -675,8 +675,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "control.view_right": "View from the right",
         "control.view_lower": "View from below",
         "control.view_higher": "View from above",
-        "control.view_farther": "View from farther away",
-        "control.view_nearer": "View from nearer",
+        "control.view_farther": "Zoom out",
+        "control.view_nearer": "Zoom in",
         "control.accept": "Accept",
         "control.back": "Back",
         "control.up": "Up",
@@ -784,13 +784,13 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "warning.obstacle.links": "The head is in the arm's way: approach from another side.",
         "warning.obstacle.self": "The arm is in its own way: move in another direction.",
         "warning.obstacle.table": "The table is in the arm's way: approach from above.",
-        "warning.nobody registers": "Nobody registers the points here: connect 3D Slicer.",
+        "warning.nobody registers": "Nothing here registers the points: connect 3D Slicer.",
         "felt.bone": "The drill is in the bone.",
         "felt.through": "The drill is through the bone: stop.",
-        "felt.blocked": "The instrument stands on bone that is not drilled through.",
+        "felt.blocked": "The instrument is on bone that is not drilled through.",
         "warning.slicer": "The connection to 3D Slicer is lost. Continue: everything is recorded "
         "here and scored later.",
-        "warning.unplugged": "The gamepad {name} is unplugged: the robot stands still. Plug it in "
+        "warning.unplugged": "The gamepad {name} is unplugged: the robot has stopped. Plug it in "
         "again or continue with the keyboard.",
         "warning.unmapped": "The gamepad {name} has an unknown layout: use another one or the "
         "keyboard.",
@@ -856,7 +856,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "hint.accept": "Accept",
         "hint.back": "Back",
         "hint.play": "Play, pause",
-        "hint.seek": "5 s back, forth",
+        "hint.seek": "5 s back, forward",
         "hint.worst": "Worst touch",
         "hint.end": "End",
         "hint.rate": "Rate",
@@ -868,24 +868,24 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "rating.mark": "{mark}: {sentence}",
         "rating.undo": "Undo the last mark",
         "rating.watch": "Watch the replay again",
-        "rating.previous": "The replay before this one",
+        "rating.previous": "Previous replay",
         "rating.next": "Next replay",
         "rating.leave": "Leave; all marks are kept",
         "rated.title": "Replay {number} of {count} is rated",
         "rated.text": "{rated} of {count} replays are rated.",
         "rated.all": "All {count} replays are rated",
         "rated.all text": "Thank you. {rated} of {count} replays are rated; the report of the "
-        "study tells how far raters agree.",
+        "study says how well raters agree.",
         "rating-loading.title": "Replay {number} of {count}",
         "rating-loading.text": "The replay is being loaded.",
         "rate.gears_depth": "Depth perception",
-        "rate.gears_depth.low": "Misjudges depth again and again; far off or pressed in",
-        "rate.gears_depth.middle": "Depth is off now and then, and put right at once",
-        "rate.gears_depth.high": "Comes to rest on the skin directly",
+        "rate.gears_depth.low": "Misjudges depth repeatedly; far off or pressed in",
+        "rate.gears_depth.middle": "Misjudges depth now and then, but corrects it at once",
+        "rate.gears_depth.high": "Lands on the skin directly",
         "rate.gears_efficiency": "Efficiency",
-        "rate.gears_efficiency.low": "Detours and pauses; hardly gets on",
-        "rate.gears_efficiency.middle": "Without haste, mostly toward the goal",
-        "rate.gears_efficiency.high": "Straight to each goal, without a doubt",
+        "rate.gears_efficiency.low": "Detours and pauses; little progress",
+        "rate.gears_efficiency.middle": "Unhurried, mostly toward the goal",
+        "rate.gears_efficiency.high": "Straight to each goal, no hesitation",
         "rate.gears_force": "Force sensitivity",
         "rate.gears_force.low": "Presses or drags on the skin repeatedly",
         "rate.gears_force.middle": "Touches too hard now and then",
@@ -895,20 +895,20 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "rate.gears_control.middle": "Mostly as intended; some postures are unfavorable",
         "rate.gears_control.high": "The arm moves smoothly, always in a good posture",
         "rate.osats_tissue": "Respect for tissue",
-        "rate.osats_tissue.low": "Much contact that was not needed, or too deep",
+        "rate.osats_tissue.low": "Much unnecessary contact, or too deep",
         "rate.osats_tissue.middle": "Careful, with a few slips",
         "rate.osats_tissue.high": "Only the contact that the task needs",
         "rate.osats_motion": "Time and motion",
-        "rate.osats_motion.low": "Most of the motion serves nothing",
-        "rate.osats_motion.middle": "Some of the motion could be left out",
-        "rate.osats_motion.high": "Nothing could be left out",
+        "rate.osats_motion.low": "Most of the motion is unnecessary",
+        "rate.osats_motion.middle": "Some of the motion is unnecessary",
+        "rate.osats_motion.high": "No unnecessary motion",
         "rate.osats_handling": "Instrument handling",
-        "rate.osats_handling.low": "The tool is led uncertainly",
-        "rate.osats_handling.middle": "Led safely, if without ease",
-        "rate.osats_handling.high": "Led fluently and precisely",
+        "rate.osats_handling.low": "Guides the tool uncertainly",
+        "rate.osats_handling.middle": "Guides it safely, but without ease",
+        "rate.osats_handling.high": "Guides it fluently and precisely",
         "rate.osats_flow": "Flow of operation and forward planning",
         "rate.osats_flow.low": "Pauses as if the next step were unknown",
-        "rate.osats_flow.middle": "Goes on evenly, looking a little ahead",
+        "rate.osats_flow.middle": "Proceeds evenly, planning a little ahead",
         "rate.osats_flow.high": "Each move prepares the next",
         "hint.checkpoint": "Touch the checkpoint",
         "hint.next step": "Next step",
@@ -916,7 +916,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "hint.turn": "Turn",
         "hint.tilt": "Tilt",
         "hint.result": "Result",
-        "replay.title": "{task} of {trainee}, shown again",
+        "replay.title": "Replay: {task} of {trainee}",
         "replay.worst": "Point {point}, the worst touch, at half speed",
         "replay.paused": "Paused",
         "replay.loading": "Your trial is being loaded",
@@ -927,7 +927,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         # What a learning platform's users read after a launch.
         "lti.you are": "Your pseudonym at the simulator",
         "lti.what to do": "What to do",
-        "lti.go": "Go to a simulator of your lab, and have {pseudonym} chosen in 3D Slicer, under "
+        "lti.go": "Go to a simulator in your lab, and have {pseudonym} chosen in 3D Slicer, under "
         "Trainees.",
         "lti.play": "Play {task} {mode}, as often as you like.",
         "lti.any task": "any task",
@@ -950,8 +950,8 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "grade.",
         "lti.link works": "The link works, and grades can be returned to the course.",
         "lti.refused": "This launch cannot be used",
-        "lti.refused help": "Open the link in your course again. If you see this page once more, "
-        "show those who run the course or the simulator what follows.",
+        "lti.refused help": "Open the link in your course again. If you see this page again, show "
+        "the text below to those who run the course or the simulator.",
         "decimal sign": ".",
         "list separator": ", ",
     }

@@ -46,7 +46,7 @@ def sentenceOf(peer: Peer, address: str) -> str:
     if peer is Peer.NOBODY:
         return _("No simulator answers at {address}.").format(address=address)
     if peer is Peer.UNKNOWN_HOST:
-        return _("There is no computer of that name: {address}.").format(address=address)
+        return _("There is no computer by that name: {address}.").format(address=address)
     if peer is Peer.SIMULATOR:
         return _("A RASTrainer simulator answers at {address}.").format(address=address)
     if peer is Peer.SILENT:
@@ -68,7 +68,7 @@ def remedyOf(peer: Peer) -> str:
     if peer is Peer.SIMULATOR:
         return ""
     return _(
-        "Enter the port that the simulator names for OpenIGTLink: 18944 unless it has another."
+        "Enter the port that the simulator shows for OpenIGTLink: 18944 unless it has another."
     )
 
 

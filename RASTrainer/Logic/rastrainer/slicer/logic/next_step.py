@@ -214,7 +214,7 @@ def _start(now: WorkflowState) -> NextStep:
 
 def _trainee(now: WorkflowState) -> NextStep:
     if now.hasTrainees:
-        text = _("Choose who trains, or create a new trainee.")
+        text = _("Choose who is training, or create a new trainee.")
         return NextStep(NextAction.CHOOSE_TRAINEE, _("Choose a trainee"), text, Section.TRAINEES)
     text = _("A pseudonym is assigned, unless you type one below.")
     return NextStep(NextAction.CREATE_TRAINEE, _("New trainee"), text, Section.TRAINEES)

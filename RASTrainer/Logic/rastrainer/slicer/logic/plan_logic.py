@@ -139,7 +139,7 @@ class PlanLogic:
         if self._sent is None or (plan is not None and self._sent.isAsGood(plan)):
             return
         self._sent = self.isReachable = self.trueErrorMm = None
-        stale = _("The plan has changed since the simulator was shown it: show it again.")
+        stale = _("The plan has changed since it was shown in the simulator: show it again.")
         self.sentence = "" if self._isRefused else stale
         self.changed.emit()
 

@@ -95,11 +95,11 @@ class ScenarioCache:
         titles = (f"{title[:LONGEST_STEM]} {number}" for number in count(2))
         free = next(each for each in titles if scenario_name(each) not in taken)
         sentence = _(
-            "There is a scenario {name} already: give this one another title, such as {free}."
+            "There already is a scenario {name}: give this one another title, such as {free}."
         )
         if taken[name].parent == user_library():
             sentence = _(
-                "There is a scenario {name} already: give this one another title, such as {free}, "
+                "There already is a scenario {name}: give this one another title, such as {free}, "
                 "or first move the folder {folder} elsewhere."
             )
         raise InputError(sentence.format(name=name, free=free, folder=taken[name]))

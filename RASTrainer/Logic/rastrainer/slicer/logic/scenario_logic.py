@@ -312,4 +312,4 @@ class MethodComparisonLogic:
         try:
             return tuple(ComparedMethod.of(*each) for each in compared["methods"].items())
         except (KeyError, TypeError, ValueError, AttributeError):
-            raise InputError(_("The simulator's program is of another version.")) from None
+            raise InputError(_("The simulator's program has a different version.")) from None

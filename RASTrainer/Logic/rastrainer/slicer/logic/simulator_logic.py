@@ -56,7 +56,7 @@ class RunningSimulator:
         if self.holder is None:
             return ""
         if self.isEnding:
-            return _("The simulator that was running already is ending.")
+            return _("The simulator that was already running is ending.")
         return _(
             "A simulator that was not started from here is running on this computer{since}. "
             "Connect to it, or end it before another is started: recorded trials stay."

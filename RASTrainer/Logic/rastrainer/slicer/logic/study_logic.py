@@ -170,12 +170,12 @@ class StudyLogic:
 
     def _notAsked(self, trial: TrialStatus) -> str:
         text = _(
-            "{trainee} plays {task} by {method} in the mode {mode}, which the study does not ask "
-            "for now: it will not count."
+            "{trainee} is doing {task} by {method} in the mode {mode}, which the study does not "
+            "ask for now: it will not count."
         )
         if trial.procedure:
             text = _(
-                "{trainee} plays {task} by {method} with the procedure {procedure} in the mode "
+                "{trainee} is doing {task} by {method} with the procedure {procedure} in the mode "
                 "{mode}, which the study does not ask for now: it will not count."
             )
         return text.format(

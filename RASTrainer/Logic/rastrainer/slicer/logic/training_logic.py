@@ -268,8 +268,8 @@ class TrainingLogic:
 def tutorialSentence(trainee: str) -> str:
     """Return a sentence on a trainee who does the tutorial before the trial run."""
     return _(
-        "{trainee} does the tutorial first, where the simulator is shown: about two minutes. Then "
-        "start the trial run here, or let the trainee start it."
+        "{trainee} does the tutorial first, at the simulator: about two minutes. Then start the "
+        "trial run here, or let the trainee start it."
     ).format(trainee=trainee)
 
 

@@ -97,7 +97,7 @@ class TrialLogic:
             self._storing,
             self._accept,
             _("A trial could not be stored: {error}"),
-            _("Trials arrive faster than they can be scored; they are offered again later."),
+            _("Trials arrive faster than they can be scored; they will be offered again later."),
         )
         self.problemFound = self._queue.problemFound
         self._listening = Listening(

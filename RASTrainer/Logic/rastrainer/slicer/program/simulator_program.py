@@ -81,7 +81,7 @@ class SimulatorProgram:
         if not self.fingerprint:
             return sentence
         warning = _(
-            "The browser warns of a certificate made here; its SHA-256 fingerprint is "
+            "The browser warns about a certificate made here; its SHA-256 fingerprint is "
             "{fingerprint}."
         ).format(fingerprint=self.fingerprint)
         return f"{sentence} {warning}"

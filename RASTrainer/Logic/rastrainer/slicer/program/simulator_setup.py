@@ -106,7 +106,7 @@ class SimulatorSetup:
                 or pip cannot be used.
         """
         if self.isRunning:
-            raise InputError(_("The simulator is being set up already."))
+            raise InputError(_("The simulator is already being set up."))
         words = source.pipArguments()
         requirements = self.package.requirements()
         self._makeFolder(requirements)

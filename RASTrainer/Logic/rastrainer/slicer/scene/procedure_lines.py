@@ -293,8 +293,8 @@ def _newLine(scene: Any, role: str) -> Any:
 
 def _showArrows(scene: Any, each: Sequence[TrajectoryErrors]) -> None:
     for role, name, color in (
-        (Role.ERRORS_BY_REGISTRATION, _("Errors by the registration"), REGISTERED_COLOR),
-        (Role.ERRORS_BY_HAND, _("Errors by the hand"), PLACED_COLOR),
+        (Role.ERRORS_BY_REGISTRATION, _("Errors due to registration"), REGISTERED_COLOR),
+        (Role.ERRORS_BY_HAND, _("Errors due to the hand"), PLACED_COLOR),
     ):
         append = vtk.vtkAppendPolyData()
         for errors in each:

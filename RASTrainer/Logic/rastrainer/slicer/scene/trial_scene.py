@@ -74,7 +74,7 @@ def checkSameTask(moving: Any | None, fixed: Any | None) -> None:
     if moving is not None and moving.GetAttribute(TRACED_ATTRIBUTE):
         raise InputError(
             _(
-                "The touched landmarks are where the trace over the skin starts from: the trial is "
+                "The trace over the skin starts from the touched landmarks: the trial is "
                 "registered by its trace, and not by them alone."
             )
         )
