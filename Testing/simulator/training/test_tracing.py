@@ -190,8 +190,8 @@ def test_the_points_are_touched_and_traced_again_where_the_registration_is_not_a
 @pytest.mark.parametrize(
     ("method", "said"),
     [
-        ("scan", "there are fiducials, landmarks, surface, landmarks-surface"),
-        ("laser", "there are fiducials, landmarks, surface, landmarks-surface"),
+        ("scan", "methods are fiducials, landmarks, surface, landmarks-surface"),
+        ("laser", "methods are fiducials, landmarks, surface, landmarks-surface"),
         ("surface", "has 0 landmarks"),
     ],
 )
