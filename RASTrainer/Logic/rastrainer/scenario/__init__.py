@@ -1,1 +1,1 @@
-"""What is trained on: tasks, plan, set-up, package and library."""
+"""What is trained on: a scenario, its points, its set-up, its folder and the library."""
