@@ -1,15 +1,27 @@
-"""The seat: its views and what they operate with; what a teacher sees of it, and has done there."""
+"""The seat: its views, how they are operated and turned, and what its teacher sees and has done."""
 
 from __future__ import annotations
 
-from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, Phase
+from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, Mode, Phase
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import ResultPage
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import SIMULATOR_SEAT, Source, SourceKind
+from rastrainer_simulator.input.controls import Controls
+from rastrainer_simulator.input.inputs import SIMULATOR_SEAT, ControlContext, Source, SourceKind
+from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views.presenter import Hello, InstructorOrder, Seat
 from rastrainer_simulator.net.views.screen import Screen, Tone
+from rastrainer_simulator.record.beside_the_trial import ViewReport
+from rastrainer_simulator.replay.playback import PlaybackSwitch
+from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
+
+_WRONG = (Tone.WARNING, Tone.ERROR)
+SENTENCE_S = 20.0
+"""How long the trainee sees a teacher's sentence: longer than a notice, since nobody expects it."""
+NOTED_S = 0.2
+"""A view that moves is noted in the journal so often."""
 
 
 class ViewSources:
@@ -95,11 +107,6 @@ class ViewSources:
         return self.source(SourceKind.TOUCH_SCREEN if view in self._touched else kind, view)
 
 
-_WRONG = (Tone.WARNING, Tone.ERROR)
-SENTENCE_S = 20.0
-"""How long the trainee sees a teacher's sentence: longer than a notice, since nobody expects it."""
-
-
 def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -> Seat:
     """Return what a board shows of a seat; `count` is how many points its trial has."""
     training = session.training
@@ -146,3 +153,75 @@ def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text:
         return session.texts.say("instructor.no result")
     page.accept("replay")
     return ""
+
+
+class OperatedView:
+    """The session's view between controls, control loop and views."""
+
+    def __init__(
+        self,
+        session: TrainingSession,
+        controls: Controls,
+        control_loop: ControlLoop,
+        shown: PlaybackSwitch,
+    ) -> None:
+        self._session = session
+        self._controls = controls
+        self._control_loop = control_loop
+        self._shown = shown
+        self._noted: tuple[str, ViewReport] | None = None
+        self._since_noted = 0.0
+
+    def pictures(self, now: SimulationState) -> Pictures:
+        """Return where the pictures of a state are looked from."""
+        return self._session.view.pictures(now, self._shown.setup.scenario.cameras)
+
+    def turn(self, source: Source, around_deg: float, higher_deg: float, zoom: float) -> None:
+        """Turn the view for the operator; nobody else may."""
+        if self._controls.is_operator(source):
+            shown = self._shown
+            camera = shown.setup.scenario.cameras[shown.latest.camera]
+            self._session.view.control.turn(camera, around_deg, higher_deg, zoom)
+
+    @property
+    def follows(self) -> bool:
+        """Whether the view goes automatically to the best view of each next point."""
+        session, tutorial = self._session, self._session.tutorial
+        practiced = session.training if tutorial is None else tutorial
+        if practiced.mode == Mode.HMD.value:
+            # In a headset one looks around with the head.
+            return False
+        if tutorial is not None and not tutorial.has_learned_view:
+            return False
+        choice = session.preferences.view
+        is_led = session.study.step_of(practiced.trainee) is not None
+        return choice == "always" or (choice == "practice" and not is_led)
+
+    def advance(self, dt: float) -> None:
+        """Move the view by `dt` seconds, and have the trial's journal say where it is."""
+        session = self._session
+        session.view.advance(
+            dt,
+            self._shown.latest,
+            self._shown.setup.scenario,
+            ViewMotion(*self._controls.view),
+            self._controls.sticks,
+            self.follows and self._controls.situation is ControlContext.WORK,
+        )
+        self._since_noted += dt
+        if session.has_open_trial and self._since_noted >= NOTED_S:
+            self._note()
+
+    def _note(self) -> None:
+        session = self._session
+        control, orbit = session.view.control, session.view.control.orbit
+        report = ViewReport(
+            orbit.azimuth_deg,
+            orbit.elevation_deg,
+            orbit.zoom,
+            control.is_automatic,
+            self.follows,
+        )
+        if self._noted != (session.training.trial_id, report):
+            self._noted, self._since_noted = (session.training.trial_id, report), 0.0
+            self._control_loop.note_display(report)
