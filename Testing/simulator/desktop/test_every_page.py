@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +18,7 @@ from rastrainer_simulator.net.views.screen import ErrorArrow, Screen, Tone
 from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, state_text
 from Testing.simulator.flow.conftest import loop, outside, presenter, shared  # noqa: F401
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
-from Testing.simulator.flow.languages import SHORT_AND_LONG
+from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
 
 
 @pytest.fixture
@@ -74,7 +73,7 @@ def test_the_errors_of_the_touches_are_drawn_in_the_color_of_their_size(show):
         assert with_arrow > without + 50, tone
 
 
-@pytest.mark.parametrize("language", SHORT_AND_LONG)
+@pytest.mark.parametrize("language", LONGEST_OR_EACH)
 @pytest.mark.parametrize(
     "size",
     [
@@ -84,8 +83,6 @@ def test_the_errors_of_the_touches_are_drawn_in_the_color_of_their_size(show):
     ],
 )
 def test_no_item_of_any_page_is_clipped(presenter, monkeypatch, language, size):  # noqa: F811
-    session = presenter._session
-    session.prefer(replace(session.preferences, language=language))
     clipped = []
     fit = Brush.fit
 
@@ -95,7 +92,7 @@ def test_no_item_of_any_page_is_clipped(presenter, monkeypatch, language, size):
         return fitted
 
     monkeypatch.setattr(Brush, "fit", noted)
-    for screen in every_screen(presenter).values():
+    for screen in screens_in(presenter, language).values():
         if screen.menu is not None:
             menu_panel(screen.menu, theme.scale_of(*size), (size[0] - 64, size[1] - 160))
     assert clipped == []

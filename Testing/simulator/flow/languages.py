@@ -14,11 +14,6 @@ from Testing.simulator.flow.every_page import every_screen
 
 LONGEST = "longest"
 """Each screen in the language that has the most letters on it."""
-SHORT_AND_LONG = [
-    pytest.param(language, marks=[pytest.mark.soak] if language == "en" else [])
-    for language in LANGUAGES
-]
-"""English is shorter than what it is translated to: the soak tests look at it too."""
 LONGEST_OR_EACH = [LONGEST, *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES)]
 
 
