@@ -118,7 +118,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
 
     def setup(self) -> None:
         from rastrainer.panels.panel_stack import PanelStack
-        from rastrainer.panels.application import isSomethingSeen
+        from rastrainer.panels.application import isAnythingVisible
         from rastrainer.slicer.background_work import PERIOD_MS
 
         ScriptedLoadableModuleWidget.setup(self)
@@ -127,7 +127,7 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
         self._uiWidget = uiWidget
         self.logic = RASTrainerLogic()
         session = self.logic.session
-        session.isSeen = lambda inSlices: isSomethingSeen(self.parent.isEntered, inSlices)
+        session.isSeen = lambda inSlices: isAnythingVisible(self.parent.isEntered, inSlices)
         self._panels = PanelStack(uiWidget, self.resourcePath, session)
         self.ui = self._panels.ui
         uiWidget.setMRMLScene(slicer.mrmlScene)
@@ -178,13 +178,13 @@ class RASTrainerWidget(ScriptedLoadableModuleWidget, VTKObservationMixin):
             self._panels.showState()
 
     def onWorkTimeout(self) -> None:
-        if self.logic is None or not self.logic.session.giveTimeToWork():
+        if self.logic is None or not self.logic.session.yieldTimeToWork():
             self._workTimer.stop()
 
     def onSceneStartClose(self, caller=None, event=None) -> None:
         self.setParameterNode(None)
         if self.logic is not None:
-            self.logic.session.sceneIsToBeCleared()
+            self.logic.session.sceneWillBeCleared()
 
     def onSceneEndClose(self, caller=None, event=None) -> None:
         if self.logic is not None:

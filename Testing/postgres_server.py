@@ -153,7 +153,7 @@ def _is_alive(pid: int) -> bool:
     return False
 
 
-def opened_when_there(place: object, lock_wait: LockWait | None = None) -> Study:
+def opened_when_available(place: object, lock_wait: LockWait | None = None) -> Study:
     """Return a study, opened once its server answers."""
     give_up = time.monotonic() + TIMEOUT_S
     while True:

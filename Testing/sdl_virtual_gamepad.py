@@ -111,7 +111,7 @@ class VirtualGamepad:
         self._joystick = ctypes.c_void_p(self._sdl.SDL_JoystickOpen(index))
         self.move(**dict.fromkeys(AXES, 0.0))
 
-    def plug_out(self) -> None:
+    def unplug(self) -> None:
         """Disappear."""
         for index in range(self._sdl.SDL_NumJoysticks()):
             if self._sdl.SDL_JoystickGetDeviceInstanceID(index) == self._instance:

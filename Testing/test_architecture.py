@@ -51,13 +51,14 @@ LAYERS = {
     "the simulator": """
         rastrainer_simulator
         rastrainer_simulator.export
-        rastrainer_simulator.input, rastrainer_simulator.ops.texts, rastrainer_simulator.robot
+        rastrainer_simulator.input, rastrainer_simulator.robot, rastrainer_simulator.texts
         rastrainer_simulator.collision, rastrainer_simulator.teleoperation
         rastrainer_simulator.ops, rastrainer_simulator.training
         rastrainer_simulator.core
         rastrainer_simulator.record, rastrainer_simulator.scene
         rastrainer_simulator.loop, rastrainer_simulator.rendering
         rastrainer_simulator.viewpoint
+        rastrainer_simulator.presentation
         rastrainer_simulator.authoring, rastrainer_simulator.virtual
         rastrainer_simulator.net
         rastrainer_simulator.net.igtl, rastrainer_simulator.net.views
@@ -143,7 +144,7 @@ def our_imports() -> dict[str, list[str]]:
     }
 
 
-def test_every_room_has_its_floor():
+def test_every_room_is_on_a_floor():
     assert {room_of(module) for module in FILES if FILES[module].name != "__init__.py"} == set(
         TABLE_OF
     )
@@ -156,7 +157,7 @@ def may_import(room: str, other: str) -> bool:
 
 
 @pytest.mark.parametrize("room", TABLE_OF)
-def test_a_room_imports_only_rooms_of_floors_above_its_line(room):
+def test_a_room_imports_only_from_rooms_above_its_line(room):
     upward = [
         f"{module} → {other}"
         for module, others in our_imports().items()
@@ -167,7 +168,7 @@ def test_a_room_imports_only_rooms_of_floors_above_its_line(room):
     assert not upward
 
 
-def test_no_file_imports_itself_by_way_of_others():
+def test_no_file_imports_itself_through_others():
     try:
         TopologicalSorter(our_imports()).prepare()
     except CycleError as error:
@@ -213,7 +214,7 @@ def test_the_domain_needs_only_numpy_and_the_standard_library():
 
 
 @pytest.mark.parametrize("part", FORBIDDEN)
-def test_what_belongs_to_slicer_or_qt_is_imported_only_where_it_may_be(part):
+def test_slicer_and_qt_parts_are_imported_only_where_allowed(part):
     modules = (module for module in FILES if f"{module}.".startswith(f"{part}."))
     assert not outsiders(modules) & FORBIDDEN[part]
 

@@ -11,7 +11,7 @@ from coloraide import Color
 
 from rastrainer.procedure.errors import PLACED_COLOR, PLANNED_COLOR, REGISTERED_COLOR
 from rastrainer_simulator.desktop.panels import theme
-from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.scene import nodes
 
 WEB = Path(__file__).parents[1] / "RASTrainerSimulatorServer" / "web"
@@ -47,7 +47,7 @@ def seen(color: Color, sight: str) -> Color:
 
 @pytest.mark.parametrize("sight", KINDS_OF_SIGHT, ids=lambda sight: sight or "all cones")
 @pytest.mark.parametrize("name", TOLD_APART)
-def test_colors_with_different_meanings_differ_for_every_kind_of_sight(name, sight):
+def test_colors_with_different_meanings_differ_for_every_kind_of_color_vision(name, sight):
     shown = [seen(as_color(values), sight) for values in TOLD_APART[name]]
     differences = [one.delta_e(other, method="2000") for one, other in combinations(shown, 2)]
     assert min(differences) >= LEAST_DIFFERENCE

@@ -116,7 +116,7 @@ def defines(module: str, name: str) -> bool:
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_every_link_of_a_page_leads_somewhere(page):
+def test_every_link_on_a_page_leads_somewhere(page):
     folder = (ROOT / page).parent
     for target, anchor in LINK.findall(text_of(page)):
         if target.startswith(("http:", "https:", "mailto:")):
@@ -128,7 +128,7 @@ def test_every_link_of_a_page_leads_somewhere(page):
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_every_path_that_a_page_names_is_in_the_repository(page):
+def test_every_path_named_on_a_page_is_in_the_repository(page):
     assert {path for path in paths_in(page) if not is_there(path)} == set()
 
 
@@ -143,18 +143,18 @@ def test_every_path_and_module_in_a_command_is_in_the_repository(page):
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_every_module_that_a_page_names_is_in_a_package(page):
+def test_every_module_named_on_a_page_is_in_a_package(page):
     spans = CODE.findall(text_of(page))
     named = {match[1] for span in spans if (match := MODULE.match(span))}
     assert {name for name in named if not is_module(name)} == set()
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_every_name_in_a_file_that_a_page_names_is_defined_there(page):
+def test_every_name_attributed_to_a_file_on_a_page_is_defined_there(page):
     assert {named for named in names_in(page) if not is_named(*named)} == set()
 
 
-def test_ten_questions_of_a_newcomer_are_answered_by_files():
+def test_files_answer_ten_questions_of_a_newcomer():
     rows = [line for line in text_of("CONTRIBUTING.md").splitlines() if line.startswith("| **")]
     assert len(rows) >= 10
     for row in rows:
@@ -162,7 +162,7 @@ def test_ten_questions_of_a_newcomer_are_answered_by_files():
         assert paths, row
 
 
-def test_the_architecture_tells_of_every_room():
+def test_the_architecture_page_describes_every_room():
     told = set(CODE.findall(text_of("docs/architecture.md")))
     packages = [place for source in SOURCES for place in (ROOT / source).glob("rastrainer*")]
     folders = [
@@ -176,7 +176,7 @@ def test_the_architecture_tells_of_every_room():
     assert {name for name in folders if name not in told} <= {"slicer"}
 
 
-def test_a_path_that_is_not_there_would_be_found():
+def test_a_missing_path_would_be_detected():
     assert is_path("docs/nothing.md")
     assert not is_there("docs/nothing.md")
     assert is_there("docs/tutorial.md")

@@ -32,7 +32,7 @@ def test_code_changelog_and_citation_state_the_same_version_and_date():
     assert said["version"] == __version__
 
 
-def test_slicers_index_of_extensions_points_at_the_tag_of_this_version():
+def test_slicers_extensions_index_points_at_the_tag_of_this_version():
     entry = json.loads((ROOT / "RASTrainer.json").read_text(encoding="utf-8"))
     assert entry["scm_revision"] == f"v{__version__}"
 
@@ -68,7 +68,7 @@ def test_citation_readme_and_the_module_in_slicer_name_the_same_publications():
             assert reference.get("doi", reference.get("url")) in text
 
 
-def test_the_readme_states_the_measured_sizes_of_the_simulator_that_the_module_shows():
+def test_the_readme_states_the_measured_simulator_sizes_that_the_module_shows():
     resources = ROOT / "RASTrainer" / "Resources" / "RASTrainerSimulator"
     measured = json.loads((resources / "sizes.json").read_text(encoding="utf-8"))
     columns = ("linux-x86_64", "win32-AMD64", "darwin-arm64", "darwin-x86_64")
@@ -80,12 +80,12 @@ def test_the_readme_states_the_measured_sizes_of_the_simulator_that_the_module_s
 
 
 @pytest.mark.parametrize("name", ["MIT", "BSD-3-Clause", "LicenseRef-Colin27"])
-def test_the_text_of_every_license_that_reuse_names_is_there(name):
+def test_the_text_of_every_license_named_in_reuse_toml_is_there(name):
     assert name in (ROOT / "REUSE.toml").read_text(encoding="utf-8")
     assert (ROOT / "LICENSES" / f"{name}.txt").read_text(encoding="utf-8").strip()
 
 
-def test_the_notice_of_colin27_is_the_same_in_notices_and_licenses():
+def test_the_colin27_notice_is_the_same_in_notices_and_licenses():
     notice = (ROOT / "NOTICE.md").read_text(encoding="utf-8").replace("> ", "")
     license_text = (ROOT / "LICENSES" / "LicenseRef-Colin27.txt").read_text(encoding="utf-8")
     assert " ".join(license_text.split()) in " ".join(notice.split())

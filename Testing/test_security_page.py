@@ -31,7 +31,7 @@ def test_each_row_of_the_tables_names_a_test():
     assert all("::test_" in row for row in attacks)
 
 
-def test_every_test_of_attacks_stands_in_the_page():
+def test_every_attack_test_is_listed_on_the_page():
     named = set(NAMED)
     for path in sorted((ROOT / "Testing" / "security").glob("test_*.py")):
         file = path.relative_to(ROOT).as_posix()
@@ -40,8 +40,8 @@ def test_every_test_of_attacks_stands_in_the_page():
 
 
 OF_THE_TESTS_THEMSELVES = {
-    "test_the_same_seed_gives_the_same_attack_and_every_valid_message_is_in_it",
-    "test_every_command_that_may_come_is_among_those_that_are_mutated",
-    "test_the_police_of_these_tests_knows_what_harms",
-    "test_what_is_written_beside_a_robot_is_believed_only_if_it_is_ours",
+    "test_the_same_seed_gives_the_same_attack_which_includes_every_valid_message",
+    "test_every_acceptable_command_is_among_those_that_are_mutated",
+    "test_the_wire_check_of_these_tests_detects_what_would_harm_slicer",
+    "test_a_prepared_file_beside_a_robot_is_trusted_only_if_it_is_ours",
 }

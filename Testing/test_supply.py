@@ -48,7 +48,7 @@ def _kind(line: str) -> str:
 
 
 @pytest.mark.parametrize("lock", [*LOCKS, SIMULATORS_LOCK], ids=lambda lock: lock.parent.name)
-def test_every_locked_package_is_fixed_by_hashes_and_by_no_address(lock):
+def test_every_locked_package_is_pinned_by_hashes_and_by_no_address(lock):
     lines = lock.read_text(encoding="utf-8").splitlines()
     kinds = [_kind(line) for line in lines]
     assert set(kinds) == {"entry", "hash"}
@@ -72,7 +72,7 @@ def asked_for(project: dict, extras: Iterable[str]) -> set[str]:
 
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="the standard library reads no TOML")
-def test_each_lock_holds_every_package_that_the_project_asks_for():
+def test_each_lock_holds_every_package_that_the_project_requires():
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -101,7 +101,7 @@ def pinned(lock: Path) -> dict[str, set[str]]:
     return pins
 
 
-def test_slicer_sets_the_simulator_up_of_what_is_tested_less_what_it_never_imports():
+def test_slicer_sets_up_the_simulator_from_what_is_tested_minus_what_it_never_imports():
     ours, whole = pinned(SIMULATORS_LOCK), pinned(ROOT / "requirements.lock")
     assert {name: whole.get(name) for name in ours} == ours
     lines = LEFT_OUT.read_text(encoding="utf-8").splitlines()
@@ -112,7 +112,7 @@ def test_slicer_sets_the_simulator_up_of_what_is_tested_less_what_it_never_impor
 
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="the standard library reads no TOML")
-def test_the_lock_of_the_simulator_holds_all_that_the_project_cannot_do_without():
+def test_the_simulators_lock_holds_everything_the_project_cannot_do_without():
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -120,13 +120,13 @@ def test_the_lock_of_the_simulator_holds_all_that_the_project_cannot_do_without(
     assert asked_for(project, ()) - names == set()
 
 
-def test_what_a_set_up_takes_was_measured_for_every_platform_that_slicer_runs_on():
+def test_the_size_of_a_setup_was_measured_for_every_platform_that_slicer_runs_on():
     sizes = json.loads((RESOURCES / "sizes.json").read_text(encoding="utf-8"))
     assert set(sizes) == {"linux-x86_64", "darwin-arm64", "darwin-x86_64", "win32-AMD64"}
     assert sizes["linux-x86_64"]["keptMB"] <= 700
 
 
-def test_a_wheel_brings_the_notices_of_what_its_page_is_made_of(tmp_path):
+def test_a_wheel_includes_the_notices_of_what_its_page_is_made_of(tmp_path):
     build_data = {"force_include": {}}
     hook = wheel_page.WheelPage(str(ROOT), {}, None, None, str(tmp_path), "wheel")
     hook.initialize("standard", build_data)
@@ -147,7 +147,7 @@ def test_the_notices_name_every_installed_package_with_its_license(tmp_path):
     assert silent == []
 
 
-def test_the_bill_of_the_page_names_what_the_page_is_made_of(tmp_path):
+def test_the_pages_bill_of_materials_names_what_the_page_is_made_of(tmp_path):
     bill = tmp_path / "page.json"
     assert bill_of_materials.write_page_bill(bill) >= 1
     content = json.loads(bill.read_text(encoding="utf-8"))
@@ -193,7 +193,7 @@ def test_an_audit_reports_what_is_known_and_whether_it_was_checked(
     assert words in found[1]
 
 
-def test_an_audit_that_was_not_possible_is_no_success(monkeypatch, capsys):
+def test_an_audit_that_was_not_possible_is_not_a_success(monkeypatch, capsys):
     monkeypatch.setattr(audit_packages, "audit_python", lambda _lock: (0, "well"))
     monkeypatch.setattr(audit_packages, "audit_page", lambda: (3, "not checked"))
     assert audit_packages.main() == 3

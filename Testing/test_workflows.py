@@ -26,14 +26,14 @@ def make_targets(lines: str) -> set[str]:
 
 
 @pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
-def test_every_action_is_fixed_by_the_hash_of_a_commit(workflow):
+def test_every_action_is_pinned_by_the_hash_of_a_commit(workflow):
     actions = [step["uses"] for step in steps(workflow) if "uses" in step]
     assert actions
     assert [action for action in actions if not re.fullmatch(r"[^@]+@[0-9a-f]{40}", action)] == []
 
 
 @pytest.mark.parametrize("workflow", WORKFLOWS, ids=lambda path: path.stem)
-def test_every_make_target_of_a_workflow_exists(workflow):
+def test_every_make_target_in_a_workflow_exists(workflow):
     called = {
         target
         for step in steps(workflow)
@@ -51,7 +51,7 @@ def test_a_workflow_may_read_the_repository_and_nothing_else(workflow):
     assert all("timeout-minutes" in job for job in content["jobs"].values())
 
 
-def test_windows_is_tested_by_the_kinematics_that_it_has():
+def test_windows_is_tested_with_the_kinematics_available_there():
     text = (ROOT / ".github" / "workflows" / "test.yml").read_text(encoding="utf-8")
     jobs = yaml.safe_load(text)["jobs"]
     systems = {entry["system"]: entry for entry in jobs["desktop"]["strategy"]["matrix"]["include"]}
@@ -59,7 +59,7 @@ def test_windows_is_tested_by_the_kinematics_that_it_has():
     assert "macos-latest" in systems
 
 
-def test_the_hooks_of_pre_commit_are_make_targets_of_this_repository():
+def test_the_pre_commit_hooks_are_make_targets_of_this_repository():
     text = (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
     (repository,) = yaml.safe_load(text)["repos"]
     assert repository["repo"] == "local"

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep, steps_for
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.screen import Screen
 
 _PLACE = re.compile(r"(?:Step|Schritt) (\d+) (?:of|von) (\d+)")
 PUSH = 0.45

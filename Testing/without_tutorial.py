@@ -11,7 +11,7 @@ from rastrainer_simulator.flow.session.preferences import PREFERENCES_FILE
 WITHOUT_TUTORIAL = {"tutorial": TutorialRule.SKIPPED.value}
 
 
-def leave_tutorial_out(config: Path) -> None:
+def skip_tutorial(config: Path) -> None:
     """Have a settings folder skip the tutorial, unless its preferences say something of it."""
     config.mkdir(parents=True, exist_ok=True)
     path = config / PREFERENCES_FILE

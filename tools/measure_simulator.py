@@ -35,7 +35,7 @@ PLATFORMS = {
 MEGABYTE = 10**6
 SOURCES = (ROOT / "RASTrainer" / "Logic", ROOT / "RASTrainerSimulatorServer")
 sys.path.insert(0, str(SOURCES[0]))
-from rastrainer.python_environment import private_words  # noqa: E402 (the checkout's own)
+from rastrainer.python_environment import private_command  # noqa: E402 (the checkout's own)
 from rastrainer.slicer.program import trim_packages  # noqa: E402 (the checkout's own)
 
 
@@ -101,7 +101,7 @@ def measure_here() -> int:
         (folder / "rastrainer.pth").write_text("\n".join(map(str, SOURCES)), encoding="utf-8")
         trimmer = ("rastrainer.slicer.program.trim_packages", str(folder))
         python = Path(sys.executable)
-        subprocess.run(private_words(python, folder, *trimmer), check=True)
+        subprocess.run(private_command(python, folder, *trimmer), check=True)
         return round(trim_packages.size(folder) / MEGABYTE)
 
 

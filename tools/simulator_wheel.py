@@ -26,7 +26,7 @@ def build_wheel(folder: Path) -> Path:
     return wheel
 
 
-def put_beside_module(wheel: Path, folder: Path = RESOURCES) -> Path:
+def copy_beside_module(wheel: Path, folder: Path = RESOURCES) -> Path:
     """Put a wheel and its SHA-256 into a folder, in place of another's; return the wheel there."""
     for other in folder.glob("*.whl*"):
         other.unlink()
@@ -43,7 +43,7 @@ def main() -> None:
     """Build the wheel, put it beside the module and print its path."""
     with tempfile.TemporaryDirectory() as temporary:
         try:
-            wheel = put_beside_module(build_wheel(Path(temporary)))
+            wheel = copy_beside_module(build_wheel(Path(temporary)))
         except subprocess.CalledProcessError:
             sys.exit("The wheel could not be built: see above.")
     print(f"The extension has its simulator: {wheel.relative_to(ROOT)}.")

@@ -89,9 +89,9 @@ class HeadlessHost:
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )
         self._procedure = ProcedureLogic(self.application.scene, self.link, cache.find, self._work)
-        self.link.statusChanged.connect(self._tellStatus)
-        self.link.pointsChanged.connect(self._tellPoints)
-        self._presenter.trialScored.connect(self._tellTrial)
+        self.link.statusChanged.connect(self._printStatus)
+        self.link.pointsChanged.connect(self._printPoints)
+        self._presenter.trialScored.connect(self._printTrial)
         for problems in (
             self._presenter.problemFound,
             self._aborted.problemFound,
@@ -130,12 +130,12 @@ class HeadlessHost:
         self._work.close()
         self.link.disconnect()
 
-    def _tellStatus(self, status: LinkStatus) -> None:
+    def _printStatus(self, status: LinkStatus) -> None:
         printEvent(
             "status", state=status.state.value, sentence=status.sentence, remedy=status.remedy
         )
 
-    def _tellPoints(self, node: Any) -> None:
+    def _printPoints(self, node: Any) -> None:
         labels, positions = labelsOf(node), localPoints(node)
         for row in range(self._touches, len(labels)):
             printEvent(
@@ -145,7 +145,7 @@ class HeadlessHost:
             printEvent("removed", count=len(labels))
         self._touches = len(labels)
 
-    def _tellTrial(self, analysis: TrialAnalysis) -> None:
+    def _printTrial(self, analysis: TrialAnalysis) -> None:
         results = results_json(analysis)
         appendResults(self._output, results)
         self.latest = analysis

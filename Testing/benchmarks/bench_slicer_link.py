@@ -35,7 +35,7 @@ class Cost:
         for _ in range(seconds):
             before()
             renders, used, begin = host.renders, time.process_time(), time.perf_counter()
-            _let_pass(PIECE_S)
+            _idle_for(PIECE_S)
             passed = time.perf_counter() - begin
             self.renders.append((host.renders - renders) / passed)
             self.cpu.append(100.0 * (time.process_time() - used) / passed)
@@ -51,17 +51,17 @@ def rows(quick: bool) -> list[dict]:
         host = Host(folder / "slicer")
         stack.callback(host.close)
         session = host.open().logic.session
-        _let_pass(SETTLE_S)
+        _idle_for(SETTLE_S)
         apart = Cost(host, seconds)
         session.link.connectTo("127.0.0.1", simulator.port)
         host.wait_until(lambda: session.link.status.state is LinkState.CONNECTED, "it connects")
-        _let_pass(SETTLE_S)
+        _idle_for(SETTLE_S)
         idle = Cost(host, seconds)
         delays = [_command_delay(session.link) for _ in range(5 * seconds)]
         bursts = [_time_to_send(session.link) for _ in range(2 if quick else 5)]
         host.check("robotCheckBox")
         _start_trial(player)
-        _let_pass(SETTLE_S)
+        _idle_for(SETTLE_S)
         moving = Cost(host, seconds, _mover(player))
     return [
         row("slicer.renders idle", idle.renders, "1/s", "disconnected", apart.renders),
@@ -73,7 +73,7 @@ def rows(quick: bool) -> list[dict]:
     ]
 
 
-def _let_pass(seconds: float) -> None:
+def _idle_for(seconds: float) -> None:
     """Run Qt's event loop, as Slicer does; it sleeps while nothing is due."""
     loop = QtCore.QEventLoop()
     QtCore.QTimer.singleShot(round(1000 * seconds), loop.quit)

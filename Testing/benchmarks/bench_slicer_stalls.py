@@ -130,7 +130,7 @@ class _Steps:
     def _touch(self) -> None:
         for count in range(1, len(LABELS) + 1):
             setPoints(capturedPointsNode(self._host.scene), LABELS[:count], self._touches[:count])
-            self._host.let_pass(0.3)
+            self._host.idle_for(0.3)
 
     def _score(self) -> None:
         self._simulator.send_command("TrialCompleted", self._trial)
@@ -205,7 +205,7 @@ class _Steps:
     def _watch(self, step: str, work: Callable[[], object]) -> None:
         with StallWatch() as watch:
             work()
-            self._host.let_pass(0.5)
+            self._host.idle_for(0.5)
         self._longest[step] = watch.longest_s, watch.longest_own_s
         for stall in sorted(watch.stalls, key=lambda stall: -stall.own_s)[:3]:
             times = f"{1e3 * stall.seconds:.0f} ms, {1e3 * stall.own_s:.0f} of its own"

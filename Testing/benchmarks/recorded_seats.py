@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 import aiohttp
 from aiohttp import web
 
-from rastrainer_simulator.net.views.messages import SUBPROTOCOL
+from rastrainer_simulator.net.views.incoming import SUBPROTOCOL
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.simulator.board.seat_double import serve_seat
 from Testing.simulator.net.views.served import HELLO
@@ -54,14 +54,14 @@ def repeat(count: int, recording: Recording, pipe: Connection) -> None:
 
 async def _repeat(count: int, recording: Recording, pipe: Connection) -> None:
     sent: dict[tuple[int, int], float] = {}
-    served = [await serve_seat(_sayer(seat, count, recording, sent)) for seat in range(count)]
+    served = [await serve_seat(_talker(seat, count, recording, sent)) for seat in range(count)]
     pipe.send([port for _runner, port in served])
     while not pipe.poll():
         await asyncio.sleep(0.1)
     pipe.send(sent)
 
 
-def _sayer(seat: int, count: int, recording: Recording, sent: dict):
+def _talker(seat: int, count: int, recording: Recording, sent: dict):
     async def say(socket: web.WebSocketResponse) -> None:
         # Classes do not begin at the same time.
         await asyncio.sleep(seat / count)

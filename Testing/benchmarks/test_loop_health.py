@@ -15,12 +15,12 @@ HEALTHS = [
 ]
 
 
-def test_only_seconds_count_in_which_the_machine_took_nothing_away():
+def test_only_undisturbed_seconds_count():
     result = undisturbed(HEALTHS, lambda start, _end: start > 10.0)
     assert result.ticks == 500
     assert result.on_time == pytest.approx((250 - 1 + 240 - 4) / 500)
     np.testing.assert_allclose(result.shares, [99.6, 100 * 236 / 250])
 
 
-def test_where_there_is_no_such_second_nothing_is_said():
+def test_without_an_undisturbed_second_there_is_no_result():
     assert undisturbed(HEALTHS, lambda _start, _end: False) is None

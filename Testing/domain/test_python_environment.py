@@ -9,7 +9,12 @@ from pathlib import Path
 import pytest
 
 import rastrainer
-from rastrainer.python_environment import LIBRARIES, clean_environment, private_words, python_words
+from rastrainer.python_environment import (
+    LIBRARIES,
+    clean_environment,
+    private_command,
+    python_command,
+)
 
 LAUNCHED = {
     "APPLAUNCHER_LEVEL": "1",
@@ -56,15 +61,15 @@ def test_upper_case_names_of_windows_are_removed():
 
 LOOK = """
 import os, sys, zlib
-from rastrainer.python_environment import python_words
+from rastrainer.python_environment import python_command
 print(os.environ["LD_LIBRARY_PATH"])
 print([line.split()[-1] for line in open("/proc/self/maps") if "libz.so" in line][-1])
-print(python_words("other", "word"))
+print(python_command("other", "word"))
 """
 
 
-def test_without_a_private_folder_a_module_is_started_by_this_python():
-    assert python_words("module", "word") == [sys.executable, "-m", "module", "word"]
+def test_without_a_private_folder_a_module_is_started_by_the_current_python():
+    assert python_command("module", "word") == [sys.executable, "-m", "module", "word"]
 
 
 @pytest.fixture
@@ -99,7 +104,7 @@ def test_only_libraries_needed_by_python_are_found(private, libraries):
         "LD_LIBRARY_PATH": str(libraries),
         "PYTHONHOME": sys.base_prefix,
     }
-    words = private_words(Path(sys.executable), private, "look")
+    words = private_command(Path(sys.executable), private, "look")
     for _again in range(2):
         done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
         places, mapped, child = done.stdout.splitlines()
@@ -108,4 +113,4 @@ def test_only_libraries_needed_by_python_are_found(private, libraries):
         links = {path.name: path.resolve() for path in (private / LIBRARIES).iterdir()}
         wanted = libraries / "libz.so.1.9.9"
         assert links == {"libz.so.1": wanted, "libz.so.1.9.9": wanted}
-        assert child == str(private_words(Path(sys.executable), private, "other", "word"))
+        assert child == str(private_command(Path(sys.executable), private, "other", "word"))

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.net.views.screen import Menu
+from rastrainer_simulator.presentation.screen import Menu
 from Testing.end_to_end.stream_trainee import LEAST_FINE_PUSH, LIFT_M, SINK_M, StreamTrainee
 from Testing.simulator.landmarked import LANDMARKS
 

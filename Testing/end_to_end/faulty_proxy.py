@@ -72,16 +72,16 @@ class FaultyProxy:
         self._rng = rng
         self._longest_s = longest_s
         self._at_least = at_least
-        self._is_peaceful = threading.Event()
+        self._is_fault_free = threading.Event()
         self._is_closed = threading.Event()
         self._listener = socket.create_server((HOST, 0))
         self.port = self._listener.getsockname()[1]
         self._threads = [threading.Thread(target=self._accept)]
         self._threads[0].start()
 
-    def be_peaceful(self) -> None:
+    def stop_faults(self) -> None:
         """Cut nothing from now on: what is left to deliver can be."""
-        self._is_peaceful.set()
+        self._is_fault_free.set()
 
     def close(self) -> None:
         """Cut all and end."""
@@ -132,7 +132,7 @@ class FaultyProxy:
                     data = source.recv(PIECE_BYTES)
                     if not data:
                         return None
-                    if len(data) > left and not self._is_peaceful.is_set():
+                    if len(data) > left and not self._is_fault_free.is_set():
                         other[source].sendall(data[:left])
                         return data[left:] if source is client else b""
                     self._is_closed.wait(fault.delay_s)

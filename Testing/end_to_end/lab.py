@@ -105,7 +105,7 @@ class SlicerProcess:
         self._process.kill()
         self._process.wait()
 
-    def told_until(self, event: str) -> list[dict]:
+    def events_until(self, event: str) -> list[dict]:
         """Return its events from now on, up to the first event of a kind."""
         told = []
         for line in self._process.stdout:

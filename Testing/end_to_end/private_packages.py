@@ -11,7 +11,7 @@ import sys
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
-from rastrainer.python_environment import private_words
+from rastrainer.python_environment import private_command
 from rastrainer.slicer.program.simulator_package import LOCK, SimulatorPackage
 from rastrainer.slicer.program.trim_packages import SIZES
 
@@ -40,7 +40,7 @@ def fill(folder: Path, wheel: Path) -> None:
 
 def trim(folder: Path) -> tuple[dict[str, int], str]:
     """Trim a folder as a set-up does; return the sizes that it notes, and what it said."""
-    command = private_words(Path(sys.executable), folder, TRIMMER, str(folder))
+    command = private_command(Path(sys.executable), folder, TRIMMER, str(folder))
     done = subprocess.run(command, capture_output=True, text=True, env=without_packages())
     assert done.returncode == 0, done.stderr
     return json.loads((folder / SIZES).read_text(encoding="utf-8")), done.stdout
@@ -48,7 +48,7 @@ def trim(folder: Path) -> tuple[dict[str, int], str]:
 
 def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Run `rastrainer` on the packages of the folder alone."""
-    command = private_words(Path(sys.executable), folder, SIMULATOR, *words)
+    command = private_command(Path(sys.executable), folder, SIMULATOR, *words)
     return subprocess.run(command, capture_output=True, text=True, env=without_packages())
 
 

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Tone
+from rastrainer_simulator.presentation.screen import DepthRuler, ErrorArrow, Tone
 from Testing.end_to_end.stream_trainee import Hands, StreamTrainee
 
 ALIGNED_MM, ALIGNED_DEG = 0.8, 0.8

@@ -111,7 +111,7 @@ class Forked:
         """Return the next line that it prints; "" once it has ended."""
         return self._output.readline().strip()
 
-    def let_print(self) -> None:
+    def drain_output(self) -> None:
         """Read what it prints from now on: with its pipe full it would wait for a reader."""
         self._reader = threading.Thread(target=self._output.read, daemon=True)
         self._reader.start()

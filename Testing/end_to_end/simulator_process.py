@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from Testing.without_tutorial import leave_tutorial_out
+from Testing.without_tutorial import skip_tutorial
 
 COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli.main", "simulator"]
 READY = "RASTrainer simulator ready on 127.0.0.1:"
@@ -31,7 +31,7 @@ class SimulatorProcess:
 
     def __init__(self, records: Path, *arguments: str, **others: Any):
         config = records.with_name(records.name + "-config")
-        leave_tutorial_out(config)
+        skip_tutorial(config)
         settings = ["--port", "0", "--records", str(records), "--config", str(config)]
         # A pipe that nobody reads would be full after some minutes.
         self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
@@ -46,7 +46,7 @@ class SimulatorProcess:
         self.ready = self.next_line()
         if not self.ready:
             self._process.wait()
-            raise AssertionError(self._what_it_said())
+            raise AssertionError(self._captured_output())
         self.port = int(self.ready.removeprefix(READY)) if self.ready.startswith(READY) else 0
 
     def __enter__(self) -> SimulatorProcess:
@@ -73,9 +73,9 @@ class SimulatorProcess:
     def wait(self) -> tuple[int, str]:
         """Wait until it has ended of itself; return its exit status and what it said on stderr."""
         self._process.communicate(timeout=300)
-        return self._process.returncode, self._what_it_said()
+        return self._process.returncode, self._captured_output()
 
-    def _what_it_said(self) -> str:
+    def _captured_output(self) -> str:
         self._errors.seek(0)
         return self._errors.read()
 

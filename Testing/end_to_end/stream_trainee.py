@@ -13,7 +13,7 @@ import numpy as np
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.connection import screen_from_json
 from rastrainer_simulator.desktop.shown_scene import pose_matrix
-from rastrainer_simulator.net.views.screen import Menu, Screen
+from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ViewClient
@@ -243,7 +243,7 @@ class StreamTrainee:
         self.until_menu(None)
         self.until(lambda: self.view.scene["task"] == task, f"the scene of {task}")
 
-    def press_beside_fiducials(self) -> None:
+    def press_away_from_fiducials(self) -> None:
         """Push the tip against the skin where no fiducial is, as an error, and let go."""
         place, center = self._bare_place(), self.head_center
         outward = (place - center) / np.linalg.norm(place - center)

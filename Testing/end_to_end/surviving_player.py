@@ -22,7 +22,7 @@ TRAINEE = "T-042"
 ABOVE_MM = 30.0
 TIMEOUT_S = 120.0
 
-UNTOLD: tuple[float, ...] = ()
+NOT_REPORTED: tuple[float, ...] = ()
 """The position of a touch that counts though the kill has swallowed its answer."""
 
 Touch = tuple[str, tuple[float, ...]]
@@ -94,7 +94,7 @@ class SurvivingPlayer:
         heard = None if killing is None else killing.heard
         try:
             with Client(port=port, on_message=heard) as client:
-                self._say_hello(client)
+                self._send_hello(client)
                 self._come_back(client)
                 while len(self.registered) < done:
                     self._play_on(client, killing)
@@ -104,7 +104,7 @@ class SurvivingPlayer:
             return False
         return True
 
-    def _say_hello(self, client: Client) -> None:
+    def _send_hello(self, client: Client) -> None:
         hello = {"protocolVersion": PROTOCOL_VERSION, "client": "player", "linksHz": 0}
         assert client.send_command(CommandName.HELLO, hello, TIMEOUT_S).ok
 
@@ -131,11 +131,11 @@ class SurvivingPlayer:
         assert len(points) in allowed, (in_flight, len(points), len(kept))
         for (label, position), point in zip(kept, points, strict=False):
             assert point.label == label
-            if position != UNTOLD:
+            if position != NOT_REPORTED:
                 np.testing.assert_allclose(point.position, position, atol=1e-3)
         del kept[len(points) :]
         for point in points[len(kept) :]:
-            kept.append((point.label, UNTOLD))
+            kept.append((point.label, NOT_REPORTED))
         following = None if len(points) == 15 else str(len(points) + 1)
         assert state["nextPoint"] == following
         if state["phase"] == "paused":

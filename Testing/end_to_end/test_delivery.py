@@ -26,7 +26,7 @@ from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged
 from Testing.domain.trial.trial_records import make_aborted
 from Testing.end_to_end.faulty_proxy import FaultyProxy, SlicerSide
@@ -101,7 +101,7 @@ def deliver(folder, simulation, thread, trials, seed, longest_s):
                 server.close()
                 server = Server(thread, simulation, records)
                 proxy.target = server.port
-        proxy.be_peaceful()
+        proxy.stop_faults()
         slicer.close()
         slicer = slicer_side(study, scenario, proxy.port, scored)
         with Study.open(study) as opened:
@@ -123,7 +123,7 @@ def simulation():
     return Simulation(load_setup(), 1)
 
 
-def test_four_trials_arrive_exactly_once_through_faults_and_ends_of_both_sides(
+def test_four_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
     simulation, loop_thread, tmp_path
 ):
     faults, _ends = deliver(tmp_path, simulation, loop_thread, trials=4, seed=2, longest_s=0.2)
@@ -161,7 +161,7 @@ def write_aborted_trials(folder):
         journal.close()
 
 
-def test_they_arrive_exactly_once_through_faults_and_ends_of_both_sides(
+def test_trials_arrive_exactly_once_through_faults_and_restarts_on_both_sides(
     simulation, loop_thread, tmp_path
 ):
     rng = random.Random(6)

@@ -80,7 +80,7 @@ def test_the_scenario_has_the_edited_head_on_the_base_that_was_shown(host):
     assert made[:, 1].min() == pytest.approx(WEN[1] - WEN_RADIUS, abs=1.5)
 
 
-def test_a_scenario_that_is_canceled_while_its_head_is_found_leaves_nothing_behind(
+def test_a_scenario_canceled_while_its_head_is_extracted_leaves_nothing_behind(
     host, tmp_path, monkeypatch
 ):
     is_canceled = threading.Event()
@@ -93,7 +93,7 @@ def test_a_scenario_that_is_canceled_while_its_head_is_found_leaves_nothing_behi
     assert_nothing_is_left(host)
 
 
-def test_a_scenario_that_is_canceled_while_it_is_planned_leaves_nothing_behind(host, tmp_path):
+def test_a_scenario_canceled_while_it_is_planned_leaves_nothing_behind(host, tmp_path):
     pid_file = tmp_path / "simulator.pid"
     with cancels(host, "makeScenarioButton", lambda: pid_file.exists() and pid_file.read_text()):
         host.press("makeScenarioButton")

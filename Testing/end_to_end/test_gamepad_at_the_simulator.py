@@ -72,7 +72,7 @@ def test_a_gamepad_alone_begins_a_task_moves_the_arm_and_may_be_unplugged(tmp_pa
         start = watch.tip()
         simulator.move(leftx=0.8)
         watch.until_moved_from(start)
-        simulator.plug_out()
+        simulator.unplug()
         trainee.until_still()
         watch.until(lambda state: state["phase"] == "paused")
         simulator.plug_in()

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from rastrainer.journal.journal_file import read_journal
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.texts.texts import Texts
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee
@@ -99,7 +99,7 @@ def session(tmp_path_factory) -> dict:
         play(trainee, photographer, range(1, CRASH_AFTER + 1))
         slicer.kill()
         photographer.catch_up()
-        crash = tell_of_crash(trainee, str(CRASH_AFTER + 1))
+        crash = report_crash(trainee, str(CRASH_AFTER + 1))
         # It waits for one trial more, so that it is still there while the result is shown.
         slicer = lab.start_slicer(trials=2)
         play(trainee, photographer, range(CRASH_AFTER + 2, 16))
@@ -107,7 +107,7 @@ def session(tmp_path_factory) -> dict:
         trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")
         trainee.until_menu("complete")
         trainee.choose("register")
-        told = slicer.told_until("trial")
+        told = slicer.events_until("trial")
         trainee.until_menu("result")
         photographer.keep("result")
         played = {
@@ -161,11 +161,11 @@ def play(trainee: StreamTrainee, photographer: Photographer, numbers: range) -> 
             photographer.keep("close-view-free")
         trainee.press_on(label)
         if number == 7:
-            trainee.press_beside_fiducials()
+            trainee.press_away_from_fiducials()
             photographer.keep("close-view-proximity")
 
 
-def tell_of_crash(trainee: StreamTrainee, label: str) -> dict:
+def report_crash(trainee: StreamTrainee, label: str) -> dict:
     """Touch a fiducial while Slicer's side is away; return the state of the trial then."""
     trainee.until_warned(LOST)
     trainee.touch(label)
@@ -183,7 +183,7 @@ def unplug_and_resume(lab: Lab, trainee: StreamTrainee, photographer: Photograph
     photographer.catch_up()
     trainee.hands.push(0.0, 0.0, 1.0, False)
     trainee.until_moved()
-    lab.simulator.plug_out()
+    lab.simulator.unplug()
     trainee.until_warned(UNPLUGGED)
     trainee.until_still()
     trainee.until_menu("trial")
@@ -221,14 +221,14 @@ def test_slicer_scores_the_trial_of_that_trainee(session):
     assert session["menu"].facts[0].label == "Score"
 
 
-def test_the_trial_continues_without_slicer_s_side_and_the_window_says_so(session):
+def test_the_trial_continues_without_slicers_side_and_the_window_says_so(session):
     crash = session["crash"]
     assert crash["phase"] == "running"
     assert crash["touched"] == [str(number) for number in range(1, CRASH_AFTER + 2)]
     assert LOST in crash["warnings"]
 
 
-def test_slicer_s_side_comes_back_into_the_running_trial_and_gets_all_of_it(session):
+def test_slicers_side_rejoins_the_running_trial_and_receives_all_of_it(session):
     points = [told["label"] for told in session["told"] if told["event"] == "point"]
     assert points == [str(number) for number in range(1, 16)]
     assert session["told"][-1]["event"] == "trial"

@@ -64,7 +64,7 @@ def place(tmp_path):
         yield tmp_path, simulator, thread
 
 
-def test_a_pin_that_is_typed_in_one_page_is_seen_by_no_other_and_in_no_file(place):
+def test_a_pin_typed_in_one_page_appears_in_no_other_page_and_in_no_file(place):
     folder, simulator, thread = place
     page, other = (Page(simulator, thread, "view") for _ in range(2))
     spectator = Page(simulator, thread, "spectator")

@@ -37,7 +37,7 @@ def session(tmp_path_factory) -> dict:
         trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")
         trainee.until_menu("complete")
         trainee.choose("register")
-        results = slicer.told_until("trial")[-1]["results"]
+        results = slicer.events_until("trial")[-1]["results"]
         trainee.until_menu("result")
         return {
             "results": results,
@@ -90,7 +90,7 @@ def test_killing_the_window_stops_the_arm_and_pauses_the_trial(session):
     assert session["crash"]["phase"] == "paused"
 
 
-def test_another_window_comes_back_into_the_same_trial_and_nothing_is_lost(session):
+def test_a_new_window_rejoins_the_same_trial_and_nothing_is_lost(session):
     before, after = session["crash"]["touches"], session["touches"]
     assert len(before) == KILLED_AFTER
     assert after[:KILLED_AFTER] == before

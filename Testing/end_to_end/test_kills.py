@@ -19,7 +19,7 @@ from rastrainer_simulator.record.trial_archive import SUFFIX, TrialArchive, find
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
 from Testing.end_to_end.process_nursery import SIMULATOR, SLICER_SIDE, Nursery
 from Testing.end_to_end.simulator_process import READY
-from Testing.end_to_end.surviving_player import UNTOLD, Killing, SurvivingPlayer
+from Testing.end_to_end.surviving_player import NOT_REPORTED, Killing, SurvivingPlayer
 from Testing.free_port import free_port
 
 TIMEOUT_S = 180.0
@@ -126,7 +126,7 @@ def check_records(lab, player):
         assert [label for label, _ in found[trial]] == [label for label, _ in kept]
         # A touch whose answer the kill has swallowed was never acknowledged, but counts.
         assert all(
-            position in (UNTOLD, recorded)
+            position in (NOT_REPORTED, recorded)
             for (_, position), (_, recorded) in zip(kept, found[trial], strict=True)
         )
     assert open_trials == 0
@@ -142,7 +142,7 @@ def check_offers(lab, player, replayed):
         assert main(["replay", str(path), "--verify"]) == 0
 
 
-def test_a_server_killed_again_and_again_resumes_where_the_trainee_was(tmp_path, simulators):
+def test_a_repeatedly_killed_server_resumes_where_the_trainee_was(tmp_path, simulators):
     lab = Lab(tmp_path, simulators)
     player = kill_servers(lab, kills=8, resumed=4, seed=3)
     check_records(lab, player)
@@ -193,11 +193,11 @@ def deliver_the_rest(lab, slicer, trials):
 
     An answer that came too late on a busy machine is asked for again over the next connection.
     """
-    slicer.let_print()
+    slicer.drain_output()
     wait_for_study(lab, lambda stored: stored[0] == trials and not find_unacknowledged(lab.records))
     slicer.end(signal.SIGKILL)
     slicer = lab.start_slicer()
-    slicer.let_print()
+    slicer.drain_output()
     wait_for_study(lab, lambda stored: stored == (trials, trials))
     slicer.end(signal.SIGKILL)
 
@@ -212,7 +212,7 @@ def wait_for_study(lab, is_complete):
         time.sleep(0.1)
 
 
-def kill_both_in_play(lab, kills, resumed, seed):
+def kill_both_during_play(lab, kills, resumed, seed):
     """Play on while Slicer's side is killed, alone or at once with the server; return the player.
 
     Then play one trial to its end and have all delivered. As of `kill_servers`, `resumed` is how
@@ -221,7 +221,7 @@ def kill_both_in_play(lab, kills, resumed, seed):
     rng = random.Random(seed)
     player = SurvivingPlayer(load_scenario(COLIN), rng)
     end_simulator, slicer = lab.start_simulator(), lab.start_slicer()
-    slicer.let_print()
+    slicer.drain_output()
     killed = 0
 
     def kill(with_server):
@@ -240,7 +240,7 @@ def kill_both_in_play(lab, kills, resumed, seed):
             end_simulator = lab.start_simulator()
         if killing.is_done:
             slicer = lab.start_slicer()
-            slicer.let_print()
+            slicer.drain_output()
     assert player.play(lab.port, None, 1)
     slicer.end(signal.SIGKILL)
     deliver_the_rest(lab, lab.start_slicer(), len(check_records(lab, player)))
@@ -264,16 +264,16 @@ def test_a_trainee_whose_server_and_slicer_are_killed_at_once_resumes_and_loses_
     tmp_path, simulators, slicer_sides
 ):
     lab = Lab(tmp_path, simulators, slicer_sides)
-    player = kill_both_in_play(lab, kills=2, resumed=1, seed=8)
+    player = kill_both_during_play(lab, kills=2, resumed=1, seed=8)
     check_study(lab, player)
 
 
 @pytest.mark.soak
-def test_three_hundred_kills_of_both_sides_in_play_lose_no_touch_and_double_no_trial(
+def test_three_hundred_kills_of_both_sides_during_play_lose_no_touch_and_duplicate_no_trial(
     tmp_path, simulators, slicer_sides, capsys
 ):
     lab = Lab(tmp_path, simulators, slicer_sides)
-    player = kill_both_in_play(lab, kills=300, resumed=100, seed=9)
+    player = kill_both_during_play(lab, kills=300, resumed=100, seed=9)
     check_study(lab, player)
     with capsys.disabled():
         touches = sum(map(len, player.kept.values()))
@@ -293,7 +293,7 @@ def test_slicers_side_and_the_server_killed_at_any_moment_deliver_every_trial_on
 
 @pytest.mark.soak
 @pytest.mark.parametrize("also_server", [False, True], ids=["alone", "with the server"])
-def test_three_hundred_kills_of_slicers_side_lose_and_double_no_trial(
+def test_three_hundred_kills_of_slicers_side_lose_and_duplicate_no_trial(
     tmp_path, simulators, slicer_sides, also_server
 ):
     lab = Lab(tmp_path, simulators, slicer_sides, speed=1)

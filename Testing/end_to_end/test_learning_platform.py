@@ -128,7 +128,7 @@ def pseudonym_in(page) -> str:
     return page.inner_text(".who strong")
 
 
-def test_a_course_launches_in_a_browser_and_its_gradebook_gets_the_scores(browser, course):
+def test_a_course_launches_in_a_browser_and_its_gradebook_receives_the_scores(browser, course):
     page = open_link(browser, course, "u1")
     assert pseudonym_in(page) == "T001"
     assert pseudonym_in(open_link(browser, course, "u2")) == "T002"
@@ -146,7 +146,7 @@ def test_a_course_launches_in_a_browser_and_its_gradebook_gets_the_scores(browse
     assert course.tool.stop() == 0
 
 
-def test_open_edx_s_own_launch_is_refused_when_it_is_repeated_or_altered(browser, course):
+def test_open_edxs_own_launch_is_refused_when_it_is_repeated_or_altered(browser, course):
     context = browser.new_context()
     page = context.new_page()
     page.set_default_timeout(PATIENCE_MS)

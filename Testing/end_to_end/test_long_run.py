@@ -92,7 +92,7 @@ def train(folder: Path, is_enough: Callable[[int], bool], speed: float) -> Run:
             with ViewClient(thread, simulator.url, KEY) as view:
                 WatchingView(view)
                 assert player.play(simulator.port, None, 1)
-                lines = slicer.told_until("trial")
+                lines = slicer.events_until("trial")
                 problems += [line for line in lines if line["event"] == "problem"]
                 simulators.append(Usage.of(simulator.pid))
                 slicers.append(Usage.of(slicer.pid))
@@ -148,7 +148,7 @@ def told(run: Run) -> str:
 
 
 @pytest.mark.soak
-def test_ten_trials_in_a_row_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
+def test_ten_consecutive_trials_do_not_increase_memory_or_descriptors(tmp_path, capsys):
     run = train(tmp_path, lambda played: played >= 10, speed=8)
     with capsys.disabled():
         print(told(run))
@@ -156,7 +156,7 @@ def test_ten_trials_in_a_row_leave_memory_and_descriptors_as_they_were(tmp_path,
 
 
 @pytest.mark.soak
-def test_two_hours_of_training_leave_memory_and_descriptors_as_they_were(tmp_path, capsys):
+def test_two_hours_of_training_do_not_increase_memory_or_descriptors(tmp_path, capsys):
     end = time.monotonic() + 7200.0
     run = train(tmp_path, lambda _played: time.monotonic() > end, speed=1)
     with capsys.disabled():

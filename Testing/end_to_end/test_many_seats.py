@@ -32,7 +32,7 @@ from Testing.end_to_end.simulator_process import READY
 from Testing.end_to_end.study_side import RECORDS
 from Testing.end_to_end.surviving_player import Killing, SurvivingPlayer
 from Testing.free_port import free_port
-from Testing.postgres_server import PostgresServer, opened_when_there
+from Testing.postgres_server import PostgresServer, opened_when_available
 
 pytestmark = pytest.mark.soak
 TRAINEES = [f"P{number:02d}" for number in range(1, 13)]
@@ -75,12 +75,12 @@ class Seat:
         simulator = self._simulators.fork("simulator", *folders, *words)
         ready = simulator.next_line()
         assert ready.startswith(READY), ready
-        simulator.let_print()
+        simulator.drain_output()
         self.end_simulator = simulator.end
 
     def start_slicer(self):
         slicer = self._slicers.fork(str(self.folder), str(self.port), self._place)
-        slicer.let_print()
+        slicer.drain_output()
         self.end_slicer = slicer.end
 
     @property
@@ -136,7 +136,7 @@ class Lab:
 
     def next_step(self, trainee):
         """Return the name of the trainee's next step, with what is stored already; "" if none."""
-        with opened_when_there(self.place) as study:
+        with opened_when_available(self.place) as study:
             step = StudyProgress(study).played(trainee).next_step
         return "" if step is None else step.name
 
@@ -162,7 +162,7 @@ class Lab:
         while self.asked(lambda: self.next_step(trainee)) != "":
 
             def store():
-                with opened_when_there(self.place) as study:
+                with opened_when_available(self.place) as study:
                     StudyProgress(study).count_played(trainee)
                     step = StudyProgress(study).progress(trainee).next_step
                     if step is not None:
@@ -230,7 +230,7 @@ class Lab:
             time.sleep(0.5)
 
     def trials(self):
-        with opened_when_there(self.place) as study:
+        with opened_when_available(self.place) as study:
             return [trial for name in TRAINEES for trial in study.history(name)]
 
 

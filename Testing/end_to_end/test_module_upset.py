@@ -28,13 +28,13 @@ def upset(story, delete_nodes):
     host = story.host
     host.leave()
     host.clear_scene()
-    host.let_pass(0.15)
+    host.idle_for(0.15)
     host.enter()
     story.wait_until_connected()
     if delete_nodes:
         host.delete_nodes()
     host.leave()
-    host.let_pass(0.15)
+    host.idle_for(0.15)
     host.enter()
     host.clear_scene()
     story.wait_until_connected()
@@ -44,7 +44,7 @@ def upset(story, delete_nodes):
 
 
 @pytest.mark.soak
-def test_the_scene_may_be_upset_in_mid_trial_and_after_it(story):
+def test_the_scene_may_be_disrupted_during_and_after_a_trial(story):
     host = story.host
     story.start_simulator()
     story.create_trainee()
@@ -60,7 +60,7 @@ def test_the_scene_may_be_upset_in_mid_trial_and_after_it(story):
 
 
 @pytest.mark.soak
-def test_the_scene_may_be_upset_after_every_step(story):
+def test_the_scene_may_be_disrupted_after_every_step(story):
     for step, delete_nodes in (
         (Story.start_simulator, False),
         (Story.create_trainee, False),
@@ -83,7 +83,7 @@ def until_nothing_is_lost(host):
     host.wait_until(lambda: "no touch is lost" in host.text("phaseText"), "it is told")
 
 
-def test_the_simulator_may_be_killed_and_started_again_in_mid_trial(story):
+def test_the_simulator_may_be_killed_and_restarted_during_a_trial(story):
     story.start_simulator()
     story.create_trainee()
     story.start_task()
@@ -96,7 +96,7 @@ def test_the_simulator_may_be_killed_and_started_again_in_mid_trial(story):
 
 
 @pytest.mark.soak
-def test_the_simulator_may_be_killed_and_started_again_at_every_step(story):
+def test_the_simulator_may_be_killed_and_restarted_at_every_step(story):
     host = story.host
     story.start_simulator()
     story.create_trainee()

@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.desktop.picture import own_facts
-from rastrainer_simulator.net.views.screen import PRESS
+from rastrainer_simulator.presentation.screen import PRESS
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee
 from Testing.end_to_end.virtual_display import VirtualMouse

@@ -139,11 +139,11 @@ def test_five_clicks_start_training_on_a_loaded_volume_with_placed_fiducials(hos
     assert images.GetName() == "Ms X"
     assert images.GetSpacing() == (1.0, 1.0, 1.0)
     assert images.GetDisplayNode().GetWindow() == scenario.volume.window
-    a_check_says_what_is_wrong(host, placed)
+    assert_check_reports_problems(host, placed)
     assert [path.name for path in library.iterdir()] == ["ms-x"]
 
 
-def a_check_says_what_is_wrong(host, placed):
+def assert_check_reports_problems(host, placed):
     x, y, z = placed.GetNthControlPointPosition(0)
     placed.SetNthControlPointPosition(0, x, y, z + 40.0)
     host.press("checkScenarioButton")
@@ -152,7 +152,7 @@ def a_check_says_what_is_wrong(host, placed):
 
 @pytest.mark.parametrize("sample", ["empty_scan"], indirect=True)
 @pytest.mark.usefixtures("sample")
-def test_the_sample_is_in_the_scene_and_chosen_by_one_click(host):
+def test_the_sample_is_loaded_into_the_scene_and_selected_by_one_click(host):
     host.open()
     unfold(host, "newScenarioCollapsibleButton")
     host.press("sampleDataButton")
@@ -164,7 +164,7 @@ def test_the_sample_is_in_the_scene_and_chosen_by_one_click(host):
     assert host.find("makeScenarioButton").enabled
 
 
-def test_a_sample_that_cannot_be_downloaded_is_reported_and_nothing_is_chosen(host, monkeypatch):
+def test_a_sample_that_cannot_be_downloaded_is_reported_and_nothing_is_selected(host, monkeypatch):
     host.open()
     unfold(host, "newScenarioCollapsibleButton")
     monkeypatch.setattr(SampleDataLogic, "downloadSamples", lambda _logic, _name: [None])
@@ -177,7 +177,7 @@ def test_a_sample_that_cannot_be_downloaded_is_reported_and_nothing_is_chosen(ho
 @pytest.mark.soak
 @pytest.mark.parametrize("sample", ["scan"], indirect=True)
 @pytest.mark.usefixtures("sample", "session_under_way")
-def test_the_sample_is_trained_on_by_five_clicks_from_its_download_on(host):
+def test_training_on_the_sample_takes_five_clicks_from_its_download(host):
     clicks = Clicks(host)
     clicks.unfold("newScenarioCollapsibleButton")
     clicks.press("sampleDataButton")

@@ -51,7 +51,7 @@ def journal(folder):
     return path
 
 
-def test_on_a_full_disk_the_trial_pauses_with_a_sentence_and_resumes_when_there_is_room(tmp_path):
+def test_on_a_full_disk_the_trial_pauses_with_a_message_and_resumes_once_there_is_room(tmp_path):
     records = tmp_path / "records"
     with (
         SimulatorProcess(records, "--no-views") as simulator,
@@ -109,7 +109,7 @@ def log_lines(folder, name="simulator-0.log"):
     return [json.loads(line) for line in path.read_text().splitlines()]
 
 
-def test_a_simulator_in_use_ends_cleanly_on_sigterm_and_closes_the_journal(ended):
+def test_a_simulator_in_use_exits_cleanly_on_sigterm_and_closes_the_journal(ended):
     folder, (status, _errors), _code = ended
     assert status == 0
     reading = read_journal(journal(folder / "records"))
@@ -117,7 +117,7 @@ def test_a_simulator_in_use_ends_cleanly_on_sigterm_and_closes_the_journal(ended
     assert reading.entries[-1]["kind"] == "stopped"
 
 
-def test_the_log_covers_start_to_end_in_lines_of_json(ended):
+def test_the_log_covers_the_whole_run_in_json_lines(ended):
     lines = log_lines(ended[0])
     messages = [line["message"] for line in lines]
     assert messages[0] == "The simulator has started."
@@ -141,7 +141,7 @@ def test_no_secret_and_no_pseudonym_is_in_the_log(ended):
         assert secret not in errors
 
 
-def test_a_failing_window_is_reported_and_its_log_beside_the_simulator_s_says_why(tmp_path):
+def test_a_failing_window_is_reported_and_its_log_beside_the_simulators_says_why(tmp_path):
     environment = {**os.environ, "SDL_VIDEODRIVER": "none-such"}
     options = ["--view-port", "0", "--no-gamepad", "--desktop"]
     with SimulatorProcess(tmp_path / "records", *options, env=environment) as simulator:
@@ -155,7 +155,7 @@ def test_a_failing_window_is_reported_and_its_log_beside_the_simulator_s_says_wh
 
 
 @pytest.mark.soak
-def test_a_view_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
+def test_a_view_port_in_use_exits_with_a_one_sentence_error_and_status_2(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])
         places = ["--records", str(tmp_path / "records"), "--config", str(tmp_path / "config")]

@@ -29,7 +29,7 @@ from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_al
 from rastrainer_simulator.flow.session.trainee_history import ScoreHistory
 from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
-from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.finished_trials import COLIN, TRAINEE, write_finished_trials
 from Testing.end_to_end.simulator_process import SimulatorProcess, ViewedSimulator
@@ -113,7 +113,7 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(TRIALS, marks=pytest.mark.soak)])
-def test_slicer_that_connects_later_stores_the_trial_and_its_score_replaces_the_same_one(
+def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_identical_one(
     tmp_path, scenario, cohort, count
 ):
     alone = Alone(tmp_path / "alone", count, scenario)
@@ -155,7 +155,7 @@ def test_a_view_of_the_real_simulator_shows_its_own_score_until_slicer_scores_th
     key, records = secrets.token_hex(32), tmp_path / "records"
     with ViewedSimulator(records, "--speed", "8", key=key) as simulator:
         with Client(port=simulator.port) as client:
-            say_hello(client, "player")
+            send_hello(client, "player")
             trial = play_trial(client, scenario, "task-1", "P07", 5, BRISK).trial_id
         with ViewClient(loop_thread, simulator.url, key) as joined:
             view = WatchingView(joined)

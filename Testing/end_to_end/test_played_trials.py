@@ -84,14 +84,14 @@ def played(request) -> list[Played]:
     return first + second
 
 
-def test_true_target_error_lies_in_the_reported_interval_as_often_as_in_one_of_95_percent(played):
+def test_the_true_target_error_lies_in_the_reported_interval_as_often_as_stated(played):
     expected = 0.95 * len(played)
     # Three standard deviations of so many trials.
     fewest = expected - 3.0 * math.sqrt(0.05 * expected)
     assert sum(trial.is_within_interval for trial in played) >= fewest
 
 
-def test_recorded_trials_replay_to_the_same_joints_and_touches_to_the_last_bit(played):
+def test_recorded_trials_replay_with_the_same_joints_and_touches_to_the_last_bit(played):
     assert [trial.difference for trial in played] == [None] * len(played)
     assert all(trial.compared_touches >= 15 for trial in played)
     assert all(trial.compared_postures > 100 for trial in played)

@@ -19,7 +19,11 @@ def link(module_widget):  # noqa: F811
     return module_widget.logic.session.link
 
 
-def test_the_page_port_is_named_and_survived_and_the_right_one_connects(host, link, simulator):  # noqa: F811
+def test_the_page_port_is_recognized_and_harmless_and_the_right_port_connects(
+    host,  # noqa: F811
+    link,
+    simulator,
+):
     host.type("portSpinBox", str(simulator.view_port))
     host.press("connectButton")
     host.wait_until(lambda: "(HTTP)" in host.text("stateText"), "the page is recognized")

@@ -14,7 +14,7 @@ import pytest
 
 import rastrainer
 import rastrainer_simulator as simulator
-from rastrainer.python_environment import private_words
+from rastrainer.python_environment import private_command
 from rastrainer.slicer.program.child_process import ChildProcess
 from rastrainer.slicer.program.simulator_setup import CHECKOUT, PROGRAM
 from Testing.end_to_end.virtual_display import VirtualDisplay
@@ -72,14 +72,14 @@ def run(words):
     return [*lines, *child.takeLines()]
 
 
-def test_doctor_names_pinocchio_though_nothing_but_a_pth_file_leads_to_it(from_slicer, folder):
-    lines = run(private_words(from_slicer, folder, PROGRAM, "doctor"))
+def test_doctor_names_pinocchio_even_if_only_a_pth_file_leads_to_it(from_slicer, folder):
+    lines = run(private_command(from_slicer, folder, PROGRAM, "doctor"))
     wanted = f"Pinocchio {metadata.version('pin')} computes the robot's kinematics."
     assert any(wanted in line for line in lines), lines
     assert not any("PROBLEM" in line.upper() and "packages" in line for line in lines), lines
 
 
-def test_a_program_sees_no_package_of_slicer_and_the_environment_from_before_its_launcher(
+def test_a_program_sees_no_package_of_slicer_and_the_environment_before_its_launcher(
     from_slicer, folder
 ):
     (folder / "look_around.py").write_text(
@@ -90,7 +90,7 @@ def test_a_program_sees_no_package_of_slicer_and_the_environment_from_before_its
         "print(os.environ['LD_LIBRARY_PATH'])\n"
         "print(sys.argv)\n"
     )
-    assert run(private_words(from_slicer, folder, "look_around", "--a", "b c")) == [
+    assert run(private_command(from_slicer, folder, "look_around", "--a", "b c")) == [
         "None",
         "[]",
         "['RASTRAINER_STARTED_BY']",
@@ -99,7 +99,7 @@ def test_a_program_sees_no_package_of_slicer_and_the_environment_from_before_its
     ]
 
 
-def test_the_simulator_and_its_window_hold_nothing_of_slicers_folder_and_end_together(
+def test_the_simulator_and_its_window_use_nothing_from_slicers_folder_and_end_together(
     from_slicer, folder, slicer, tmp_path, monkeypatch
 ):
     with VirtualDisplay() as display:
@@ -107,7 +107,7 @@ def test_the_simulator_and_its_window_hold_nothing_of_slicers_folder_and_end_tog
         monkeypatch.setenv("APPLAUNCHER_0_DISPLAY", display.name)
         places = ["--records", str(tmp_path / "records"), "--config", str(tmp_path / "config")]
         options = ["simulator", "--port", "0", "--desktop", "--no-gamepad", *places]
-        words = private_words(from_slicer, folder, PROGRAM, *options)
+        words = private_command(from_slicer, folder, PROGRAM, *options)
         child, lines = ChildProcess(words), []
         try:
 

@@ -111,7 +111,7 @@ def operate(trainee: ProcedureTrainee, lab: Lab, device: str) -> dict:
     seen["inserted"] = trainee.procedure, trainee.ruler
     trainee.next_step("release", "registered")
     trainee.until_menu("result")
-    seen["slicer"] = slicer.told_until("trial")[-1]["results"]
+    seen["slicer"] = slicer.events_until("trial")[-1]["results"]
     seen["result"] = trainee.menu
     trainee.choose("procedure")
     trainee.until_menu("procedure-errors")
@@ -140,17 +140,17 @@ def begin(trainee: ProcedureTrainee, device: str) -> None:
     trainee.begin_task("task-1")
 
 
-def test_the_whole_procedure_is_carried_out_by_that_device_alone(operated):
+def test_the_whole_procedure_is_carried_out_with_that_device_alone(operated):
     assert operated["operators"] == {operated["device"]}
 
 
-def test_a_checkpoint_is_touched_and_its_error_told(operated):
+def test_a_checkpoint_is_touched_and_its_error_shown(operated):
     texts = operated["checked"].status
     assert any("mm off" in text for text in texts)
     assert "checkpoint" in operated["events"]
 
 
-def test_a_hand_brings_the_guide_onto_the_line_by_the_bulls_eye(operated):
+def test_the_guide_is_brought_onto_the_line_by_hand_with_the_bulls_eye(operated):
     aim = operated["aligned"]
     assert aim["entryDistanceMm"] <= ALIGNED_MM
     assert aim["angleDeg"] <= ALIGNED_DEG

@@ -66,7 +66,7 @@ class Leader:
             if self.session.link.connector is not None:
                 self.session.link.connector.PeriodicProcess()
             self.session.process()
-            self.session.work.giveTime()
+            self.session.work.yieldTime()
             time.sleep(0.005)
             assert time.monotonic() < deadline, (self.status, self.answers)
 
@@ -164,7 +164,7 @@ def led(tmp_path_factory):
     return seen
 
 
-def test_the_procedure_is_registered_led_and_scored_by_slicer(led):
+def test_the_procedure_is_registered_guided_and_scored_by_slicer(led):
     outcome, record = led["outcome"], led["stored"].record
     assert [answer for answer in led["answers"] if answer] == []
     assert record.procedure.procedure == PROCEDURE
@@ -176,7 +176,7 @@ def test_the_procedure_is_registered_led_and_scored_by_slicer(led):
     assert led["lines"] == dict.fromkeys(led["lines"], 1)
 
 
-def test_a_slicer_that_is_lost_in_a_phase_finds_the_procedure_as_it_was(led):
+def test_a_slicer_lost_in_a_phase_finds_the_procedure_unchanged(led):
     phases = [before.phase for before, _after in led["found"]]
     assert phases == [phase.value for phase in PROCEDURE_PHASES]
     for before, after in led["found"]:
@@ -198,7 +198,7 @@ def test_a_stored_trial_is_shown_again_with_its_lines(led):
     assert again.target_rms_mm == pytest.approx(first.target_rms_mm)
 
 
-def test_the_slices_lie_along_the_instrument_and_are_then_as_they_were(led):
+def test_the_slices_follow_the_instrument_and_are_then_restored(led):
     (errors,) = led["outcome"].analysis.trajectories
     across = led["along"]["Red"][:3, 2]
     assert abs(across @ errors.shown_direction) > 0.9999

@@ -195,13 +195,13 @@ def test_after_each_kill_the_procedure_continues_in_its_phase(seen):
 @pytest.mark.parametrize(
     ("before", "after"), [("drilled", "paused drill"), ("inserted", "paused instrument")]
 )
-def test_what_the_journal_held_of_drilling_and_insertion_survives_a_kill(seen, before, after):
+def test_drilling_and_insertion_recorded_in_the_journal_survive_a_kill(seen, before, after):
     depth_mm = seen[before]["feedMm"]
     assert depth_mm - ROUNDED_MM <= seen[after]["procedure"]["feedMm"] <= depth_mm + 2 * FED_MM
     assert seen[after]["procedure"]["tool"] == seen[before]["tool"]
 
 
-def test_the_robot_aligns_the_guide_exactly_on_the_plan(seen):
+def test_the_robot_aligns_the_guide_exactly_with_the_plan(seen):
     for aligned in seen["aligned"]:
         assert aligned["entryDistanceMm"] <= 0.05
         assert aligned["angleDeg"] <= 0.05
@@ -238,7 +238,7 @@ def test_the_truth_stays_secret_until_the_registration_is_submitted(seen):
     assert seen["scored"]["phase"] == "scored"
 
 
-def test_the_trial_is_played_again_to_the_last_bit_through_all_its_interruptions(seen):
+def test_the_trial_replays_to_the_last_bit_through_all_its_interruptions(seen):
     reading = read_journal(seen["journal"])
     assert reading.integrity is Integrity.INTACT
     report = replay(reading, setup_of(reading.header, seen["surgeon"].scenario))

@@ -74,7 +74,7 @@ def test_a_procedure_is_edited_checked_and_saved_in_a_copy_of_its_scenario(host,
     assert host.find("procedureComboBox").count == 4
 
 
-def test_lines_are_placed_by_two_clicks_and_models_kept_away_from(host):
+def test_lines_are_placed_by_two_clicks_and_models_become_no_go_structures(host):
     host.open()
     host.choose("procedureKindComboBox", "Stereo-EEG")
     host.press("placeLineButton")
@@ -95,7 +95,7 @@ def test_lines_are_placed_by_two_clicks_and_models_kept_away_from(host):
     assert not host.find("saveProcedureButton").enabled
 
 
-def test_lines_change_their_order_and_a_checkpoint_is_placed_by_buttons(host):
+def test_buttons_reorder_lines_and_place_a_checkpoint(host):
     host.open()
     for name in ("First", "Second"):
         host.press("placeLineButton")

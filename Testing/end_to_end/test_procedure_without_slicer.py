@@ -43,7 +43,7 @@ class KilledSlicer:
 
     def _start(self) -> None:
         self.process = SlicerProcess(*self._words)
-        while self.process.told_until("status")[-1]["state"] != "connected":
+        while self.process.events_until("status")[-1]["state"] != "connected":
             pass
 
     def kill_and_return(self, phase: str) -> None:
@@ -52,9 +52,9 @@ class KilledSlicer:
         self.kills.append(phase)
         self._start()
 
-    def touches_told(self, count: int) -> list[str]:
+    def touches_reported(self, count: int) -> list[str]:
         """Return the labels of so many touches, as soon as they are told."""
-        return [self.process.told_until("point")[-1]["label"] for _ in range(count)]
+        return [self.process.events_until("point")[-1]["label"] for _ in range(count)]
 
 
 class Interrupted(Player):
@@ -71,7 +71,7 @@ class Interrupted(Player):
             self._touches += 1
             if self._touches == KILLED_AFTER:
                 self._slicer.kill_and_return("running")
-                self.told = self._slicer.touches_told(KILLED_AFTER)
+                self.told = self._slicer.touches_reported(KILLED_AFTER)
         return reply
 
     def state(self, is_wanted) -> dict:
@@ -122,7 +122,7 @@ def seen(tmp_path_factory) -> dict:
                 lose(player, slicer, "inserting")
                 player.feed(PLACED_MM)
                 player.do("ReleaseInstrument")
-                told = slicer.process.told_until("trial")
+                told = slicer.process.events_until("trial")
         finally:
             slicer.process.kill()
     with Study.open_for_reading(folder / "study" / "study.db") as study:
@@ -136,15 +136,15 @@ def is_aligned(state: dict) -> bool:
     return None not in off and max(off) < 0.01 and abs(here["standOffMm"] - STAND_OFF_MM) < 0.01
 
 
-def test_slicer_is_killed_among_the_touches_and_in_each_phase(seen):
+def test_slicer_is_killed_during_the_touches_and_in_each_phase(seen):
     assert seen["slicer"].kills == ["running", *(phase.value for phase in PROCEDURE_PHASES)]
 
 
-def test_a_slicer_that_returns_among_the_touches_is_told_of_all_before(seen):
+def test_a_slicer_that_returns_during_the_touches_receives_all_earlier_ones(seen):
     assert seen["player"].told == [str(number) for number in range(1, KILLED_AFTER + 1)]
 
 
-def test_it_registers_the_touches_of_before_and_after_its_return(seen):
+def test_touches_from_before_and_after_slicers_return_are_registered(seen):
     (stored,) = seen["stored"]
     (attempt,) = stored.record.procedure.attempts
     assert [touch.label for touch in attempt.touches] == [str(n) for n in range(1, 16)]

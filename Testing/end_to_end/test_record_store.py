@@ -20,7 +20,7 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.record_store_settings import RECORD_STORE_FILE
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
 from rastrainer_simulator.export.xapi import statements
-from rastrainer_simulator.net.record_store import RecordStore, StoreAwayError
+from rastrainer_simulator.net.record_store import RecordStore, StoreUnreachableError
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.free_port import free_port
 
@@ -123,7 +123,7 @@ def ralph(tmp_path):
     store.kill()
 
 
-def test_a_store_that_is_killed_again_and_again_has_each_statement_once(ralph, study, tmp_path):
+def test_a_repeatedly_killed_store_has_each_statement_once(ralph, study, tmp_path):
     expected = statements(read_study_data(study), HOME)
     assert len(expected) >= 10 * TRAINEES
     sent = SentStatements(tmp_path / "study.db", ralph.url, HOME)
@@ -131,7 +131,7 @@ def test_a_store_that_is_killed_again_and_again_has_each_statement_once(ralph, s
         Sender(lambda c=count: expected[:c], RecordStore(ralph.url, CREDENTIALS), sent).send()
         ralph.kill()
         away = Sender(lambda: expected, RecordStore(ralph.url, CREDENTIALS), sent)
-        with pytest.raises(StoreAwayError):
+        with pytest.raises(StoreUnreachableError):
             away.send()
         ralph.start()
     Sender(lambda: expected, RecordStore(ralph.url, CREDENTIALS), sent).send()

@@ -51,7 +51,7 @@ def connected(host, module_widget, simulator):  # noqa: F811
     host.press("connectButton")
     link = module_widget.logic.session.link
     host.wait_until(lambda: link.status.state is LinkState.CONNECTED, "it connects")
-    come_to_rest(host)
+    wait_until_idle(host)
     return host
 
 
@@ -63,18 +63,18 @@ def arm(connected, simulator):
         arm.do("Hello", protocolVersion=PROTOCOL_VERSION, client="player")
         arm.do("StartTask", task="task-1", trainee="T-001")
         connected.wait_until(lambda: "running" in connected.text("phaseText"), "the trial runs")
-        come_to_rest(connected)
+        wait_until_idle(connected)
         yield arm
         arm.do("Abort")
 
 
 def renders_in_a_while(host):  # noqa: F811
     before = host.renders
-    host.let_pass(PAUSE_S)
+    host.idle_for(PAUSE_S)
     return host.renders - before
 
 
-def come_to_rest(host):  # noqa: F811
+def wait_until_idle(host):  # noqa: F811
     """Wait until what has been asked for before is drawn, however slow the machine is."""
     session = host.widget.logic.session
     # When the first is answered, the module has asked for the poses that it wants now; those that
@@ -92,7 +92,7 @@ def come_to_rest(host):  # noqa: F811
 
 def show_robot(host):  # noqa: F811
     host.check("robotCheckBox")
-    come_to_rest(host)
+    wait_until_idle(host)
 
 
 def wait_for_renders(host, arm, count=10):  # noqa: F811
@@ -110,25 +110,25 @@ def set_layout(name):
     slicer.app.layoutManager().setLayout(layout)
 
 
-def test_connected_and_idle_nothing_is_rendered(connected):
+def test_nothing_is_rendered_while_connected_and_idle(connected):
     assert renders_in_a_while(connected) == 0
 
 
-def test_with_the_robot_shown_and_at_rest_nothing_is_rendered(connected):
+def test_nothing_is_rendered_while_the_shown_robot_is_at_rest(connected):
     show_robot(connected)
     assert renders_in_a_while(connected) == 0
 
 
-def test_while_the_arm_moves_and_the_robot_is_not_shown_nothing_is_rendered(connected, arm):
+def test_nothing_is_rendered_while_a_hidden_robot_moves(connected, arm):
     arm.move()
     assert renders_in_a_while(connected) == 0
 
 
-def test_the_robot_that_is_shown_is_rendered_as_it_moves_until_it_is_hidden(connected, arm):
+def test_a_shown_robot_is_rendered_as_it_moves_until_it_is_hidden(connected, arm):
     show_robot(connected)
     wait_for_renders(connected, arm)
     connected.check("robotCheckBox", False)
-    come_to_rest(connected)
+    wait_until_idle(connected)
     arm.move()
     assert renders_in_a_while(connected) == 0
     show_robot(connected)
@@ -138,10 +138,10 @@ def test_the_robot_that_is_shown_is_rendered_as_it_moves_until_it_is_hidden(conn
 def test_after_leaving_the_module_the_robot_moves_only_in_a_shown_3d_view(connected, arm):
     show_robot(connected)
     connected.leave()
-    come_to_rest(connected)
+    wait_until_idle(connected)
     wait_for_renders(connected, arm)
     set_layout("OneUpRedSliceView")
-    come_to_rest(connected)
+    wait_until_idle(connected)
     arm.move()
     assert renders_in_a_while(connected) == 0
     set_layout("FourUpView")
@@ -149,10 +149,10 @@ def test_after_leaving_the_module_the_robot_moves_only_in_a_shown_3d_view(connec
 
 
 @pytest.mark.soak
-def test_in_a_minimized_window_nothing_is_rendered(connected, arm):
+def test_nothing_is_rendered_in_a_minimized_window(connected, arm):
     show_robot(connected)
     connected.minimize()
-    come_to_rest(connected)
+    wait_until_idle(connected)
     arm.move()
     assert renders_in_a_while(connected) == 0
     connected.minimize(False)

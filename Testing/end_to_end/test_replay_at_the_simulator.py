@@ -16,7 +16,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.scripted_trainee import Skill
-from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.stream_trainee import WatchingView
 from Testing.end_to_end.window_process import wait_until
@@ -52,7 +52,7 @@ def slicer(simulator):
     """A client that has played and scored a trial."""
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     with Client(port=simulator.port) as slicer:
-        say_hello(slicer, "Slicer")
+        send_hello(slicer, "Slicer")
         trial = play_trial(slicer, scenario, "task-1", "P07", 5, BRISK)
         for command, arguments in (("SubmitRegistration", REGISTRATION), ("TrialScored", SCORE)):
             arguments = {"trialId": trial.trial_id, **arguments}

@@ -51,7 +51,7 @@ def wait_for_head(process):
 
 
 @pytest.mark.soak
-def test_a_head_is_worked_with_before_its_skull_is_made(ct):
+def test_a_head_can_be_worked_on_before_its_skull_is_made(ct):
     with head_process(ct, []) as process:
         first = wait_for_head(process)
         assert first.skull is None
@@ -65,7 +65,7 @@ def test_a_head_is_worked_with_before_its_skull_is_made(ct):
 
 
 @pytest.mark.soak
-def test_a_ct_without_bone_is_refused_with_a_sentence_if_its_skull_is_wanted(tmp_path):
+def test_a_ct_without_bone_is_refused_with_a_message_if_its_skull_is_requested(tmp_path):
     soft = phantom({**CT, "bone": CT["scalp"]}, spacing=(2.0, 2.0, 2.0), lowest=-46.0, size=0.75)
     with head_process(write_volume(tmp_path / "soft.nrrd", soft), []) as process:
         assert wait_for_head(process).head.is_closed
@@ -73,7 +73,7 @@ def test_a_ct_without_bone_is_refused_with_a_sentence_if_its_skull_is_wanted(tmp
             process.whole()
 
 
-def test_cancel_ends_the_process_of_the_head_too(ct, temporary, monkeypatch):
+def test_canceling_also_ends_the_process_that_extracts_the_head(ct, temporary, monkeypatch):
     started = []
 
     class Recorded(subprocess.Popen):
@@ -93,7 +93,7 @@ def test_cancel_ends_the_process_of_the_head_too(ct, temporary, monkeypatch):
 
 @pytest.mark.soak
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends a process without asking it")
-def test_a_build_that_is_terminated_leaves_nothing(ct, tmp_path, temporary):
+def test_a_terminated_build_leaves_nothing(ct, tmp_path, temporary):
     words = ["scenario", "build", str(ct), "-o", str(tmp_path / "made")]
     build = subprocess.Popen([*RASTRAINER, *words], stdout=subprocess.PIPE, text=True)
     with build:
@@ -106,7 +106,7 @@ def test_a_build_that_is_terminated_leaves_nothing(ct, tmp_path, temporary):
     assert [path.name for path in tmp_path.iterdir()] == ["temporary"]
 
 
-def test_a_file_that_is_no_volume_ends_the_build_with_one_sentence(tmp_path, capsys):
+def test_a_file_that_is_not_a_volume_ends_the_build_with_a_one_sentence_error(tmp_path, capsys):
     (tmp_path / "noise.nrrd").write_bytes(b"no image" * 100)
     words = ["scenario", "build", str(tmp_path / "noise.nrrd"), "-o", str(tmp_path / "made")]
     assert main(words) == 2
@@ -136,7 +136,7 @@ def test_warnings_of_the_planner_are_shown_beside_those_of_the_head(tmp_path):
     assert warnings == ["The slices are far apart.", "The tumor lies too deep."]
 
 
-def test_a_build_that_is_cancelled_leaves_nothing(tmp_path):
+def test_a_canceled_build_leaves_nothing(tmp_path):
     def progress(_step, share):
         # At the planner's second step, or at the next that is seen.
         if share > HEAD_SHARE:

@@ -40,7 +40,7 @@ def ball(tmp_path):
 
 
 @pytest.mark.soak
-def test_a_head_is_pictured_before_anything_is_made_of_it(volume, tmp_path, capsys):
+def test_a_head_is_previewed_before_anything_is_made_from_it(volume, tmp_path, capsys):
     picture = tmp_path / "head.png"
     assert main(["scenario", "preview", str(volume), str(picture), "--cut=-30"]) == 0
     assert "cut flat at -30.0 mm" in capsys.readouterr().out
@@ -49,14 +49,14 @@ def test_a_head_is_pictured_before_anything_is_made_of_it(volume, tmp_path, caps
     assert pixels.std() > 20.0
 
 
-def test_a_head_that_is_not_there_has_no_picture(volume, tmp_path, capsys):
+def test_a_missing_head_has_no_picture(volume, tmp_path, capsys):
     words = ["scenario", "preview", str(volume), str(tmp_path / "head.png"), "--cut=500"]
     assert main(words) == 2
     assert "its base must be in this range, not at 500 mm" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == [volume.name]
 
 
-def test_the_check_reports_each_problem_and_its_status_says_so(ball, tmp_path, capsys):
+def test_the_check_reports_each_problem_and_reflects_it_in_its_exit_status(ball, tmp_path, capsys):
     assert main(["scenario", "check", str(ball)]) == 1
     told = capsys.readouterr().out.splitlines()
     assert len(told) > 3
@@ -93,7 +93,7 @@ def test_a_package_is_unpacked_into_the_library_once(ball, tmp_path, monkeypatch
     assert sorted(user_library().rglob("*")) == before
 
 
-def test_a_package_that_climbs_out_is_refused_and_changes_nothing(tmp_path, capsys):
+def test_a_package_that_escapes_its_folder_is_refused_and_changes_nothing(tmp_path, capsys):
     bad, library = tmp_path / "bad.zip", tmp_path / "deep" / "library"
     with zipfile.ZipFile(bad, "w") as archive:
         archive.writestr("../../evil.txt", "x")
@@ -103,7 +103,7 @@ def test_a_package_that_climbs_out_is_refused_and_changes_nothing(tmp_path, caps
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has other signals")
-def test_a_build_that_ctrl_c_ends_leaves_nothing(volume, tmp_path):
+def test_a_build_interrupted_by_ctrl_c_leaves_nothing(volume, tmp_path):
     temporary = tmp_path / "temporary"
     temporary.mkdir()
     words = [*RASTRAINER, "build", str(volume), "-o", str(tmp_path / "made")]

@@ -49,7 +49,7 @@ def trains_on(port, name, title):
         assert json.loads(state.content.text)["task"] == task
 
 
-def test_a_scenario_of_the_library_is_trained_on_by_its_name(environment, tmp_path):
+def test_a_scenario_from_the_library_is_loaded_by_name_and_trained_on(environment, tmp_path):
     with new_folder(user_library() / "ball") as made:
         write_scenario(made, made_up_scenario(), ball_head())
     options = ("--no-views", "--no-gamepad")

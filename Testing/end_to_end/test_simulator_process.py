@@ -15,7 +15,7 @@ from rastrainer_simulator.cli.main import main
 from Testing.end_to_end.simulator_process import COMMAND, SimulatorProcess
 
 
-def test_simulator_ends_cleanly_on_ctrl_c_while_a_client_is_connected(tmp_path):
+def test_simulator_exits_cleanly_on_ctrl_c_while_a_client_is_connected(tmp_path):
     with SimulatorProcess(tmp_path) as simulator, Client(port=simulator.port) as client:
         client.wait_for("ToolTipToWorld", timeout=60)
         assert simulator.stop(signal.SIGINT) == (0, "")
@@ -50,13 +50,13 @@ def test_simulator_connects_to_a_listening_slicer_and_takes_its_commands(tmp_pat
         (["--scenario", "nowhere"], "The scenario's folder nowhere does not exist."),
     ],
 )
-def test_wrong_argument_ends_with_one_sentence_and_status_2(tmp_path, capsys, arguments, sentence):
+def test_wrong_argument_gives_one_sentence_and_status_2(tmp_path, capsys, arguments, sentence):
     places = ["--records", str(tmp_path), "--config", str(tmp_path)]
     assert main(["simulator", *places, *arguments]) == 2
     assert capsys.readouterr().err == f"rastrainer: {sentence}\n"
 
 
-def test_port_in_use_ends_with_one_sentence_and_status_2(tmp_path):
+def test_port_in_use_gives_one_sentence_and_status_2(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = str(other.getsockname()[1])
         places = ["--records", str(tmp_path), "--config", str(tmp_path)]

@@ -21,7 +21,7 @@ from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.virtual.scripted_trial import say_hello
+from rastrainer_simulator.virtual.scripted_trial import send_hello
 from Testing.end_to_end.onto_skin import lower_onto_skin
 from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.window_process import wait_until
@@ -75,7 +75,7 @@ def start_playing(port, counts):
 
     def play():
         with Client(port=port) as client:
-            say_hello(client, "player")
+            send_hello(client, "player")
             do(client, "StartTask", task="task-1", trainee="T-042", seed=SEED)
             for number, fiducial in enumerate(fiducials, start=1):
                 above = fiducial + 40.0 * (fiducial - center) / np.linalg.norm(fiducial - center)
@@ -153,7 +153,7 @@ def test_the_trial_is_recovered_from_the_journal_and_kept_once(slicer_side):
     np.testing.assert_allclose(slicer_side.live_points, trial.record.positions_mm, atol=1e-3)
 
 
-def test_the_truth_that_is_kept_is_that_of_the_seed(slicer_side):
+def test_the_truth_that_is_stored_follows_from_the_seed(slicer_side):
     with Study.open(slicer_side.study) as study:
         (trial,) = study.history("T-042")
     scenario = load_scenario(COLIN)

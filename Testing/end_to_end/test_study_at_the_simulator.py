@@ -112,7 +112,7 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
 
 
 @pytest.mark.soak
-def test_the_module_tells_the_simulator_where_a_trainee_stands_and_what_another_seat_adds(
+def test_the_module_sends_the_simulator_a_trainees_progress_including_that_from_another_seat(
     loop_thread, tmp_path
 ):
     path, key = tmp_path / STUDY, secrets.token_hex(32)

@@ -137,7 +137,7 @@ def lab(loop_thread, tmp_path):
 
 
 @pytest.mark.soak
-def test_a_study_is_led_to_its_end_though_slicer_and_the_simulator_are_killed_in_it(lab):
+def test_a_study_is_completed_although_slicer_and_the_simulator_are_killed_during_it(lab):
     player = SurvivingPlayer(load_scenario(COLIN), random.Random(8), TRAINEE)
     with lab.view() as view:
         view.enter()

@@ -62,13 +62,13 @@ def drawn(tmp_path_factory, request) -> dict:
     return seen | {"device": device, "result": trainee.menu}
 
 
-def test_landmarks_and_trace_are_given_by_that_device_alone(drawn):
+def test_landmarks_and_trace_are_given_with_that_device_alone(drawn):
     assert drawn["operators"] == {drawn["device"]}
     assert drawn["touched"] == [landmark.name for landmark in COARSE]
     assert len(drawn["traced"]) >= POINTS > MIN_TRACE_POINTS
 
 
-def test_the_match_that_was_told_is_the_one_that_is_registered(drawn):
+def test_the_match_shown_to_the_trainee_is_the_one_that_is_registered(drawn):
     told, registered = drawn["match"], drawn["registered"]
     assert told["Residual"] == f"{registered['freMm']:.2f} mm"
     expected = f"{registered['expectedTreMm']:.2f} mm"

@@ -95,14 +95,14 @@ def _stored_by_slicer(port, scenario, records, folder) -> dict:
     return {"analysis": scored[0], "study": folder / "study.db"}
 
 
-def test_every_point_that_was_traced_survives_a_kill_amid_a_stroke(seen):
+def test_every_traced_point_survives_a_kill_in_the_middle_of_a_stroke(seen):
     assert seen["paused"]["phase"] == "paused"
     assert seen["paused"]["trace"]["kept"] >= seen["traced"] > 100
     assert seen["paused"]["trace"]["strokes"] == 2
     assert not seen["paused"]["trace"]["on"]
 
 
-def test_the_record_has_the_landmarks_the_trace_and_no_contact_that_was_not_meant(seen):
+def test_the_record_has_the_landmarks_the_trace_and_little_unintended_contact(seen):
     record = TrialRecord.from_json(seen["offer"])
     assert record.method is RegistrationMethod.SURFACE
     assert record.labels == tuple(landmark.name for landmark in LANDMARKS[:3])
@@ -115,7 +115,7 @@ def test_the_record_has_the_landmarks_the_trace_and_no_contact_that_was_not_mean
     assert record.completion_time_s > record.trace[-1][3] - record.trace[0][3]
 
 
-def test_the_trial_is_played_again_to_the_last_bit_through_its_interruption(seen):
+def test_the_trial_replays_to_the_last_bit_through_its_interruption(seen):
     reading = read_journal(seen["journal"])
     assert reading.integrity is Integrity.INTACT
     report = replay(reading, setup_of(reading.header, seen["scenario"].folder))
@@ -124,7 +124,7 @@ def test_the_trial_is_played_again_to_the_last_bit_through_its_interruption(seen
     assert report.compared["trace"] == len(reading.of_kind("trace"))
 
 
-def test_the_simulator_and_slicer_register_and_score_it_alike_to_the_last_digit(seen):
+def test_the_simulator_and_slicer_register_and_score_it_identically_to_the_last_digit(seen):
     own, analysis = seen["own"], seen["slicer"]["analysis"]
     assert own["registration"]["matrix"] == analysis.rigid.matrix.ravel().tolist()
     assert own["registration"]["freMm"] == analysis.rigid.fre_mm < 0.5

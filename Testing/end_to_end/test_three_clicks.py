@@ -4,7 +4,7 @@ import pytest
 import slicer
 
 from rastrainer.slicer.settings import PORT, PROGRAM
-from Testing.end_to_end.module.installed_simulator import brought_along, write_program
+from Testing.end_to_end.module.installed_simulator import bundled_package, write_program
 from Testing.end_to_end.module.player import Player
 from Testing.end_to_end.module.story import FAST
 from Testing.free_port import free_port
@@ -73,9 +73,7 @@ def test_three_clicks_lead_from_an_empty_slicer_to_a_running_trial(set_up_slicer
 
 
 @pytest.mark.soak
-def test_the_button_leads_on_through_the_trial_to_its_score_and_the_next_task(
-    set_up_slicer, tmp_path
-):
+def test_the_button_leads_through_the_trial_to_its_score_and_the_next_task(set_up_slicer, tmp_path):
     host = set_up_slicer
     press_next(host, "Start and connect", until="New trainee")
     press_next(host, "New trainee", until="Start the trial run")
@@ -97,9 +95,9 @@ def test_the_button_leads_on_through_the_trial_to_its_score_and_the_next_task(
     assert "task-1" in host.find("trialComboBox").currentText
 
 
-def test_the_simulator_is_set_up_first_after_asking(host, tmp_path, options):
+def test_the_simulator_is_set_up_first_after_confirmation(host, tmp_path, options):
     setup = host.open().logic.session.simulator.setup
-    setup.package = brought_along(tmp_path / "module", tmp_path / "simulator.pid", options)
+    setup.package = bundled_package(tmp_path / "module", tmp_path / "simulator.pid", options)
     host.answer("not set up on this computer yet", "Cancel")
     host.press("nextStepButton")
     assert host.text("nextStepButton") == "Start and connect"

@@ -30,13 +30,13 @@ WITHOUT_A_TRIAL = (
 )
 
 
-def test_the_steps_of_the_tour_that_need_no_trial_go_well_in_the_host(host, tmp_path):
+def test_the_tour_steps_that_need_no_trial_succeed_in_the_host(host, tmp_path):
     steps = tour(host, tmp_path, QUIET, "--only", *WITHOUT_A_TRIAL)
     assert [step["name"] for step in steps] == [*WITHOUT_A_TRIAL]
 
 
 @pytest.mark.soak
-def test_the_tour_of_a_release_goes_well_in_the_host(host, tmp_path):
+def test_the_release_tour_succeeds_in_the_host(host, tmp_path):
     steps = tour(host, tmp_path, FAST, "--patience", "1200")
     assert len(steps) > 32
     told = json.loads((tmp_path / "tour" / "tour.json").read_text())
@@ -58,7 +58,7 @@ def tour(host, tmp_path, options, *words):
     return told["steps"]
 
 
-def test_a_step_that_fails_and_an_error_in_the_log_end_slicer_with_an_error(host, tmp_path):
+def test_a_failing_step_and_an_error_in_the_log_end_slicer_with_an_error(host, tmp_path):
     host.scene.AddNewNodeByClass("vtkMRMLModelNode", "A node of the user's")
     status = host.run_script(
         TOUR, "--output", str(tmp_path / "tour"), "--program", str(tmp_path / "nowhere")

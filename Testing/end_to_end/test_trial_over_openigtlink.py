@@ -143,7 +143,7 @@ def phase_of(player: Player, phase: str) -> str:
     return json.loads(state.content.text)["phase"]
 
 
-def test_tasks_are_listed_by_rising_complexity(trial):
+def test_tasks_are_listed_in_order_of_complexity(trial):
     complexities = [task["complexity"] for task in trial["tasks"]]
     assert len(complexities) == 6
     assert complexities == sorted(set(complexities))
@@ -168,7 +168,7 @@ def test_finished_trial_is_offered_as_a_valid_record_until_acknowledged(trial):
     np.testing.assert_allclose(record.positions_mm, sent, atol=1e-4)
 
 
-def test_where_the_head_was_stays_secret_until_a_registration_is_submitted(trial, scenario):
+def test_the_head_pose_stays_secret_until_a_registration_is_submitted(trial, scenario):
     assert "headToWorld" not in json.dumps([trial["Register"], trial["offers"], trial["before"]])
     told = np.array(trial["truth"]["headToWorld"]).reshape(4, 4)
     np.testing.assert_allclose(told, scenario.perturbed_head_to_world(SEED), atol=1e-9)
@@ -180,7 +180,7 @@ def test_views_show_that_the_trial_is_scored(trial):
     assert trial["phase"] == "scored"
 
 
-def test_one_journal_is_kept_and_the_simulator_ends_cleanly(trial):
+def test_one_journal_is_kept_and_the_simulator_exits_cleanly(trial):
     assert len(trial["journals"]) == 1
     assert trial["exit"] == (0, "")
 

@@ -9,10 +9,10 @@ import pytest
 
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import DEFAULT_HOST
-from rastrainer.python_environment import private_words
+from rastrainer.python_environment import private_command
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.private_packages import SIMULATOR, fill, run, trim
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.virtual_display import VirtualDisplay
@@ -39,14 +39,14 @@ def simulator(trimmed, tmp_path):
     """The simulator on the packages of that folder alone, with views."""
 
     class TrimmedSimulator(ViewedSimulator):
-        command = tuple(private_words(Path(sys.executable), trimmed[0], SIMULATOR, "simulator"))
+        command = tuple(private_command(Path(sys.executable), trimmed[0], SIMULATOR, "simulator"))
 
     arguments = ("--speed", "20", "--view-port", "0", "--log-folder", str(tmp_path / "logs"))
     with TrimmedSimulator(tmp_path / "records", *arguments, key=KEY) as process:
         yield process
 
 
-def test_what_is_never_opened_goes_and_700_mb_hold_the_rest(trimmed):
+def test_unused_files_are_removed_and_the_rest_fits_in_700_mb(trimmed):
     folder, sizes, said = trimmed
     assert "that are never opened were removed" in said
     assert sizes["removedBytes"] > 400e6
@@ -66,7 +66,7 @@ def test_the_doctor_finds_all_packages_in_what_is_kept(trimmed):
 def test_a_trial_is_played_on_what_is_kept(simulator):
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     with Client(DEFAULT_HOST, simulator.port) as client:
-        say_hello(client, "scripted trainee")
+        send_hello(client, "scripted trainee")
         trial = play_trial(client, scenario, "trial-run", "trainee-01", 7)
     assert trial.last_state["nextPoint"] is None
 
@@ -78,7 +78,7 @@ def has_drawn(log):
 def test_the_window_draws_on_what_is_kept(trimmed, simulator, tmp_path):
     log = tmp_path / "frames.jsonl"
     words = ["--connect", simulator.url, "--frame-log", str(log), "--pictures", str(tmp_path)]
-    command = private_words(Path(sys.executable), trimmed[0], SIMULATOR, "window", *words)
+    command = private_command(Path(sys.executable), trimmed[0], SIMULATOR, "window", *words)
     with VirtualDisplay((640, 480)) as display, (tmp_path / "said.txt").open("w") as said:
         environment = {
             **os.environ,

@@ -119,7 +119,7 @@ ONE_OF_EACH_KIND = (
 
 
 @pytest.mark.parametrize("name", ONE_OF_EACH_KIND)
-def test_a_broken_volume_gets_one_sentence_and_changes_nothing(place, capfd, name):
+def test_a_broken_volume_is_reported_in_one_sentence_and_changes_nothing(place, capfd, name):
     write, sentence = BROKEN[name]
     volume = write(place)
     before = everything_in(place)
@@ -131,7 +131,7 @@ def test_a_broken_volume_gets_one_sentence_and_changes_nothing(place, capfd, nam
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_the_process_that_makes_the_head_ends_with_that_sentence(place, capfd, name):
+def test_the_head_extraction_process_ends_with_the_same_sentence(place, capfd, name):
     write, sentence = BROKEN[name]
     volume = write(place)
     before = everything_in(place)
@@ -165,7 +165,7 @@ QUICK = {"a folder of DICOM files"}
 @pytest.mark.parametrize(
     "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.soak) for name in ODD]
 )
-def test_an_odd_volume_becomes_a_scenario_with_the_right_skin(place, capfd, name):
+def test_an_unusual_volume_becomes_a_scenario_with_the_right_skin(place, capfd, name):
     write, options, warning, most_mm = ODD[name]
     write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials(SIZE)))
     words = ["scenario", "build", str(write(place)), "-o", str(place / "made"), "--no-skull"]
@@ -190,7 +190,7 @@ def test_an_odd_volume_becomes_a_scenario_with_the_right_skin(place, capfd, name
 
 
 @pytest.mark.soak
-def test_a_scenario_is_made_without_its_images_where_that_is_wished(place):
+def test_a_scenario_is_made_without_its_images_on_request(place):
     volume = write_volume(place / "head.nrrd", phantom(spacing=(2.0, 2.0, 2.0), size=SIZE))
     write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials(SIZE)))
     words = ["scenario", "build", str(volume), "-o", str(place / "made"), "--no-skull"]

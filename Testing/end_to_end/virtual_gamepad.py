@@ -47,7 +47,7 @@ class SimulatorWithGamepad(SimulatorProcess):
         """Plug the gamepad in; it is at first."""
         self._send({"plug": True})
 
-    def plug_out(self) -> None:
+    def unplug(self) -> None:
         """Plug the gamepad out."""
         self._send({"plug": False})
 
@@ -99,7 +99,7 @@ class Plug:
     def _carry_out(self) -> None:
         while not self._orders.empty():
             is_in, is_done = self._orders.get()
-            (self._gamepad.plug_in if is_in else self._gamepad.plug_out)()
+            (self._gamepad.plug_in if is_in else self._gamepad.unplug)()
             is_done.set()
 
 

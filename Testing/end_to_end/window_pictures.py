@@ -16,7 +16,7 @@ from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
 from rastrainer_simulator.desktop.camera import TRANSITION_S
-from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.virtual_display import VirtualKeyboard
@@ -59,7 +59,7 @@ def main() -> None:
         window = lab.open_window("window", *WINDOW)
         photographer = Photographer(lab, window)
         with Client(port=lab.simulator.port) as client:
-            say_hello(client, "trainee")
+            send_hello(client, "trainee")
             trainee = CarriedTrainee(lab.view, GamepadHands(lab.simulator), client)
             keep_menus(trainee, photographer, lab.keyboard)
             keep_views(trainee, photographer)
@@ -68,7 +68,7 @@ def main() -> None:
             slicer = lab.start_slicer(trials=2)
             scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
             play_trial(client, scenario, "task-1", TRAINEE, SEED)
-            slicer.told_until("trial")
+            slicer.events_until("trial")
             trainee.until_menu("result")
             # The hints are those of the device in use.
             trainee.focus("errors")
@@ -110,7 +110,7 @@ def keep_views(trainee: CarriedTrainee, photographer: Photographer) -> None:
     trainee.steer_to(trainee.place_of(label), 0.002)
     trainee.until(lambda: trainee.view.state["touch"] == "on skin", "the skin")
     photographer.keep("close-view-on-skin")
-    trainee.press_beside_fiducials()
+    trainee.press_away_from_fiducials()
     photographer.keep("close-view-proximity")
 
 

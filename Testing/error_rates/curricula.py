@@ -102,7 +102,7 @@ def next_best(standing: CurriculumStanding, _random: np.random.Generator) -> Ass
     return found
 
 
-def by_turns(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
+def in_rotation(standing: CurriculumStanding, _random: np.random.Generator) -> AssignmentStanding:
     """Choose the one that was played least."""
     return min(_open(standing), key=lambda each: each.played)
 
@@ -120,7 +120,7 @@ def in_order(standing: CurriculumStanding, _random: np.random.Generator) -> Assi
 
 CHOICES: dict[str, Choice] = {
     "next best task": next_best,
-    "by turns": by_turns,
+    "by turns": in_rotation,
     "at random": at_random,
     "in order, each until it is reached": in_order,
 }

@@ -144,15 +144,15 @@ def _on_task(
     at_most: float | None,
 ) -> EqualScore:
     count = len(task.trials)
-    measures = task.put_together(touches, MORE * sets, random)
+    measures = task.assemble(touches, MORE * sets, random)
     points = task.scores([_gentle(one) for one in measures])
     of_each = [points[number::count].mean() for number in range(count)]
-    own = task.scores(task.put_together(task.touches, sets, random))
+    own = task.scores(task.assemble(task.touches, sets, random))
     means = []
     for _ in range(RESAMPLES):
         again = [task.trials[number] for number in random.integers(0, count, count)]
         other = PlayedTask(task.head, task.name, again)
-        means.append(other.scores(other.put_together(other.touches, sets // 4, random)).mean())
+        means.append(other.scores(other.assemble(other.touches, sets // 4, random)).mean())
     # Less what fewer sets add.
     variance = max(np.var(means, ddof=1) - 3 * np.var(own) / sets, 0.0)
     safety = [score_trial(one, task.reference).safety_desirability for one in task.played()]
@@ -188,7 +188,7 @@ class PlayedTask:
         self._fiducials = np.asarray(scenario.task(name).fiducials, dtype=float)
         self._normals = fiducial_normals(scenario, name)
 
-    def put_together(
+    def assemble(
         self, touches: np.ndarray, sets: int, random: np.random.Generator
     ) -> list[ScoreMeasures]:
         """Return what is scored of `sets` trials with the errors of `touches`, (k, 3), skin, mm."""

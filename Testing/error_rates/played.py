@@ -25,7 +25,7 @@ from Testing.error_rates.hands import HEADS, TASKS, setup
 from Testing.simulator.virtual.cheating_trainees import (
     BIAS_MM,
     PlayedTrial,
-    aim_beside,
+    aim_off_target,
     drag,
     hover,
     play_honestly,
@@ -43,7 +43,7 @@ AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)} | {
 
 def _aim(direction: tuple[int, ...]) -> Play:
     bias = BIAS_MM * np.array(direction) / np.linalg.norm(direction)
-    return functools.partial(aim_beside, bias_mm=tuple(bias.tolist()))
+    return functools.partial(aim_off_target, bias_mm=tuple(bias.tolist()))
 
 
 WAYS: dict[str, Play] = {
@@ -52,7 +52,7 @@ WAYS: dict[str, Play] = {
     "hover 2 mm": functools.partial(hover, by_mm=2.0),
     "drag": drag,
     "press": press,
-    "aim beside": aim_beside,
+    "aim beside": aim_off_target,
     **{f"aim beside, {name}": _aim(direction) for name, direction in AXES.items()},
 }
 OBLIQUE_WAYS = tuple(f"aim beside, {name}" for name in list(AXES)[3:])

@@ -40,7 +40,7 @@ def intervals(sets: int, seed: int = 10) -> list[Measured]:
         ),
         (common, _with_common_offset, 0.94),
         ("as in row 1, and all touches 2 mm above the skin", _hovering, None),
-        ("as in row 1, and a constant aim bias of 1.5 mm", _aimed_beside, None),
+        ("as in row 1, and a constant aim bias of 1.5 mm", _with_aim_bias, None),
     ]
     found = [
         _measured(words, errors, limit, sets, np.random.default_rng([seed, number]))
@@ -116,5 +116,5 @@ def _hovering(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return _alike(normals, random) + 2.0 * normals
 
 
-def _aimed_beside(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
+def _with_aim_bias(normals: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return _alike(normals, random) + np.array([1.5, 0.0, 0.0])

@@ -43,19 +43,19 @@ def test_the_reference_times_of_colin27_have_the_published_mean():
 
 
 @pytest.mark.parametrize("which", [USUAL, SLOW])
-def test_trials_that_are_put_together_score_like_those_that_were_played(which):
+def test_assembled_trials_score_like_played_ones(which):
     off = []
     for number, place in enumerate(PLACES):
         task = PlayedTask(*place, trials_of(which, *place))
-        put_together = task.put_together(task.touches, SETS, np.random.default_rng(number))
+        assemble = task.assemble(task.touches, SETS, np.random.default_rng(number))
         played = task.scores(task.played())
         error = played.std(ddof=1) / np.sqrt(len(played))
-        off.append((played.mean() - task.scores(put_together).mean()) / error)
+        off.append((played.mean() - task.scores(assemble).mean()) / error)
     assert abs(np.mean(off)) < 3.3 / np.sqrt(len(off))
 
 
 @pytest.mark.parametrize("which", [USUAL, SLOW])
-def test_the_touches_of_a_trial_are_independent_and_hardly_err_in_one_direction(which):
+def test_the_touches_of_a_trial_are_independent_and_have_hardly_any_common_direction(which):
     errors = np.concatenate([errors_along(which, *place) for place in PLACES])
     products = np.einsum("sij,sij->si", errors[:, 1:], errors[:, :-1])
     assert abs(products.mean()) < 3.3 * products.std() / np.sqrt(products.size)
@@ -90,7 +90,7 @@ def assert_is_as_stored(key):
 @pytest.mark.parametrize(
     "head", [HEADS[0], *(pytest.param(head, marks=pytest.mark.soak) for head in HEADS[1:])]
 )
-def test_the_usual_hands_reproduce_a_stored_trial_of_each_head(head):
+def test_typical_hands_reproduce_a_stored_trial_of_each_head(head):
     assert_is_as_stored((USUAL, 1, head, "task-1"))
 
 

@@ -83,10 +83,10 @@ def test_a_table_is_replaced_and_nothing_else_changes():
         with_table("studies", text, "| new |")
 
 
-def test_practicing_the_weakest_task_takes_no_more_trials_than_taking_turns():
+def test_practicing_the_weakest_task_takes_no_more_trials_than_rotating_tasks():
     further = [
         curricula.course(curricula.next_best, seed).trials
-        - curricula.course(curricula.by_turns, seed).trials
+        - curricula.course(curricula.in_rotation, seed).trials
         for seed in range(20)
     ]
     assert np.mean(further) <= 3.3 * np.std(further, ddof=1) / np.sqrt(len(further))
@@ -94,7 +94,7 @@ def test_practicing_the_weakest_task_takes_no_more_trials_than_taking_turns():
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", TABLES)
-def test_all_limits_hold_and_the_page_has_the_shares(name):
+def test_all_limits_hold_and_the_page_has_the_rates(name):
     _, simulate = TABLES[name]
     found = simulate(SETS)
     assert [one for one in found if not one.holds()] == []
@@ -108,7 +108,7 @@ def test_all_limits_hold_and_the_page_has_the_shares(name):
         assert float(share.removesuffix(" %")) == pytest.approx(float(told), abs=0.3)
 
 
-def test_many_registrations_at_once_are_those_of_the_program():
+def test_many_registrations_at_once_match_those_of_the_program():
     scenario, random = scenario_of("colin27"), np.random.default_rng(4)
     fiducials = np.asarray(scenario.task("task-3").fiducials, dtype=float)
     moving = fiducials + random.normal(0.0, 2.0, (20, 15, 3)) + [5.0, -3.0, 8.0]
@@ -121,7 +121,7 @@ def test_many_registrations_at_once_are_those_of_the_program():
 
 
 @pytest.mark.parametrize("task", ["trial-run", "task-3"])
-def test_a_larger_bias_of_the_aim_has_a_lower_mean_score(task):
+def test_a_larger_aiming_bias_lowers_the_mean_score(task):
     """Of one trial chance may decide: a small bias may cancel what the touches happen to share."""
     random = np.random.default_rng(6)
     normals = fiducial_normals(scenario_of("colin27"), task)

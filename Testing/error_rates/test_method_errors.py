@@ -25,7 +25,7 @@ def test_with_skin_that_shifts_screws_beat_markers_and_markers_landmarks_and_sur
     assert markers < surface
 
 
-def test_each_chunk_is_stored_once_and_is_one_that_is_to_be_played():
+def test_each_chunk_is_stored_once_and_is_one_of_those_to_be_played():
     known = [one.key for one in stored()]
     assert len(known) == len(set(known))
     assert set(known) <= {(method.value, shift, chunk) for method, shift, chunk in keys(2000)}
@@ -34,7 +34,7 @@ def test_each_chunk_is_stored_once_and_is_one_that_is_to_be_played():
 
 @pytest.mark.soak
 @pytest.mark.parametrize("method", RegistrationMethod)
-def test_a_stored_chunk_is_played_again(method):
+def test_a_stored_chunk_is_reproduced(method):
     (kept,) = [one for one in stored() if one.key == (method.value, 2.0, 0)]
     again = play(method, 2.0, 0)
     assert abs(again.held - kept.held) <= 1

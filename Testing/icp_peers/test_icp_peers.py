@@ -24,7 +24,7 @@ def test_the_documentation_has_the_table_of_what_was_compared():
     assert table() in PAGE.read_text(encoding="utf-8")
 
 
-def test_no_stored_match_is_wrong_or_clearly_higher_than_that_of_a_peer():
+def test_no_stored_match_is_wrong_or_clearly_worse_than_that_of_a_peer():
     for one in stored():
         assert one.error_mm < 3.0, one
         assert min(one.cost_off_mm2, one.next_off_mm2) > -CLEARLY * one.cost_mm2, one
@@ -32,7 +32,7 @@ def test_no_stored_match_is_wrong_or_clearly_higher_than_that_of_a_peer():
 
 @pytest.mark.soak
 @pytest.mark.parametrize("head", HEADS)
-def test_no_peer_stops_clearly_lower_than_a_match_on_any_head(head):
+def test_no_peer_finds_a_clearly_lower_minimum_than_a_match_on_any_head(head):
     for one in compare(head, range(500, 503)):
         assert one.error_mm < 3.0, one
         assert min(one.cost_off_mm2, one.next_off_mm2) > -CLEARLY * one.cost_mm2, one
@@ -55,7 +55,7 @@ def named_wrong_minima(name, start_sd, seeds):
 
 
 @pytest.mark.soak
-def test_nine_of_ten_wrong_minima_from_poor_starts_are_named():
+def test_nine_of_ten_wrong_minima_from_poor_starts_are_reported():
     named = named_wrong_minima("colin27", 10.0, range(2000, 2050))
     named += named_wrong_minima("small", 20.0, range(2000, 2050))
     assert len(named) > 10

@@ -11,7 +11,7 @@ from collections import Counter
 from rastrainer.igtl.message import CONTENTS, MessageReader, StreamError
 from rastrainer_simulator.net.limits import LinkLimits
 from Testing.security.mutated_messages import MutatedMessages
-from Testing.security.wire_police import WirePolice
+from Testing.security.wire_checker import WireChecker
 
 HOST = "127.0.0.1"
 MESSAGES_A_CONNECTION = 200
@@ -43,7 +43,7 @@ class LinkAttack:
         self._count = count
         self._seeds = itertools.count(seed)
         self._clients = clients
-        self._policed = policed
+        self._check_every = policed
         self.sent = self.mutated = self.decoded = self.connections = self.ended = 0
         self.refused: Counter[StreamError] = Counter()
         self.seen: dict[bytes, int] = {}
@@ -58,7 +58,7 @@ class LinkAttack:
     async def _attack(self) -> None:
         while self.mutated < self._count:
             self.connections += 1
-            is_policed = self.connections % self._policed == 0
+            is_policed = self.connections % self._check_every == 0
             messages = _Messages(next(self._seeds))
             reader, writer = await asyncio.open_connection(HOST, self._port)
             reading = asyncio.create_task(self._read(reader, is_policed))
@@ -98,7 +98,7 @@ class LinkAttack:
             self.ended += 1
 
     async def _read(self, reader: asyncio.StreamReader, is_policed: bool) -> None:
-        police = WirePolice()
+        police = WireChecker()
         with contextlib.suppress(ConnectionError):
             while piece := await reader.read(65_536):
                 if is_policed:

@@ -108,7 +108,7 @@ class MutatedMessages:
             self._cut,
             self._with_a_false_size,
             self._with_another_type,
-            self._with_another_s_body,
+            self._with_another_body,
             self._spliced,
             self._with_a_bad_body,
             self._with_a_bad_body,
@@ -159,7 +159,7 @@ class MutatedMessages:
         data[2:14] = self._random.choice(TYPES).ljust(12, b"\0")
         return bytes(data)
 
-    def _with_another_s_body(self, data: bytearray) -> bytes:
+    def _with_another_body(self, data: bytearray) -> bytes:
         body = self._random.choice(self._valid)[HEADER_BYTES:]
         return _sealed(data[:HEADER_BYTES], body)
 

@@ -18,7 +18,7 @@ from Testing.security.attacked_process import (
 )
 from Testing.security.link_attack import LinkAttack
 from Testing.security.mutated_messages import COMMANDS, MutatedMessages, valid_messages
-from Testing.security.wire_police import SENT_TYPES
+from Testing.security.wire_checker import SENT_TYPES
 
 MAX_READ = 0.75
 """Share of the messages that the server must have decoded or refused one by one."""
@@ -65,23 +65,23 @@ def attack(folder, warm_up: int, count: int, policed: int, capsys) -> WatchedLoo
     return watched
 
 
-def test_five_thousand_mutated_messages_harm_nobody_else(tmp_path, capsys):
+def test_five_thousand_mutated_messages_affect_no_other_client(tmp_path, capsys):
     attack(tmp_path / "records", 400, 5_000, 1, capsys)
 
 
 @pytest.mark.soak
-def test_a_million_mutated_messages_harm_nobody_else(tmp_path, capsys):
+def test_a_million_mutated_messages_affect_no_other_client(tmp_path, capsys):
     check_punctual(attack(tmp_path / "records", 50_000, 1_000_000, 50, capsys))
 
 
-def test_the_same_seed_gives_the_same_attack_and_every_valid_message_is_in_it():
+def test_the_same_seed_gives_the_same_attack_which_includes_every_valid_message():
     first, second = MutatedMessages(3), MutatedMessages(3)
     drawn = [first.next() for _ in range(6_000)]
     assert drawn == [second.next() for _ in range(6_000)]
     assert set(valid_messages()) <= set(drawn)
 
 
-def test_every_command_that_may_come_is_among_those_that_are_mutated():
+def test_every_acceptable_command_is_among_those_that_are_mutated():
     assert COMMANDS.keys() == COMMAND_ARGUMENTS.keys()
     for name, arguments in COMMANDS.items():
         check_arguments(name, arguments)

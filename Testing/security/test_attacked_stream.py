@@ -49,10 +49,10 @@ def attack(folder, warm_up: int, count: int, capsys) -> WatchedLoop:
     return watched
 
 
-def test_a_hundred_mutated_messages_of_views_harm_nobody_else(tmp_path, capsys):
+def test_a_hundred_mutated_view_messages_affect_no_other_view(tmp_path, capsys):
     attack(tmp_path / "records", 100, 100, capsys)
 
 
 @pytest.mark.soak
-def test_ten_thousand_mutated_messages_of_views_harm_nobody_else(tmp_path, capsys):
+def test_ten_thousand_mutated_view_messages_affect_no_other_view(tmp_path, capsys):
     check_punctual(attack(tmp_path / "records", 3_000, 10_000, capsys))

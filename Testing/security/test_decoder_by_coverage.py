@@ -12,7 +12,7 @@ DONE = re.compile(r"Done (\d+)")
 
 
 @pytest.mark.soak
-def test_no_bytes_that_a_search_by_coverage_finds_break_the_decoder(tmp_path, capsys):
+def test_a_coverage_guided_search_finds_no_bytes_that_break_the_decoder(tmp_path, capsys):
     assert importlib.util.find_spec("atheris"), (
         "Install what `make soak` needs: atheris is missing. It has wheels for Linux and macOS, "
         "Python 3.11 and newer."

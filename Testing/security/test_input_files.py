@@ -116,14 +116,14 @@ def refused(family: Family, path: Path) -> str:
 
 
 @pytest.mark.parametrize("family", JSON_FAMILIES.values(), ids=JSON_FAMILIES.keys())
-def test_json_that_is_made_to_do_harm_is_refused_by_every_loader(tmp_path, family):
+def test_malicious_json_is_refused_by_every_loader(tmp_path, family):
     for content in HOSTILE_JSON.values():
         (tmp_path / "file.json").write_bytes(content)
         assert "file" in refused(family, tmp_path / "file.json") or "scenario" in str(family)
 
 
 @pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES.keys())
-def test_what_is_no_plain_file_or_too_large_is_refused_unread_by_every_loader(tmp_path, family):
+def test_special_and_oversized_files_are_refused_unread_by_every_loader(tmp_path, family):
     path = tmp_path / family.name
     with path.open("wb") as file:
         file.truncate(20 * 2**30)
@@ -157,7 +157,7 @@ def test_a_damaged_file_is_read_or_refused_and_breaks_nothing(tmp_path, family):
     assert "refused" in outcomes
 
 
-def test_xml_that_is_made_to_do_harm_is_refused(tmp_path):
+def test_malicious_xml_is_refused(tmp_path):
     for name, content in HOSTILE_XML.items():
         path = tmp_path / "robot.urdf"
         path.write_bytes(content)
@@ -187,21 +187,21 @@ COLLADA = (
         (COLLADA % (b"utf-7", b"", b""), "cannot be read as a DAE mesh"),
     ],
 )
-def test_a_collada_mesh_is_xml_that_is_checked_too(tmp_path, content, words):
+def test_a_collada_mesh_is_checked_as_xml_too(tmp_path, content, words):
     (tmp_path / "link_2.dae").write_bytes(content)
     with pytest.raises(InputError, match=words):
         load_meshes(load_robot(mesh_folder=tmp_path))
 
 
 @pytest.mark.parametrize("content", HOSTILE_GLB.values(), ids=HOSTILE_GLB.keys())
-def test_a_mesh_that_claims_more_than_it_holds_is_refused_before_it_unfolds(tmp_path, content):
+def test_a_mesh_that_claims_more_than_it_holds_is_refused_before_it_is_expanded(tmp_path, content):
     (tmp_path / "link_2.glb").write_bytes(content)
     with pytest.raises(InputError, match=r"unfolds into|not a GLB"):
         load_meshes(load_robot(mesh_folder=tmp_path))
 
 
 @pytest.mark.parametrize("name", ["../secret.stl", "/etc/passwd", "meshes/../../secret.stl"])
-def test_no_mesh_path_of_a_urdf_climbs_out_of_its_folder(tmp_path, name):
+def test_no_mesh_path_in_a_urdf_escapes_its_folder(tmp_path, name):
     folder = tmp_path / "robot"
     folder.mkdir()
     shutil.copyfile(MESH, tmp_path / "secret.stl")
@@ -212,7 +212,7 @@ def test_no_mesh_path_of_a_urdf_climbs_out_of_its_folder(tmp_path, name):
         load_robot(folder / "robot.urdf")
 
 
-def test_no_link_of_a_urdf_s_folder_and_no_link_s_name_leads_out(tmp_path):
+def test_no_symlink_in_a_urdfs_folder_and_no_link_name_leads_outside(tmp_path):
     folder = tmp_path / "robot"
     (folder / "meshes").mkdir(parents=True)
     secret = tmp_path / "secret.stl"
@@ -249,7 +249,7 @@ def test_a_damaged_mesh_is_read_or_refused_and_breaks_nothing(tmp_path, kind):
         assert all(np.isfinite(mesh.vertices).all() for mesh, _ in meshes["iiwa_link_7"])
 
 
-def test_what_is_written_beside_a_robot_is_believed_only_if_it_is_ours(tmp_path):
+def test_a_prepared_file_beside_a_robot_is_trusted_only_if_it_is_ours(tmp_path):
     folder = tmp_path / "robot"
     shutil.copytree(ROBOT, folder)
     urdf, prepared = folder / "iiwa7.urdf", folder / "prepared.json"
@@ -266,7 +266,7 @@ def test_what_is_written_beside_a_robot_is_believed_only_if_it_is_ours(tmp_path)
     "value",
     [float("nan"), float("inf"), 1e300, -1e300, 10**30, True, None, "fast", [1.0], {"a": 1}],
 )
-def test_a_setting_of_a_journal_is_a_reasonable_number_or_refused(value):
+def test_a_setting_in_a_journal_is_a_reasonable_number_or_refused(value):
     good = settings_to_json(SimulationSettings())
     assert settings_from_json(SimulationSettings, json.loads(json.dumps(good)))
     for group, name in [
@@ -280,7 +280,7 @@ def test_a_setting_of_a_journal_is_a_reasonable_number_or_refused(value):
         settings_from_json(SimulationSettings, {"__class__": "os.system"})
 
 
-def test_a_scenario_s_files_stay_in_its_folder(tmp_path):
+def test_a_scenarios_files_stay_in_its_folder(tmp_path):
     folder = tmp_path / "scenario"
     shutil.copytree(SCENARIO, folder)
     shutil.copyfile(SCENARIO / "head.ply", tmp_path / "head.ply")
@@ -321,7 +321,7 @@ def test_a_damaged_volume_is_read_or_refused_and_breaks_nothing(tmp_path):
     assert outcomes == {"read", "refused"}
 
 
-def test_a_package_of_a_scenario_leads_nowhere_else_and_is_no_bomb(tmp_path):
+def test_a_scenario_package_writes_nowhere_else_and_cannot_be_a_zip_bomb(tmp_path):
     package, library = tmp_path / "package.zip", tmp_path / "library"
     for name in ("../../evil.txt", "/evil.txt", "a\\..\\evil.txt", "con", "a/../evil.txt"):
         with zipfile.ZipFile(package, "w") as archive:
@@ -336,7 +336,7 @@ def test_a_package_of_a_scenario_leads_nowhere_else_and_is_no_bomb(tmp_path):
     assert not list(tmp_path.rglob("evil*"))
 
 
-def test_a_study_that_carries_commands_of_its_own_runs_none(tmp_path):
+def test_a_study_with_embedded_sql_commands_is_refused(tmp_path):
     path = tmp_path / "study.db"
     Study.open(path).close()
     with sqlite3.connect(path) as database:

@@ -14,7 +14,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.content import Command, CommandReply, Point, Points, Status, String, Transform
 from rastrainer.igtl.message import Message, pack
 from rastrainer_simulator.net.igtl.connection import Outgoing, OutgoingQueue
-from Testing.security.wire_police import SENT_TYPES, OffenseError, WirePolice
+from Testing.security.wire_checker import SENT_TYPES, OffenseError, WireChecker
 
 SIMULATOR = Path(__file__).parents[2] / "RASTrainerSimulatorServer/rastrainer_simulator"
 LINK = SIMULATOR / "net" / "igtl"
@@ -54,9 +54,9 @@ def content_of(kind, arguments):
     some.sampled_from([1, 2, 2, 2, 0, 3]),
     some.none() | NUMBERS,
 )
-def test_what_the_gate_lets_pass_never_harms_slicer(made, device, metadata, version, timestamp):
+def test_what_the_gate_lets_through_never_harms_slicer(made, device, metadata, version, timestamp):
     kind, arguments = made
-    police = WirePolice()
+    police = WireChecker()
     try:
         content = content_of(kind, arguments)
         message = Message(device, content, metadata, 1, timestamp, version)
@@ -109,14 +109,14 @@ def test_a_foreign_type_cannot_be_sent(content):
         ),
     ],
 )
-def test_the_police_of_these_tests_knows_what_harms(harm, data, monkeypatch):
+def test_the_wire_check_of_these_tests_detects_what_would_harm_slicer(harm, data, monkeypatch):
     if harm == "would not clear":
-        monkeypatch.setattr("Testing.security.wire_police._crc64", lambda _body: 0)
+        monkeypatch.setattr("Testing.security.wire_checker._crc64", lambda _body: 0)
     with pytest.raises(OffenseError, match=harm):
-        WirePolice().feed(data)
+        WireChecker().feed(data)
 
 
-def test_every_type_that_the_gate_knows_is_one_that_slicer_takes():
+def test_every_message_type_the_gate_allows_is_one_that_slicer_accepts():
     from rastrainer.igtl.message import CONTENTS
 
     assert {kind.encode() for kind in CONTENTS} == SENT_TYPES
@@ -129,8 +129,13 @@ def calls_in(path):
             yield getattr(node.func, "attr", getattr(node.func, "id", "")), node
 
 
-def test_bytes_reach_a_client_in_one_place_and_only_from_the_gate():
+def test_bytes_reach_a_client_in_one_place_and_only_through_the_gate():
     writes, queued, packs = [], [], []
+    gate = next(
+        node
+        for node in ast.walk(ast.parse((LINK / "connection.py").read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef) and node.name == Outgoing.__name__
+    )
     for path in sorted(LINK.glob("*.py")):
         for name, call in calls_in(path):
             if name in ("write", "writelines", "sendall", "sendto", "sock_sendall"):
@@ -139,13 +144,14 @@ def test_bytes_reach_a_client_in_one_place_and_only_from_the_gate():
                 queued.append((path.name, ast.unparse(call.args[-1])))
             # A content by itself is packed to be compared, and goes nowhere.
             if name == "pack" and ast.unparse(call) != "message.content.pack()":
-                packs.append(path.name)
+                packs.append((path.name, call.lineno))
     assert writes == [("connection.py", "self._queue.take(self._limits.buffer_bytes)")]
     assert set(queued) == {("connection.py", "data")}
-    assert set(packs) == {"outgoing.py"}
+    assert {name for name, _line in packs} == {"connection.py"}
+    assert all(gate.lineno < line <= gate.end_lineno for _name, line in packs)
 
 
-def test_no_other_part_of_the_simulator_packs_messages_or_sends_over_sockets_of_its_own():
+def test_no_other_part_of_the_simulator_packs_messages_or_writes_to_sockets():
     packing, sending = set(), set()
     for path in SIMULATOR.rglob("*.py"):
         place = path.relative_to(SIMULATOR).as_posix()
@@ -157,8 +163,8 @@ def test_no_other_part_of_the_simulator_packs_messages_or_sends_over_sockets_of_
     assert sending == {("net/igtl/server.py", "create_connection")}
 
 
-def test_the_queue_gives_whole_messages_only():
-    queue, police = OutgoingQueue(100, 10**6), WirePolice()
+def test_the_queue_returns_only_whole_messages():
+    queue, police = OutgoingQueue(100, 10**6), WireChecker()
     for number in range(50):
         data = Outgoing(Message("Text", String("x" * 100 * number), {"n": "1"})).packed(2)
         queue.put(data) if number % 2 else queue.put_latest(("STRING", str(number)), data)

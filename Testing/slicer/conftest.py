@@ -64,7 +64,7 @@ class Clock:
         """Stand still: however late a busy machine is, no patience ends."""
         self._stands_at = time.monotonic()
 
-    def goes_on(self):
+    def skip_ahead(self):
         """Let half a second pass; for conditions that are looked at again and again."""
         self.ahead += 0.5
         return True

@@ -74,7 +74,7 @@ def says(data: bytes) -> Behavior:
     return behave
 
 
-def says_in_answer(data: bytes) -> Behavior:
+def replies_with(data: bytes) -> Behavior:
     """Answer every peer that has sent something."""
 
     def behave(peer: socket.socket) -> None:

@@ -62,7 +62,7 @@ def lab(scene, tmp_path):
     lab.close()
 
 
-def test_it_is_in_the_study_before_it_is_acknowledged(lab):
+def test_it_is_stored_in_the_study_before_it_is_acknowledged(lab):
     lab.offer(make_aborted())
     lab.run_until(lambda: lab.acknowledged() == [TRIAL])
     with Study.open(lab.path) as study:
@@ -70,7 +70,7 @@ def test_it_is_in_the_study_before_it_is_acknowledged(lab):
     assert stored.record == lab.kept[0]
 
 
-def test_twice_is_once(lab):
+def test_delivering_twice_stores_once(lab):
     for count in range(1, 4):
         lab.offer(make_aborted())
         lab.run_until(lambda count=count: len(lab.acknowledged()) == count)
@@ -78,7 +78,7 @@ def test_twice_is_once(lab):
         assert len(AbortedTrials(study).of("T-001")) == 1
 
 
-def test_what_cannot_be_kept_is_reported_once_and_not_acknowledged(lab):
+def test_an_unstorable_aborted_trial_is_reported_once_and_not_acknowledged(lab):
     lab.is_study_broken = True
     for _ in range(3):
         lab.link.trialAborted.emit(make_aborted())
@@ -90,7 +90,7 @@ def test_what_cannot_be_kept_is_reported_once_and_not_acknowledged(lab):
     assert lab.acknowledged() == [TRIAL]
 
 
-def test_all_are_in_the_study_before_what_arrives_after_them(lab):
+def test_all_are_stored_before_anything_that_arrives_after_them(lab):
     """A repeat that was stored earlier would count without a reason."""
     for number in (1, 2, 3):
         lab.link.trialAborted.emit(make_aborted(number))
@@ -114,7 +114,7 @@ def test_all_are_in_the_study_before_what_arrives_after_them(lab):
         pytest.param(make_aborted(trainee=" "), id="trainee"),
     ],
 )
-def test_a_hostile_record_is_reported_and_what_comes_after_it_is_kept(lab, hostile):
+def test_a_hostile_record_is_reported_and_later_ones_are_stored(lab, hostile):
     lab.offer(hostile)
     lab.run_until(lambda: lab.problems)
     lab.offer(make_aborted())
@@ -122,7 +122,7 @@ def test_a_hostile_record_is_reported_and_what_comes_after_it_is_kept(lab, hosti
     assert len(lab.problems) == 1
 
 
-def test_that_of_a_deleted_trainee_is_acknowledged_and_not_kept(lab):
+def test_one_of_a_deleted_trainee_is_acknowledged_and_not_stored(lab):
     lab.offer(make_aborted())
     lab.run_until(lambda: lab.acknowledged() == [TRIAL])
     with Study.open(lab.path) as study:

@@ -25,7 +25,7 @@ def arrivals(scene, told):
     return Arrivals(scene, ErrorGuard(), Signal(), Signal(), {"Known": known})
 
 
-def test_commands_are_handed_over_a_few_a_turn_in_their_order(arrivals, told):
+def test_commands_are_handed_over_a_few_per_turn_in_order(arrivals, told):
     for number in range(3 * COMMANDS_A_TURN):
         arrivals.keepCommand("Known", json.dumps({"number": number}))
     for turn in range(1, 4):
@@ -34,7 +34,7 @@ def test_commands_are_handed_over_a_few_a_turn_in_their_order(arrivals, told):
     assert [each["number"] for each in told] == list(range(3 * COMMANDS_A_TURN))
 
 
-def test_long_commands_are_handed_over_fewer_a_turn(arrivals, told):
+def test_fewer_long_commands_are_handed_over_per_turn(arrivals, told):
     for _ in range(4):
         arrivals.keepCommand("Known", json.dumps({"text": CHARACTERS_A_TURN * "x"}))
     for turn in range(1, 5):
@@ -42,7 +42,7 @@ def test_long_commands_are_handed_over_fewer_a_turn(arrivals, told):
         assert len(told) == turn
 
 
-def test_of_a_flood_no_more_is_kept_than_can_wait(arrivals, told):
+def test_a_flood_keeps_no_more_than_the_queue_can_hold(arrivals, told):
     for number in range(10 * MAX_KEPT):
         arrivals.keepCommand("Known", json.dumps({"number": number}))
     for _ in range(10 * MAX_KEPT):

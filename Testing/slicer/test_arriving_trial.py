@@ -63,7 +63,7 @@ def journals(connected):  # noqa: ARG001 (Slicer runs)
     opened.close()
 
 
-def test_a_trial_is_kept_scored_and_judged_while_the_window_answers(
+def test_a_trial_is_stored_scored_and_assessed_while_the_window_stays_responsive(
     connected, simulator, record, journals
 ):
     host = connected
@@ -86,9 +86,7 @@ def test_a_trial_is_kept_scored_and_judged_while_the_window_answers(
     host.wait_until(lambda: not host.widget._workTimer.active, "the work is done")
 
 
-def test_a_trial_that_is_not_scored_has_feedback_all_the_same(
-    connected, simulator, record, journals
-):
+def test_a_trial_that_is_not_scored_still_gets_feedback(connected, simulator, record, journals):
     simulator.responder = lambda name, _arguments: (
         "Another registration was submitted." if name == "SubmitRegistration" else {}
     )

@@ -24,11 +24,11 @@ def work():
 
 def run(work):
     while work.isBusy:
-        work.giveTime()
+        work.yieldTime()
         work.process()
 
 
-def test_results_come_on_the_main_thread_in_the_order_of_the_work(work):
+def test_results_arrive_on_the_main_thread_in_the_order_of_the_work(work):
     seen, begun = [], []
     work.began.connect(lambda: begun.append(True))
     for number in range(3):
@@ -43,7 +43,7 @@ def test_results_come_on_the_main_thread_in_the_order_of_the_work(work):
     assert begun == [True]
 
 
-def test_an_error_of_the_work_is_reported_and_the_next_work_runs(work):
+def test_an_error_in_the_work_is_reported_and_the_next_work_runs(work):
     told = []
 
     def refuse():
@@ -55,7 +55,7 @@ def test_an_error_of_the_work_is_reported_and_the_next_work_runs(work):
     assert told == ["The disk is full.", "done"]
 
 
-def test_a_mistake_of_ours_is_raised_and_the_next_is_done(work):
+def test_a_programming_error_is_raised_and_the_next_work_is_done(work):
     told = []
     work.do(lambda: 1 // 0, told.append, lambda error: told.append(type(error)))
     work.do(lambda: "done", told.append)
@@ -65,7 +65,7 @@ def test_a_mistake_of_ours_is_raised_and_the_next_is_done(work):
     assert told == [ZeroDivisionError, "done"]
 
 
-def test_what_takes_a_result_may_have_more_done(work):
+def test_a_result_handler_may_queue_more_work(work):
     told = []
     work.do(lambda: "first", lambda _result: work.do(lambda: "third", told.append))
     work.do(lambda: "second", told.append)
@@ -91,7 +91,7 @@ def test_closing_hands_over_what_ends_soon_and_begins_nothing_more(work, monkeyp
     assert not work.isBusy
 
 
-def test_closing_does_not_wait_for_ever(work):
+def test_closing_does_not_wait_forever(work):
     may_end, told = threading.Event(), []
     work.do(may_end.wait, told.append)
     work.close()
@@ -100,23 +100,23 @@ def test_closing_does_not_wait_for_ever(work):
     assert told == []
 
 
-def test_the_main_thread_waits_for_a_worker_only_for_moments(monkeypatch):
+def test_the_main_thread_waits_only_briefly_for_a_worker(monkeypatch):
     waited, may_end = [], threading.Event()
     job = Job(may_end.wait)
     join = job._thread.join
     monkeypatch.setattr(job._thread, "join", lambda time: (waited.append(time), join(time)))
     for _ in range(3):
-        job.giveTime()
+        job.yieldTime()
     may_end.set()
     assert waited == [TIME_S] * 3
     assert TIME_S <= 0.05
     while not job.isDone:
-        job.giveTime()
+        job.yieldTime()
     assert job.result()
 
 
 @pytest.mark.usefixtures("host")
-def test_work_gets_done_though_slicer_keeps_pythons_lock_while_it_waits_for_events():
+def test_work_gets_done_although_slicer_keeps_pythons_lock_while_waiting_for_events():
     has_turned = threading.Event()
 
     def count():
@@ -130,25 +130,25 @@ def test_work_gets_done_though_slicer_keeps_pythons_lock_while_it_waits_for_even
     assert inBackground(lambda _tell: (has_turned.wait(60), count()), turn) == (True, count())
 
 
-def test_no_garbage_is_collected_in_a_workers_thread(work):
+def test_no_garbage_is_collected_in_a_worker_thread(work):
     was_enabled, seen = gc.isenabled(), []
     gc.enable()
     may_end = [threading.Event(), threading.Event()]
     jobs = [Job(lambda each=each: (seen.append(gc.isenabled()), each.wait())) for each in may_end]
     while len(seen) < 2:
-        work.giveTime()
+        work.yieldTime()
     for job, each in zip(jobs, may_end, strict=True):
         assert not gc.isenabled()
         each.set()
         while not job.isDone:
-            job.giveTime()
+            job.yieldTime()
     assert seen == [False, False]
     assert gc.isenabled()
     if not was_enabled:
         gc.disable()
 
 
-def test_work_whose_user_has_canceled_is_broken_off():
+def test_work_canceled_by_its_user_is_aborted():
     ended = threading.Event()
 
     def work(tell):
@@ -177,17 +177,17 @@ def _usual_switches():
 
 
 @pytest.mark.usefixtures("_usual_switches")
-def test_a_worker_gives_the_lock_back_soon_and_afterwards_all_is_as_before():
+def test_a_worker_soon_releases_the_lock_and_afterwards_everything_is_restored():
     may_end = threading.Event()
     job = Job(may_end.wait)
     assert sys.getswitchinterval() < USUAL_SWITCH_INTERVAL_S / 10
     may_end.set()
     while not job.isDone:
-        job.giveTime()
+        job.yieldTime()
     assert sys.getswitchinterval() == USUAL_SWITCH_INTERVAL_S
 
 
-def test_work_begins_only_after_what_was_put_off():
+def test_work_begins_only_after_deferred_calls():
     seen = []
     work = BackgroundWork()
     work.later(lambda: seen.append("later"))
@@ -195,16 +195,16 @@ def test_work_begins_only_after_what_was_put_off():
     assert work._underWay is None
     while work.isBusy:
         work.process()
-        work.giveTime()
+        work.yieldTime()
     assert seen == ["later", "work", "taken"]
 
 
-def test_what_waits_behind_work_that_is_handed_over_is_still_busy():
+def test_queued_work_keeps_it_busy_while_a_result_is_handed_over():
     busy = []
     work = BackgroundWork()
     work.do(lambda: None, lambda _none: busy.append(work.isBusy))
     work.do(lambda: None, lambda _none: busy.append(work.isBusy))
     while work.isBusy:
-        work.giveTime()
+        work.yieldTime()
         work.process()
     assert busy == [True, False]

@@ -27,16 +27,16 @@ def views():
     return manager.layout, manager.tableViewCount, manager.plotViewCount
 
 
-def test_the_score_is_seen_as_a_table_until_the_button_is_pressed_again(looking):
+def test_the_score_is_shown_as_a_table_until_the_button_is_pressed_again(looking):
     looking.press("showTablesButton")
     assert looking.shown_tables() == ["Score"]
-    looking.let_pass(0.3)
+    looking.idle_for(0.3)
     assert looking.find("showTablesButton").checked
     looking.press("showTablesButton")
     assert views() == (OWN, 0, 0)
 
 
-def test_the_learning_curve_is_seen_until_the_button_is_pressed_again(looking):
+def test_the_learning_curve_is_shown_until_the_button_is_pressed_again(looking):
     looking.press("learningCurveButton")
     plot = slicer.app.layoutManager().plotWidget(0).mrmlPlotViewNode()
     assert plot.GetPlotChartNode().GetTitle() == "Learning curve of T001"
@@ -44,7 +44,7 @@ def test_the_learning_curve_is_seen_until_the_button_is_pressed_again(looking):
     assert views() == (OWN, 0, 0)
 
 
-def test_of_both_the_last_is_seen_and_after_them_the_users_layout(looking):
+def test_the_last_of_the_two_is_shown_and_after_them_the_users_layout(looking):
     looking.press("learningCurveButton")
     looking.press("showTablesButton")
     looking.wait_until(
@@ -56,7 +56,7 @@ def test_of_both_the_last_is_seen_and_after_them_the_users_layout(looking):
 
 
 @pytest.mark.parametrize("how", ["folded", "left", "closed"])
-def test_a_section_that_is_left_gives_the_users_layout_back(looking, how):
+def test_leaving_a_section_restores_the_users_layout(looking, how):
     looking.press("showTablesButton")
     assert views()[0] != OWN
     if how == "folded":
@@ -69,7 +69,7 @@ def test_a_section_that_is_left_gives_the_users_layout_back(looking, how):
     assert views() == (OWN, 0, 0)
 
 
-def test_a_layout_that_the_user_has_chosen_meanwhile_stays(looking):
+def test_a_layout_chosen_by_the_user_meanwhile_stays(looking):
     looking.press("showTablesButton")
     other = slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalView
     slicer.app.layoutManager().setLayout(other)
@@ -79,7 +79,7 @@ def test_a_layout_that_the_user_has_chosen_meanwhile_stays(looking):
     looking.enter()
 
 
-def test_the_users_layout_comes_back_when_the_tables_go_with_their_scene(looking):
+def test_the_users_layout_comes_back_when_the_tables_disappear_with_their_scene(looking):
     looking.press("showTablesButton")
     looking.clear_scene()
     looking.wait_until(lambda: not looking.find("showTablesButton").checked, "the button follows")

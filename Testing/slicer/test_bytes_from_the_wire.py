@@ -39,7 +39,7 @@ def with_latin_1(message, placeholder=b"Geh?use"):
 POINTS = Points((Point("Geh?use", (1.0, 2.0, 3.0)), Point("2", (4.0, 5.0, 6.0))))
 
 
-def test_a_state_that_is_not_utf_8_is_refused_with_a_sentence_and_the_next_one_is_read(
+def test_a_state_that_is_not_utf_8_is_refused_with_a_message_and_the_next_one_is_read(
     link, simulator, caplog
 ):
     states = []
@@ -94,7 +94,7 @@ def test_a_command_that_is_not_utf_8_is_logged_and_the_next_one_is_read(
         ("FAIL", "{}", "No Geh\ufffduse."),
     ],
 )
-def test_an_answer_that_is_not_utf_8_is_a_reply_with_a_sentence(
+def test_an_answer_that_is_not_utf_8_becomes_a_reply_with_an_error_message(
     link, simulator, monkeypatch, status, body, error
 ):
     def answer(_peer, command):
@@ -109,7 +109,7 @@ def test_an_answer_that_is_not_utf_8_is_a_reply_with_a_sentence(
     assert (replies[0].ok, replies[0].error) == (False, error)
 
 
-def test_a_listener_that_fails_keeps_no_other_from_its_turn(link, simulator, contained_failures):
+def test_a_failing_listener_does_not_stop_the_others(link, simulator, contained_failures):
     def fail(_value):
         raise KeyError("a listener's mistake")
 
@@ -127,7 +127,7 @@ def test_a_listener_that_fails_keeps_no_other_from_its_turn(link, simulator, con
     contained_failures.clear()
 
 
-def test_a_reply_that_fails_keeps_no_other_from_its_turn(link, contained_failures):
+def test_a_failing_reply_does_not_stop_the_others(link, contained_failures):
     replies = []
     link.send("ListTasks", onReply=lambda _reply: 1 / 0)
     link.send("ListTasks", onReply=replies.append)
@@ -135,7 +135,7 @@ def test_a_reply_that_fails_keeps_no_other_from_its_turn(link, contained_failure
     assert "ZeroDivisionError" in contained_failures.pop()
 
 
-def test_the_same_failure_is_logged_once_and_another_one_too(contained_failures):
+def test_the_same_failure_is_logged_once_and_a_different_one_too(contained_failures):
     contained, heard, signal = ErrorGuard(), [], Signal()
     for sentence in ("one", "one", "another", "one"):
         contained.run("The work", fail_with, sentence)
@@ -155,7 +155,7 @@ def fail_with(sentence):
     raise ValueError(sentence)
 
 
-def test_texts_of_a_peer_are_decoded_at_the_edge():
+def test_text_from_a_peer_is_decoded_at_the_edge():
     assert (decodedText("ä"), decodedText(None)) == ("ä", "")
     assert (shownText("ä"), shownText(None), shownText(LATIN_1)) == ("ä", "", "Geh\ufffduse")
     with pytest.raises(InputError, match="UTF-8"):
@@ -171,7 +171,7 @@ def test_texts_of_a_peer_are_decoded_at_the_edge():
         Message("SimState", String("x"), {"Geh?use": "Geh?use"}),
     ],
 )
-def test_bytes_can_be_kept_where_texts_are_unpacked(message):
+def test_bytes_can_be_kept_where_text_is_unpacked(message):
     data = with_latin_1(message)
     kept = unpack(read_header(data), data[HEADER_BYTES:], keep_bytes=True)
     assert LATIN_1 in [text.encode("utf-8", "surrogateescape") for text in texts_of(kept)]

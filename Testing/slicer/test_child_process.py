@@ -11,7 +11,7 @@ import pytest
 
 import rastrainer
 import rastrainer_simulator as simulator
-from rastrainer.python_environment import private_words
+from rastrainer.python_environment import private_command
 from rastrainer.slicer.program import child_process
 from rastrainer.slicer.program.child_process import ChildProcess, runChild
 from rastrainer.slicer.program.simulator_program import ProgramState, SimulatorProgram
@@ -91,7 +91,7 @@ def begun(python, folder):
     return child
 
 
-def test_the_launcher_alone_would_leave_the_real_python_alive(python, tmp_path):
+def test_killing_only_the_launcher_would_leave_the_real_python_alive(python, tmp_path):
     child = begun(python, tmp_path)
     os.kill(child._process.pid, signal.SIGTERM)
     wait_until(lambda: child.exitStatus is not None, lambda: None, LONG_S)
@@ -100,7 +100,7 @@ def test_the_launcher_alone_would_leave_the_real_python_alive(python, tmp_path):
     ends(tmp_path / "pid")
 
 
-def test_slicers_python_has_no_package_of_the_simulator_but_on_a_private_folder(python, tmp_path):
+def test_slicers_python_has_no_simulator_package_except_in_the_private_folder(python, tmp_path):
     code = "import {}\nprint('it has it')"
     for name in ("rastrainer_simulator", "rastrainer_headless"):
         refused = runChild([python, "-c", code.format(name)], lambda *_step: None)
@@ -110,11 +110,11 @@ def test_slicers_python_has_no_package_of_the_simulator_but_on_a_private_folder(
     sources = [str(Path(package.__file__).parents[1]) for package in (rastrainer, simulator)]
     (tmp_path / "sources.pth").write_text("".join(f"{source}\n" for source in sources))
     (tmp_path / "it.py").write_text(code.format("rastrainer_simulator"))
-    allowed = runChild(private_words(python, tmp_path, "it"), lambda *_step: None)
+    allowed = runChild(private_command(python, tmp_path, "it"), lambda *_step: None)
     assert allowed.lastLine == "it has it"
 
 
-def test_a_program_asked_to_end_ends_with_the_real_python_and_writes_no_more(python, tmp_path):
+def test_a_program_asked_to_end_ends_with_the_real_python_and_writes_nothing_more(python, tmp_path):
     child = begun(python, tmp_path)
     child.end()
     wait_until(child.poll, lambda: None, LONG_S)
@@ -124,7 +124,7 @@ def test_a_program_asked_to_end_ends_with_the_real_python_and_writes_no_more(pyt
     assert (tmp_path / "written").stat().st_mtime_ns == written
 
 
-def test_work_that_is_broken_off_ends_with_the_real_python(python, tmp_path):
+def test_canceled_work_ends_with_the_real_python(python, tmp_path):
     def cancel(step, _share):
         if step == "Writing":
             raise CanceledError
@@ -134,7 +134,7 @@ def test_work_that_is_broken_off_ends_with_the_real_python(python, tmp_path):
     wait_until(lambda: not runs(number(tmp_path / "pid")), lambda: None, LONG_S)
 
 
-def test_work_is_run_to_its_end_with_its_steps_its_warnings_and_its_last_line(python):
+def test_work_runs_to_completion_with_its_steps_its_warnings_and_its_last_line(python):
     lines = [" 50%  Sawing", "Warning: It is loud.", "done", ""]
     steps = []
     code = f"print(*{lines!r}, sep=chr(10)); raise SystemExit(3)"
@@ -144,7 +144,7 @@ def test_work_is_run_to_its_end_with_its_steps_its_warnings_and_its_last_line(py
     assert set(steps) <= {("Beginning", 0.0), ("Sawing", 0.5)}
 
 
-def test_the_name_of_the_kinematics_is_shown(program):
+def test_the_kinematics_backend_is_shown(program):
     wait_until(lambda: program.kinematics, program.process, LONG_S)
     assert program.state is ProgramState.READY
     assert program.sentence == (
@@ -160,7 +160,7 @@ def test_stop_ends_the_simulator_and_its_window_and_says_so(program, tmp_path):
     ends(tmp_path / "window")
 
 
-def test_stop_does_not_wait_for_a_simulator_that_does_not_end_and_kills_it_later(
+def test_stop_does_not_wait_for_a_simulator_that_hangs_and_kills_it_later(
     python, tmp_path, monkeypatch
 ):
     monkeypatch.setattr(child_process, "KILL_AFTER_S", 0.2)
@@ -174,7 +174,7 @@ def test_stop_does_not_wait_for_a_simulator_that_does_not_end_and_kills_it_later
     ends(tmp_path / "pid")
 
 
-def test_a_killed_simulator_is_noticed_though_its_window_is_open_and_takes_it_along(
+def test_a_killed_simulator_is_noticed_although_its_window_is_open_and_takes_it_along(
     program, tmp_path
 ):
     kill(number(tmp_path / "pid"))
@@ -183,7 +183,7 @@ def test_a_killed_simulator_is_noticed_though_its_window_is_open_and_takes_it_al
     ends(tmp_path / "window")
 
 
-def test_a_simulator_is_started_again_once_the_former_has_ended(program, python, tmp_path):
+def test_a_simulator_is_started_again_once_the_previous_one_has_ended(program, python, tmp_path):
     former = number(tmp_path / "pid")
     program.stop()
     program.start([str(python), "-c", SIMULATOR, str(tmp_path)])
@@ -193,7 +193,7 @@ def test_a_simulator_is_started_again_once_the_former_has_ended(program, python,
     assert number(tmp_path / "pid") != former
 
 
-def test_slicer_that_quits_leaves_no_simulator_not_even_one_that_does_not_end(python, tmp_path):
+def test_quitting_slicer_leaves_no_simulator_behind_even_if_it_hangs(python, tmp_path):
     program = SimulatorProgram()
     program.start([str(python), "-c", SIMULATOR, str(tmp_path), "stubborn"])
     wait_until(lambda: program.state is ProgramState.READY, program.process, LONG_S)

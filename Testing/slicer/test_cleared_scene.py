@@ -36,7 +36,7 @@ def add_list(scene, name, points):
     return node
 
 
-def test_a_list_that_was_chosen_is_not_mistaken_for_the_next_one_of_its_id(host, session):
+def test_a_chosen_list_is_not_mistaken_for_the_next_one_with_its_id(host, session):
     logic, fixed = session.registration, np.random.default_rng(1).normal(0, 50, (15, 3))
     own = [add_list(host.scene, name, fixed) for name in ("mine", "also mine")]
     logic.chooseLists(*own)
@@ -48,7 +48,7 @@ def test_a_list_that_was_chosen_is_not_mistaken_for_the_next_one_of_its_id(host,
     assert (logic.shown, bool(logic.problem)) == (None, True)
 
 
-def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_former_registration(
+def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_old_registration(
     host, session
 ):
     colin = load_scenario(asset_path("scenarios", "colin27"))
@@ -62,7 +62,7 @@ def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_former_reg
         session.plan.read(target)
 
 
-def test_a_replay_in_the_next_scene_does_not_stop_where_the_former_was_to(
+def test_a_replay_in_the_next_scene_does_not_stop_where_the_previous_one_was_to(
     host, session, make_record, tmp_path
 ):
     record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
@@ -80,7 +80,7 @@ def test_a_replay_in_the_next_scene_does_not_stop_where_the_former_was_to(
     assert browser.GetPlaybackActive()
 
 
-def test_a_long_replay_in_a_closed_scene_is_let_go_little_by_little(host, session, tmp_path):
+def test_a_long_replay_in_a_closed_scene_is_released_gradually(host, session, tmp_path):
     trial_id = str(uuid.UUID(int=1))
     write_recorded_trial(tmp_path, trial_id, 60.0)
     showReplay(host.scene, "T", find_track(tmp_path, trial_id), readArmChain(URDF), np.eye(4))
@@ -97,7 +97,7 @@ def test_a_long_replay_in_a_closed_scene_is_let_go_little_by_little(host, sessio
     assert tool.GetNumberOfDataNodes() == 0
 
 
-def test_a_head_found_in_a_volume_of_a_closed_scene_is_not_taken_for_that_of_the_next(
+def test_a_head_found_in_a_closed_scenes_volume_is_not_used_for_the_next_scenes(
     host, session, monkeypatch
 ):
     volume = host.scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "former")

@@ -55,7 +55,7 @@ def states(told):
     return [each["state"] for each in told["assignments"]]
 
 
-def test_everybody_is_told_of_and_then_who_has_something_new(lesson):
+def test_everybodys_progress_is_sent_first_and_then_only_what_is_new(lesson):
     lesson.logic.choose(SHIPPED, isForEverybody=True)
     told = lesson.told
     assert [each["trainee"] for each in told] == ["A", "B"]
@@ -73,7 +73,7 @@ def test_everybody_is_told_of_and_then_who_has_something_new(lesson):
     assert told[2]["next"] == "second-points"
 
 
-def test_a_curriculum_of_one_trainee_ends_for_this_one_alone(lesson):
+def test_a_curriculum_of_one_trainee_ends_for_that_trainee_alone(lesson):
     with pytest.raises(InputError, match="must be left out; a curriculum has"):
         lesson.logic.choose(SHIPPED.with_name("published-protocol.json"), isForEverybody=True)
     lesson.trainees.choose("")
@@ -90,14 +90,14 @@ def test_a_curriculum_of_one_trainee_ends_for_this_one_alone(lesson):
     assert lesson.logic.standing() is None
 
 
-def test_a_simulator_that_connects_later_is_told_everything_again(lesson):
+def test_a_simulator_that_connects_later_is_sent_everything_again(lesson):
     lesson.logic.choose(SHIPPED, isForEverybody=True)
     before = lesson.told
     lesson.room.link.opened.emit()
     assert json.dumps(lesson.told) == json.dumps(2 * before)
 
 
-def test_who_is_deleted_or_archived_is_told_of_as_without_a_curriculum(lesson):
+def test_a_deleted_or_archived_trainee_is_sent_as_one_without_a_curriculum(lesson):
     lesson.logic.choose(SHIPPED, isForEverybody=True)
     lesson.trainees.choose("A")
     lesson.trainees.setArchived(True)
@@ -105,7 +105,7 @@ def test_who_is_deleted_or_archived_is_told_of_as_without_a_curriculum(lesson):
     assert (last["trainee"], "assignments" in last) == ("A", False)
 
 
-def test_who_was_deleted_at_another_seat_is_gone_once_a_simulator_connects(lesson, tmp_path):
+def test_a_trainee_deleted_at_another_seat_is_gone_once_a_simulator_connects(lesson, tmp_path):
     lesson.logic.choose(SHIPPED, isForEverybody=True)
     assert list(lesson.logic.standings()) == ["A", "B"]
     with Study.open(tmp_path / "study.db") as elsewhere:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from PySide6 import QtCore
 
-from rastrainer.slicer.background_work import BrokenOffError, CancelableUntilBegun
+from rastrainer.slicer.background_work import AbandonedWorkError, CancelableUntilBegun
 from rastrainer.study import trainee_data
 from rastrainer.study.database.study import Study
 from Testing.slicer.host.cancels import cancels
@@ -81,7 +81,7 @@ def test_a_deletion_that_has_not_begun_is_canceled(panel, journal):
     assert panel.text("deleteTraineeButton") == "Delete…"
 
 
-def test_a_deletion_that_has_begun_goes_on_and_says_so(panel, journal, monkeypatch):
+def test_a_deletion_that_has_begun_continues_and_says_so(panel, journal, monkeypatch):
     may_go_on = threading.Event()
     erase_journals, told = trainee_data.erase_journals, []
 
@@ -109,7 +109,7 @@ def test_a_deletion_that_has_begun_goes_on_and_says_so(panel, journal, monkeypat
     assert (journal.exists(), stored(panel)) == (False, [])
 
 
-def test_who_cancels_too_late_is_not_heeded_and_who_begins_too_late_changes_nothing():
+def test_canceling_too_late_is_ignored_and_beginning_too_late_changes_nothing():
     class CanceledError(Exception):
         pass
 
@@ -122,5 +122,5 @@ def test_who_cancels_too_late_is_not_heeded_and_who_begins_too_late_changes_noth
     early = CancelableUntilBegun(cancel)
     with pytest.raises(CanceledError):
         early.progress("", 0.0)
-    with pytest.raises(BrokenOffError):
+    with pytest.raises(AbandonedWorkError):
         early.begin()

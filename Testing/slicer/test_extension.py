@@ -64,7 +64,7 @@ def test_every_python_file_compiles_under_each_supported_version(minor):
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(MODULE).as_posix())
-def test_nothing_is_imported_that_slicer_does_not_bring(path):
+def test_nothing_is_imported_that_does_not_ship_with_slicer(path):
     allowed = {*sys.stdlib_module_names, *BUNDLED, "rastrainer"}
     if path.match("igtl/message.py"):
         allowed.add("fastcrc")  # Guarded: without it, the checksum is plain Python.
@@ -91,7 +91,7 @@ def test_the_extension_names_category_and_dependency():
     assert 'set(EXTENSION_DEPENDS "SlicerOpenIGTLink")' in text
 
 
-def test_the_catalog_entry_keeps_the_rules_of_slicers_extensions_index():
+def test_the_catalog_entry_follows_the_rules_of_slicers_extensions_index():
     """The rules are those of Slicer's schema of a catalog entry, version 1.0.1, and its template.
 
     The extension's name is the file's; the repository's begins with "Slicer".
@@ -111,7 +111,7 @@ def test_the_catalog_entry_keeps_the_rules_of_slicers_extensions_index():
     assert entry["scm_url"].removesuffix(".git") in text
 
 
-def test_the_title_does_not_say_ras_which_is_right_anterior_superior_to_slicers_users():
+def test_the_title_does_not_say_ras_which_means_right_anterior_superior_to_slicer_users():
     source = (MODULE / "RASTrainer.py").read_text(encoding="utf-8")
     (title,) = re.findall(r'parent\.title = _\("(.*)"\)', source)
     assert "Robot-Assisted Surgery" in title
@@ -132,7 +132,7 @@ def test_no_two_widgets_share_a_name():
     assert len(names) == len(set(names))
 
 
-def test_every_panel_has_a_ui_file_of_its_name():
+def test_every_panel_has_a_ui_file_with_its_name():
     source = (MODULE / "Logic" / "rastrainer" / "panels" / "panel_stack.py").read_text()
     panels = re.findall(r"^    (\w+Panel),$", source, re.MULTILINE)
     files = [path.stem for path in UI_FILES if path.stem != "RASTrainer"]
@@ -155,7 +155,7 @@ def test_widgets_bound_to_parameters_name_parameters_that_exist():
     assert bound == parameters
 
 
-def test_the_top_widget_hands_on_the_scene():
+def test_the_top_widget_passes_on_the_scene():
     for path in UI_FILES:
         assert ElementTree.parse(path).find("widget").get("class") == "qMRMLWidget"
 

@@ -34,13 +34,13 @@ def test_lists_of_another_length_and_a_seventh_are_left_out_and_named(scene):
     ]
 
 
-def test_a_scene_without_such_a_list_says_which_lists_there_are(scene):
+def test_a_scene_without_such_a_list_reports_which_lists_there_are(scene):
     add_list(scene, "Short", 14)
     with pytest.raises(InputError, match=r"no point list of 15.*Short is left out: it has 14"):
         handPlacedLists(scene, None)
 
 
-def test_a_list_whose_labels_are_no_order_is_refused_by_its_name(scene):
+def test_a_list_whose_labels_give_no_order_is_refused_by_its_name(scene):
     add_list(scene, "Mixed", labels=["nose", *[str(number) for number in range(2, 16)]])
     with pytest.raises(InputError, match=r"The point list Mixed cannot be used: .* no number"):
         handPlacedLists(scene, None)

@@ -84,7 +84,7 @@ def lines_of(text, event):
     return [line for line in lines if line["event"] == event]
 
 
-def test_a_trial_is_played_to_its_files(colin_record, tmp_path, capfd):
+def test_a_trial_is_played_and_its_files_are_written(colin_record, tmp_path, capfd):
     cohort = str(ASSETS / "studies" / "published.csv")
     with PlayingDouble(colin_record) as simulator:
         words = arguments(tmp_path, simulator.port, "--timeout", "300", "--cohort", cohort)
@@ -145,7 +145,7 @@ def test_files_are_written_for_a_trial_whose_true_error_nobody_revealed(
     assert "true TRE" not in captions[1]
 
 
-def test_trials_that_do_not_come_end_with_status_1_and_a_sentence(simulator, tmp_path, capfd):
+def test_trials_that_do_not_arrive_exit_with_status_1_and_a_message(simulator, tmp_path, capfd):
     assert headless.main(arguments(tmp_path, simulator.port, "--timeout", "0.3")) == 1
     error = capfd.readouterr().err.strip()
     assert error.startswith("rastrainer: 0 of 1 trials came within 0.3 s.")
@@ -162,7 +162,7 @@ def test_trials_that_do_not_come_end_with_status_1_and_a_sentence(simulator, tmp
         (["--timeout", "nan"], "seconds above 0"),
     ],
 )
-def test_bad_arguments_end_with_status_2_and_a_sentence(changes, words, tmp_path, capfd):
+def test_bad_arguments_exit_with_status_2_and_a_message(changes, words, tmp_path, capfd):
     assert headless.main(arguments(tmp_path, 18944, *changes)) == 2
     error = capfd.readouterr().err.strip()
     assert words in error
@@ -175,7 +175,7 @@ def test_an_unusable_output_folder_is_reported_before_the_first_trial(tmp_path, 
     assert "cannot be made" in capfd.readouterr().err
 
 
-def test_a_file_that_is_no_study_is_left_alone(tmp_path, capfd):
+def test_a_file_that_is_not_a_study_is_left_alone(tmp_path, capfd):
     (tmp_path / "study.db").write_text("my notes")
     assert headless.main(arguments(tmp_path, 18944)) == 2
     assert "study" in capfd.readouterr().err

@@ -135,7 +135,7 @@ def test_a_node_of_that_name_and_class_is_adopted_with_its_display(connector, si
     assert ours.GetDisplayNode().GetGlyphScale() == 7.0
 
 
-def test_a_node_that_was_deleted_comes_again_with_the_next_message(connector, simulator, scene):
+def test_a_deleted_node_reappears_with_the_next_message(connector, simulator, scene):
     simulator.send("SimState", String("one"))
     wait_for(connector, lambda: incoming(connector, "SimState"))
     scene.RemoveNode(incoming(connector, "SimState"))
@@ -144,7 +144,7 @@ def test_a_node_that_was_deleted_comes_again_with_the_next_message(connector, si
     assert scene.GetFirstNode("SimState", "vtkMRMLTextNode").GetText() == "two"
 
 
-def test_of_a_burst_the_latest_of_each_device_wins(connector, simulator, scene):
+def test_the_latest_message_of_each_device_in_a_burst_wins(connector, simulator, scene):
     node = scene.AddNewNodeByClass("vtkMRMLTextNode", "SimState")
     changes = count_events(node, node.TextModifiedEvent)
     for number in range(100):
@@ -209,7 +209,7 @@ def test_an_answer_completes_its_command(scene):
         connector.Stop()
 
 
-def test_a_refusal_brings_its_sentence(scene):
+def test_a_refusal_arrives_with_its_message(scene):
     with SimulatorDouble(lambda *_: "There is no task seven.") as simulator:
         connector = started_connector(scene, simulator)
         command = sent(connector, "StartTask")
@@ -250,7 +250,7 @@ def test_a_lost_connection_is_reported_only_after_the_next_one(scene):
         connector.Stop()
 
 
-def test_as_a_server_it_takes_many_clients(scene):
+def test_as_a_server_it_accepts_many_clients(scene):
     connector = HeadlessConnector()
     scene.AddNode(connector)
     connector.SetTypeServer(0)
@@ -264,7 +264,7 @@ def test_as_a_server_it_takes_many_clients(scene):
     assert connector.GetState() == connector.StateOff
 
 
-def test_what_would_crash_slicer_is_an_error_here(connector, simulator):
+def test_anything_that_would_crash_slicer_is_an_error_here(connector, simulator):
     data = bytearray(pack(Message("SimServer", Status(1))))
     data[2:14] = b"GET_STATUS\0\0"
     simulator.send_bytes(bytes(data))
@@ -282,7 +282,7 @@ def test_what_would_crash_slicer_is_an_error_here(connector, simulator):
     ],
     ids=["a web page", "SSH", "a body of 2 GiB"],
 )
-def test_what_is_not_openigtlink_would_have_ended_slicer(connector, simulator, said):
+def test_anything_that_is_not_openigtlink_would_have_ended_slicer(connector, simulator, said):
     simulator.send_bytes(said)
     crashes = []
     wait_for(connector, lambda: crashes.extend(takeCrashes()) or crashes)

@@ -41,7 +41,7 @@ def test_a_property_is_an_attribute(qt):
     assert (button.text, button.enabled, button.isEnabled()) == ("c", True, True)
 
 
-def test_what_is_no_property_is_a_method(qt):
+def test_anything_that_is_not_a_property_is_a_method(qt):
     item = qt.QTableWidgetItem("a")
     assert item.text() == "a"
     layout = qt.QVBoxLayout()
@@ -84,7 +84,7 @@ def test_an_unknown_signal_returns_false_and_raises_nothing(qt):
     assert button.connect("nosuch()", print) is False
 
 
-def test_a_signal_hands_over_as_much_as_the_slot_takes(qt):
+def test_a_signal_passes_as_many_arguments_as_the_slot_takes(qt):
     heard = []
     button = qt.QPushButton()
     button.checkable = True
@@ -96,7 +96,7 @@ def test_a_signal_hands_over_as_much_as_the_slot_takes(qt):
     assert heard == ["none", True, "attribute", ("attribute", True)]
 
 
-def test_a_slot_is_disconnected(qt):
+def test_a_slot_can_be_disconnected(qt):
     heard = []
 
     def slot():
@@ -120,7 +120,7 @@ def test_an_exception_in_a_slot_is_recorded_and_the_click_continues(qt, host):
     assert "ZeroDivisionError" in host.errors.pop()
 
 
-def test_a_sentence_that_was_shown_is_no_failure_but_a_shown_bug_is(qt, host, caplog):
+def test_a_displayed_user_error_is_not_a_failure_but_a_displayed_bug_is(qt, host, caplog):
     import slicer
 
     def fail(exception):
@@ -146,7 +146,7 @@ def test_enumerations_are_ints(qt):
     assert qt.QMessageBox.Yes == 16384
 
 
-def test_a_combo_box_gives_back_any_python_object(qt):
+def test_a_combo_box_returns_any_python_object(qt):
     value = {"a": object()}
     combo = qt.QComboBox()
     combo.addItem("text", value)
@@ -154,7 +154,7 @@ def test_a_combo_box_gives_back_any_python_object(qt):
     assert combo.count == 1
 
 
-def test_keywords_and_numbers_of_numpy_are_refused(qt):
+def test_keyword_arguments_and_numpy_numbers_are_refused(qt):
     with pytest.raises(TypeError, match="keyword"):
         qt.QPushButton().setText(text="a")
     with pytest.raises(TypeError, match="int64"):
@@ -170,7 +170,7 @@ def test_a_program_that_cannot_start_is_reported(qt, host):
     assert errors == [0]
 
 
-def test_output_of_a_process_is_bytes(qt, host):
+def test_process_output_is_bytes(qt, host):
     codes = []
     process = qt.QProcess()
     process.connect("finished(int,QProcess::ExitStatus)", lambda code, _status: codes.append(code))
@@ -240,12 +240,12 @@ def test_a_node_combo_box_follows_the_scene():
     assert chosen == [node, None]
 
 
-def test_the_table_holds_what_the_host_offers():
+def test_the_table_covers_what_the_host_offers():
     for module in MODULES:
         assert list(FACTS[module]) == list(OFFERED[module])
 
 
-def test_every_widget_has_what_a_widget_has():
+def test_every_widget_has_the_members_of_a_widget():
     button = members_of("QPushButton")
     assert {"enabled", "toolTip", "visible", "text"} <= button.properties
     assert "clicked(bool)" in button.signals
@@ -253,7 +253,7 @@ def test_every_widget_has_what_a_widget_has():
     assert module_of("QNoSuchWidget") is None
 
 
-def test_the_table_is_the_measurement_where_that_is_at_hand():
+def test_the_table_matches_the_measurement_if_available():
     full = os.environ.get("RASTRAINER_SLICER_API")
     measured = json.loads(Path(full).read_text()) if full else FACTS
     assert TARGET.read_text() == text_of(reduced(measured))

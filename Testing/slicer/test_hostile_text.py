@@ -63,7 +63,7 @@ def value(widget, name):
     return "" if found is None else "".join(found.itertext()).strip()
 
 
-def shows_as_it_stands(host, *names, text=HOSTILE):
+def shows_verbatim(host, *names, text=HOSTILE):
     """Check that labels show a text, or its beginning, literally, and do not widen the dock."""
     for name in names:
         label = host.find(name)
@@ -77,21 +77,21 @@ def shows_as_it_stands(host, *names, text=HOSTILE):
 # The files
 
 
-def test_each_label_of_a_ui_file_says_how_its_text_is_read():
+def test_each_label_in_a_ui_file_declares_its_text_format():
     for label in labels():
         is_light = label.get("name").endswith("Light")
         expected = "Qt::RichText" if is_light else "Qt::PlainText"
         assert value(label, "textFormat") == expected, label.get("name")
 
 
-def test_labels_that_are_filled_at_run_time_wrap_and_may_be_narrow():
+def test_labels_filled_at_run_time_wrap_and_may_be_narrow():
     for label in labels():
         if label.get("name").endswith("Text"):
             assert value(label, "wordWrap") == "true", label.get("name")
             assert value(label, "minimumSize").split() == ["1", "0"], label.get("name")
 
 
-def test_boxes_of_choices_are_not_as_wide_as_their_longest_entry():
+def test_choice_boxes_are_not_as_wide_as_their_longest_entry():
     policy = "QComboBox::AdjustToMinimumContentsLengthWithIcon"
     for box in widgets():
         if box.get("class") == "QComboBox":
@@ -100,7 +100,7 @@ def test_boxes_of_choices_are_not_as_wide_as_their_longest_entry():
             assert value(box, "minimumSize"), box.get("name")
 
 
-def test_panels_fill_labels_by_the_functions_that_bound_the_text():
+def test_panels_fill_labels_through_the_functions_that_limit_the_text():
     sources = {path.name: path.read_text() for path in (MODULE / "Logic").rglob("panels/*.py")}
     widgets_file = sources.pop("widgets.py")
     assert "qt.QLabel()" in widgets_file
@@ -119,7 +119,7 @@ def test_no_label_grows_with_a_long_word(open_module):
     names = [label.get("name") for label in labels() if label.get("name").endswith("Text")]
     for name in names:
         setSentence(host.find(name), HOSTILE)
-    shows_as_it_stands(host, *names)
+    shows_verbatim(host, *names)
     assert host.minimum_width() == before
 
 
@@ -131,8 +131,8 @@ def test_the_state_of_the_trial_and_a_question_about_its_trainee(connected, simu
     host.wait_until(lambda: host.text("trainingText"), "the instruction is shown")
     host.wait_until(lambda: "bold" in host.text("phaseText"), "the phase is shown")
     names = ("trainingText", "instructionText", "phaseText", "nextPointText", "clearanceText")
-    shows_as_it_stands(host, *names)
-    shows_as_it_stands(host, "trialText", text=HTML)
+    shows_verbatim(host, *names)
+    shows_verbatim(host, "trialText", text=HTML)
     state = {"trialId": "", "phase": "running", "trainee": HTML, "task": "task-1"}
     simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     host.wait_until(lambda: host.find("abortButton").enabled, "a trial runs")
@@ -141,16 +141,16 @@ def test_the_state_of_the_trial_and_a_question_about_its_trainee(connected, simu
     assert "&lt;b&gt;bold" in host.messages[-1].text
 
 
-def test_why_the_simulator_refuses_a_trial(connected, simulator):
+def test_the_simulators_reason_for_refusing_a_trial_is_shown_unchanged(connected, simulator):
     host = connected
     simulator.responder = lambda name, _arguments: HOSTILE if name == "StartTask" else {}
     host.press("createTraineeButton")
     host.press("startTrialRunButton")
     host.wait_until(lambda: "bold" in host.text("trainingMessageText"), "the refusal is shown")
-    shows_as_it_stands(host, "trainingMessageText")
+    shows_verbatim(host, "trainingMessageText")
 
 
-def test_whether_the_robot_can_carry_out_a_plan(connected, simulator):
+def test_the_reachability_of_a_plan_is_shown_unchanged(connected, simulator):
     host = connected
     simulator.responder = lambda _name, _arguments: {"reachable": False, "reason": HOSTILE}
     host.press("showScenarioButton")
@@ -165,7 +165,7 @@ def test_whether_the_robot_can_carry_out_a_plan(connected, simulator):
     host.wait_until(lambda: host.find("sendPlanButton").enabled, "the plan can be sent")
     host.press("sendPlanButton")
     host.wait_until(lambda: "bold" in host.text("reachableText"), "the reason is shown")
-    shows_as_it_stands(host, "reachableText")
+    shows_verbatim(host, "reachableText")
     assert host.find("reachableLight").textFormat == RICH
 
 
@@ -173,7 +173,7 @@ def test_names_of_a_host_a_node_and_a_task(open_module, tmp_path):
     host = open_module
     host.find("hostLineEdit").text = HTML
     host.press("probeButton")
-    shows_as_it_stands(host, "stateText", text=HTML)
+    shows_verbatim(host, "stateText", text=HTML)
     model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", HOSTILE)
     host.choose("headModelComboBox", model)
     host.press("useHeadButton")
@@ -190,7 +190,7 @@ def test_names_of_a_host_a_node_and_a_task(open_module, tmp_path):
     assert host.minimum_width() <= DOCK_WIDTH
 
 
-def test_how_the_simulators_program_ends_and_pairs(open_module, tmp_path):
+def test_the_programs_last_output_and_pairing_code_are_shown_unchanged(open_module, tmp_path):
     host = open_module
     program = tmp_path / "rastrainer"
     address = f"<b>bold</b>{LONG[:1500]}"
@@ -204,16 +204,16 @@ def test_how_the_simulators_program_ends_and_pairs(open_module, tmp_path):
     host.type("programPathLineEdit", str(program))
     host.press("startSimulatorButton")
     host.wait_until(lambda: "bold" in host.text("pairingText"), "the address is shown")
-    shows_as_it_stands(host, "pairingText", text="<b>bold</b>")
+    shows_verbatim(host, "pairingText", text="<b>bold</b>")
     (tmp_path / "over").touch()
     host.wait_until(lambda: "ended by itself" in host.text("programText"), "the end is told")
-    shows_as_it_stands(host, "programText", text=HTML)
+    shows_verbatim(host, "programText", text=HTML)
 
 
 # Tool tips and questions
 
 
-def test_a_tool_tip_is_never_taken_for_html():
+def test_a_tooltip_is_never_interpreted_as_html():
     assert toolTip("Choose a trainee first.") == "Choose a trainee first."
     assert toolTip("<b>bold</b>") == "<qt>&lt;b&gt;bold&lt;/b&gt;</qt>"
     assert toolTip("&lt;") == "<qt>&amp;lt;</qt>"

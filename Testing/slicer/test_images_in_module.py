@@ -99,7 +99,7 @@ def test_the_button_brings_the_mri_back_where_others_are_shown_or_the_scene_was_
     assert host.find("scanComboBox").currentNode() is None
 
 
-def test_unusable_images_are_reported_beside_the_scenario(host):
+def test_unusable_images_are_reported_with_the_scenario(host):
     folder = user_library() / "broken"
     shutil.copytree(COLIN27.folder, folder)
     content = json.loads((folder / "scenario.json").read_text(encoding="utf-8"))
@@ -117,7 +117,7 @@ def test_unusable_images_are_reported_beside_the_scenario(host):
     assert host.messages == []
 
 
-def test_a_scene_cleared_as_soon_as_the_mri_is_there_gets_it_again(host):
+def test_a_scene_cleared_as_soon_as_the_mri_is_loaded_gets_it_again(host):
     host.open()
     host.unfold("showScenarioButton")
     session, cleared = host.widget.logic.session, []
@@ -134,7 +134,7 @@ def test_a_scene_cleared_as_soon_as_the_mri_is_there_gets_it_again(host):
     wait_for_images(host)
 
 
-def test_without_a_main_window_the_mri_is_in_the_scene(tmp_path):
+def test_without_a_main_window_the_mri_is_still_in_the_scene(tmp_path):
     host = Host(tmp_path / "slicer", window=False)
     try:
         show_scenario(host)
@@ -181,7 +181,7 @@ class Trial:
         return [hello["toolTipHz"] > 0 for hello in hellos]
 
 
-def test_the_slices_go_to_each_next_point_of_a_trial_unless_that_is_unchecked(host, trial):
+def test_the_slices_move_to_each_next_point_of_a_trial_unless_unchecked(host, trial):
     fiducials = COLIN27.task("task-1").fiducials
     trial.wait_for_slices_at(fiducials[0])
     trial.tell(nextPoint="2")
@@ -190,13 +190,13 @@ def test_the_slices_go_to_each_next_point_of_a_trial_unless_that_is_unchecked(ho
     host.check("slicesNextPointCheckBox", False)
     trial.tell(nextPoint="3")
     host.wait_until(lambda: host.text("nextPointText") == "3", "the next point is told")
-    host.let_pass(0.3)
+    host.idle_for(0.3)
     trial.wait_for_slices_at(fiducials[1])
     host.check("slicesNextPointCheckBox")
     trial.wait_for_slices_at(fiducials[2])
 
 
-def test_the_slices_follow_the_tool_which_makes_the_module_ask_for_poses(host, trial, simulator):
+def test_following_the_tool_with_the_slices_makes_the_module_request_poses(host, trial, simulator):
     assert not any(trial.wishes())
     host.unfold("slicesToolCheckBox")
     host.check("slicesToolCheckBox")

@@ -41,7 +41,7 @@ def make_checkout(folder):
 
 def make_extension(checkout, wheel):
     """Do in a clone what `make extension` does; return the clone."""
-    simulator_wheel.put_beside_module(
+    simulator_wheel.copy_beside_module(
         wheel, checkout / "RASTrainer" / "Resources" / "RASTrainerSimulator"
     )
     return checkout
@@ -88,7 +88,7 @@ def relative(folder, pattern="*"):
     )
 
 
-def test_without_the_simulators_wheel_there_is_no_package_and_a_sentence_says_how_to_build_it(
+def test_without_the_simulators_wheel_there_is_no_package_and_a_message_says_how_to_build_it(
     checkout, tmp_path
 ):
     status, said = configure(checkout, tmp_path / "build")
@@ -97,7 +97,7 @@ def test_without_the_simulators_wheel_there_is_no_package_and_a_sentence_says_ho
     assert "make extension" in said
 
 
-def test_a_wheel_that_is_not_the_one_that_was_built_is_refused(with_wheel, tmp_path):
+def test_a_wheel_other_than_the_one_that_was_built_is_refused(with_wheel, tmp_path):
     wheel = with_wheel / "RASTrainer" / "Resources" / "RASTrainerSimulator" / WHEEL
     wheel.write_bytes(wheel.read_bytes() + b"more")
     status, said = configure(with_wheel, tmp_path / "build")
@@ -105,7 +105,7 @@ def test_a_wheel_that_is_not_the_one_that_was_built_is_refused(with_wheel, tmp_p
     assert f"is not the file that {WHEEL}.sha256 notes" in said
 
 
-def test_slicers_build_takes_the_released_wheel_by_its_hash(checkout, built_wheel, tmp_path):
+def test_slicers_build_uses_the_released_wheel_by_its_hash(checkout, built_wheel, tmp_path):
     digest = hashlib.sha256(built_wheel.read_bytes()).hexdigest()
     address = f"-DRASTrainer_SIMULATOR_WHEEL_URL={built_wheel.as_uri()}"
     hashed = "-DRASTrainer_SIMULATOR_WHEEL_SHA256="
@@ -125,7 +125,7 @@ def test_the_installed_tree_holds_the_whole_module(tree):
     assert {name for name in ours if ".whl" not in name} <= set(relative(tree / "Resources"))
 
 
-def test_the_installed_tree_holds_all_that_the_scenario_and_the_robot_name(tree):
+def test_the_installed_tree_holds_everything_that_the_scenario_and_the_robot_reference(tree):
     installed = tree / "Resources" / "RASTrainer"
     for part in PARTS[1:]:
         assert relative(installed / part.removeprefix("assets/")) == relative(ROOT / part)
@@ -136,7 +136,7 @@ def test_the_installed_tree_holds_all_that_the_scenario_and_the_robot_name(tree)
     assert [name for name in files if not (scenario / name).is_file()] == []
 
 
-def test_the_installed_tree_holds_the_simulator_and_the_rights_in_all_of_it(tree):
+def test_the_installed_tree_includes_the_simulator_and_the_licenses_of_everything(tree):
     package = SimulatorPackage.of(tree)
     assert package.checkout is None
     assert f"/{WHEEL} \\\n    --hash=sha256:{package.digest()}\n" in package.requirements()
@@ -146,7 +146,7 @@ def test_the_installed_tree_holds_the_simulator_and_the_rights_in_all_of_it(tree
         assert installed.read_bytes() == (ROOT / name).read_bytes()
 
 
-def test_as_a_part_of_a_larger_application_all_lies_beside_the_module(with_wheel, tmp_path):
+def test_as_part_of_a_larger_application_everything_lies_beside_the_module(with_wheel, tmp_path):
     larger = tmp_path / "larger"
     larger.mkdir()
     text = LARGER_APPLICATION.format(source=with_wheel)

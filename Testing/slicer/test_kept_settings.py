@@ -25,7 +25,7 @@ def start(start_slicer):
     return start
 
 
-def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):
+def test_choices_are_kept_across_a_restart(start, tmp_path):
     host = start()
     host.type("hostLineEdit", "10.0.0.7")
     host.type("portSpinBox", "18999")
@@ -74,7 +74,7 @@ def test_what_was_chosen_is_there_after_a_restart(start, tmp_path):
     assert host.find("programPathLineEdit").currentPath == str(tmp_path / "rastrainer")
 
 
-def test_settings_that_cannot_be_used_leave_what_is_usual(start):
+def test_unusable_settings_leave_the_defaults(start):
     host = start()
     slicer.app.settings().setValue(PORT.key, "a lot")
     slicer.app.settings().setValue("RASTrainer/Mode", "telepathy")

@@ -47,7 +47,7 @@ def test_landmarks_are_placed_by_clicks_and_each_change_is_undone(host):
     assert not host.find("undoLandmarkButton").enabled
 
 
-def test_those_of_a_scenario_are_shown_to_be_changed(host):
+def test_a_scenarios_landmarks_are_shown_for_editing(host):
     host.open()
     host.choose("scenarioComboBox", 0)
     host.press("showLandmarksButton")

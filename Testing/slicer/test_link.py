@@ -27,7 +27,7 @@ def hello(hz):
     return "Hello", {**wishes, "toolTipHz": hz, "linksHz": hz}
 
 
-def test_the_first_thing_said_is_hello_with_the_protocol_version_and_no_wish_for_poses(
+def test_the_first_message_is_hello_with_the_protocol_version_and_no_request_for_poses(
     link, simulator
 ):
     connect(link, simulator)
@@ -39,7 +39,7 @@ def test_poses_are_requested_by_another_hello_and_the_link_opens_once(link, simu
     link.opened.connect(lambda: opened.append(True))
     connect(link, simulator)
     for are_wanted in (True, True, False, False, True):
-        link.wantPoses(are_wanted)
+        link.requestPoses(are_wanted)
     run_link_until(link, lambda: len(simulator.commands) == 4)
     assert simulator.commands == [hello(0.0), hello(POSES_HZ), hello(0.0), hello(POSES_HZ)]
     replies = []
@@ -48,8 +48,8 @@ def test_poses_are_requested_by_another_hello_and_the_link_opens_once(link, simu
     assert opened == [True]
 
 
-def test_poses_wanted_before_are_requested_with_the_connection(link, simulator):
-    link.wantPoses(True)
+def test_poses_wanted_in_advance_are_requested_on_connection(link, simulator):
+    link.requestPoses(True)
     connect(link, simulator)
     assert simulator.commands == [hello(POSES_HZ)]
 
@@ -68,27 +68,27 @@ def test_silence_is_reported_and_a_long_one_ends_the_half_open_connection(link, 
     connect(link, simulator)
     # One that is on its way may end the silence once.
     simulator.beats = False
-    run_link_until(link, lambda: clock.goes_on() and link.status.state is LinkState.STALE)
+    run_link_until(link, lambda: clock.skip_ahead() and link.status.state is LinkState.STALE)
     beat(simulator)
     run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
     connected = (LinkState.CONNECTED, LinkState.STALE)
-    run_link_until(link, lambda: clock.goes_on() and link.status.state not in connected)
+    run_link_until(link, lambda: clock.skip_ahead() and link.status.state not in connected)
     run_link_until(link, lambda: len(simulator.commands) == 2)
     assert simulator.commands[1][0] == "Hello"
 
 
-def test_a_connection_that_was_dead_before_the_first_heartbeat_is_made_anew(link, simulator, clock):
+def test_a_connection_dead_before_the_first_heartbeat_is_reestablished(link, simulator, clock):
     clock.stop()
     simulator.beats = False
     link.connectTo(port=simulator.port)
     run_link_until(link, lambda: simulator.commands)
-    run_link_until(link, lambda: clock.goes_on() and not link.isOpen)
+    run_link_until(link, lambda: clock.skip_ahead() and not link.isOpen)
     run_link_until(link, lambda: len(simulator.commands) == 2)
     beat(simulator)
     run_link_until(link, lambda: link.status.state is LinkState.CONNECTED)
 
 
-def test_a_slicer_that_was_held_up_itself_does_not_take_the_simulator_for_silent(
+def test_a_slicer_that_was_itself_stalled_does_not_take_the_simulator_for_silent(
     link, simulator, clock
 ):
     clock.stop()
@@ -100,7 +100,7 @@ def test_a_slicer_that_was_held_up_itself_does_not_take_the_simulator_for_silent
     assert link.status.state is LinkState.CONNECTED
 
 
-def test_a_simulator_of_another_version_is_named_and_gets_no_commands(link, simulator):
+def test_a_simulator_of_another_version_is_named_and_sent_no_commands(link, simulator):
     connect(link, simulator)
     # Of two heartbeats that come at once, the link sees the later alone.
     other = Status(Status.OK, subcode=PROTOCOL_VERSION + 1)
@@ -155,7 +155,7 @@ def test_the_list_of_touched_points_keeps_our_display_and_role(link, simulator, 
     assert node.GetDisplayNode().GetGlyphScale() == 2.5
 
 
-def test_a_deleted_list_comes_again(link, simulator, scene):
+def test_a_deleted_list_reappears(link, simulator, scene):
     connect(link, simulator)
     scene.RemoveNode(scene.GetFirstNodeByName("CapturedPoints"))
     simulator.send(DeviceName.CAPTURED_POINTS, Points((Point("1", (0.0, 0.0, 0.0)),)))
@@ -189,7 +189,7 @@ def test_the_state_of_the_simulator_is_emitted_when_it_changes(link, simulator):
     assert states == [{"phase": "running"}]
 
 
-def test_what_cannot_be_read_is_logged_and_changes_nothing(link, simulator, caplog):
+def test_an_unreadable_message_is_logged_and_changes_nothing(link, simulator, caplog):
     states = []
     connect(link, simulator)
     link.stateChanged.connect(states.append)
@@ -209,7 +209,7 @@ def test_every_finished_trial_is_handed_over_in_order(link, simulator):
     assert [record["number"] for record in records] == [0, 1, 2]
 
 
-def test_a_reply_brings_the_data_of_the_answer(link):
+def test_a_reply_carries_the_data_of_the_answer(link):
     with SimulatorDouble(lambda *_: {"tasks": ["task-1"]}) as simulator:
         connect(link, simulator)
         replies = []
@@ -227,7 +227,7 @@ def test_without_a_connection_the_reply_says_so(link):
     assert replies[0].error == "Not connected."
 
 
-def test_a_simulator_that_dies_before_it_answers_does_not_leave_one_waiting(link):
+def test_a_simulator_that_dies_before_answering_does_not_leave_the_caller_waiting(link):
     simulator = SimulatorDouble(lambda name, _arguments: {} if name == "Hello" else None)
     connect(link, simulator)
     replies = []
@@ -238,7 +238,7 @@ def test_a_simulator_that_dies_before_it_answers_does_not_leave_one_waiting(link
     assert "lost" in replies[0].error
 
 
-def test_a_simulator_that_never_answers_does_not_leave_one_waiting(link, clock):
+def test_a_simulator_that_never_answers_does_not_leave_the_caller_waiting(link, clock):
     with SimulatorDouble(lambda name, _arguments: {} if name == "Hello" else None) as simulator:
         connect(link, simulator)
         replies = []
@@ -248,7 +248,7 @@ def test_a_simulator_that_never_answers_does_not_leave_one_waiting(link, clock):
         assert replies[0].error == "The simulator did not answer ListTasks."
 
 
-def test_a_wrong_argument_is_refused_before_it_travels(link, simulator):
+def test_an_invalid_argument_is_refused_before_it_is_sent(link, simulator):
     connect(link, simulator)
     with pytest.raises(InputError, match="camera must be one of"):
         link.send("SetCamera", {"camera": "sideways"})
@@ -257,12 +257,12 @@ def test_a_wrong_argument_is_refused_before_it_travels(link, simulator):
 @pytest.mark.parametrize(
     ("host", "port", "words"), [("", 18944, "host"), ("localhost", 0, "port"), ("a", 70000, "port")]
 )
-def test_an_address_that_is_none_gets_a_sentence(link, host, port, words):
+def test_an_invalid_address_is_refused_with_a_message(link, host, port, words):
     with pytest.raises(InputError, match=words):
         link.connectTo(host, port)
 
 
-def test_a_slicer_without_the_extension_is_reported_what_to_install(scene):
+def test_a_slicer_without_the_extension_is_told_what_to_install(scene):
     link = Link(scene, lambda: None)
     link.connectTo()
     assert link.status.state is LinkState.NOT_INSTALLED

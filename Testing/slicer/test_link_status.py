@@ -102,5 +102,5 @@ def test_a_missing_extension_is_named():
     assert "Extensions Manager" in status.remedy
 
 
-def test_one_lost_heartbeat_is_no_reason_to_worry():
+def test_a_single_lost_heartbeat_is_no_reason_to_worry():
     assert judge(replace(WELL, silenceS=2.5)).state is LinkState.CONNECTED

@@ -41,7 +41,7 @@ class Simulator(SimulatorLogic):
         return [sys.executable, "-c", self._script, *words]
 
 
-def test_what_the_program_has_written_is_read(scenario):
+def test_the_programs_output_is_read(scenario):
     simulator = Simulator(json.dumps({"methods": {"surface": TOLD, "scan": TOLD}}))
     surface, scan = MethodComparisonLogic(simulator).compare(scenario, 3, 2.0)
     assert (surface.name, scan.name) == ("surface", "scan")
@@ -62,7 +62,7 @@ def test_what_the_program_has_written_is_read(scenario):
         pytest.param("", "exit(1)", "wrote nothing", id="silent"),
     ],
 )
-def test_a_comparison_that_fails_is_told_in_one_sentence(scenario, text, script, said):
+def test_a_failed_comparison_is_reported_in_one_sentence(scenario, text, script, said):
     with pytest.raises(InputError, match=said):
         MethodComparisonLogic(Simulator(text, script)).compare(scenario, 1, 0.0)
 

@@ -39,7 +39,7 @@ def host_with(tmp_path):
         ("Union[vtkMRMLMarkupsFiducialNode, vtkMRMLMarkupsLineNode]", "Unable to write value"),
     ],
 )
-def test_a_parameter_that_slicer_refuses_leaves_the_panel_drawn_and_dead(
+def test_a_parameter_that_slicer_refuses_leaves_the_panel_visible_but_dead(
     host_with, annotation, reason
 ):
     host = host_with(annotation)
@@ -49,13 +49,13 @@ def test_a_parameter_that_slicer_refuses_leaves_the_panel_drawn_and_dead(
     assert host.widget._timer is None
 
 
-def test_the_module_as_it_is_starts_its_timer(host_with):
+def test_the_unmodified_module_starts_its_timer(host_with):
     host = host_with(OPTIONAL_UNION)
     widget = host.open()
     assert (host.errors, widget._timer.isActive()) == ([], True)
 
 
-def test_without_the_connector_it_is_said_what_to_install_before_anything_is_downloaded(tmp_path):
+def test_without_the_connector_the_user_learns_what_to_install_before_any_download(tmp_path):
     host = Host(tmp_path, connector=False)
     try:
         session = host.open().logic.session

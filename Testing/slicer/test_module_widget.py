@@ -82,7 +82,7 @@ def test_a_trajectory_is_placed_by_two_clicks(host):
     assert line.GetNumberOfControlPoints() == 2
 
 
-def test_sample_data_come_into_the_scene_and_the_slices(host):
+def test_sample_data_are_loaded_into_the_scene_and_the_slices(host):
     host.find("newScenarioCollapsibleButton").collapsed = False
     host.process_events()
     red = slicer.app.layoutManager().sliceWidget("Red").mrmlSliceCompositeNode()
@@ -92,7 +92,7 @@ def test_sample_data_come_into_the_scene_and_the_slices(host):
     assert host.find("scanComboBox").currentNode() is volume
 
 
-def test_without_a_network_sample_data_are_a_sentence_and_leave_nothing(host, monkeypatch):
+def test_without_a_network_sample_data_are_reported_and_leave_nothing(host, monkeypatch):
     logic, nodes = slicer.util.getModuleLogic("SampleData"), host.scene.GetNumberOfNodes()
     usual = logic.uri
     for uri in ("http://127.0.0.1:9/sample.nrrd", "file:///nowhere/sample.nrrd"):
@@ -112,7 +112,7 @@ def test_without_a_network_sample_data_are_a_sentence_and_leave_nothing(host, mo
     assert "could not be downloaded" in host.messages[-1].text
 
 
-def test_every_choice_that_can_be_made_without_a_simulator_is_taken(host):
+def test_every_choice_possible_without_a_simulator_works(host):
     host.choose("scenarioComboBox", 0)
     host.choose("taskComboBox", "Task 3")
     assert "15 fiducials" in host.text("scenarioText")
@@ -172,7 +172,7 @@ NOT_IN_THE_TOUR = {
 }
 
 
-def test_the_tour_of_a_release_presses_every_button_but_those_named_here():
+def test_the_release_tour_presses_every_button_except_those_listed_here():
     folder = Path(__file__).parent / "real"
     used = {name for path in folder.glob("tour_*.py") for name in used_by(path)}
     assert widgets_of("QPushButton") - used == set(NOT_IN_THE_TOUR)

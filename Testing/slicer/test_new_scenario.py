@@ -80,11 +80,11 @@ def test_a_zip_file_is_added_listed_with_its_picture_and_chosen(host, package):
 
 
 def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, monkeypatch):
-    begun, goes_on, ended = threading.Event(), threading.Event(), threading.Event()
+    begun, skip_ahead, ended = threading.Event(), threading.Event(), threading.Event()
 
     def unpack_when_told(*arguments):
         begun.set()
-        goes_on.wait()
+        skip_ahead.wait()
         try:
             return unpack(*arguments)
         finally:
@@ -95,7 +95,7 @@ def test_adding_a_zip_file_may_be_canceled_and_leaves_nothing(host, package, mon
     host.answer("Add a scenario", package)
     with cancels(host, "importScenarioButton", begun.is_set):
         host.press("importScenarioButton")
-    goes_on.set()
+    skip_ahead.set()
     assert "Canceled" in host.text("scenarioText")
     assert host.text("importScenarioButton") == "Add from a zip file"
     host.wait_until(ended.is_set, "the thread ends")
@@ -138,7 +138,7 @@ def test_a_broken_scenario_is_listed_with_its_problem_and_cannot_be_used(host, p
     assert host.find("showScenarioButton").enabled
 
 
-def test_a_volume_that_holds_no_head_is_reported(host):
+def test_a_volume_without_a_head_is_reported(host):
     host.scene.AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Empty")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", host.scene.GetFirstNodeByName("Empty"))
@@ -150,7 +150,7 @@ def test_a_volume_that_holds_no_head_is_reported(host):
     assert not user_library().exists()
 
 
-def test_a_found_head_is_a_segment_with_the_base_and_threshold_that_are_shown(host):
+def test_a_found_head_becomes_a_segment_with_the_displayed_base_and_threshold(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", volume)
@@ -173,7 +173,7 @@ def test_a_found_head_is_a_segment_with_the_base_and_threshold_that_are_shown(ho
     assert not user_library().exists()
 
 
-def test_a_draft_is_hidden_once_a_scenario_is_made_and_seen_when_it_is_found_again(
+def test_a_draft_is_hidden_once_a_scenario_is_made_and_shown_when_it_is_found_again(
     host, monkeypatch
 ):
     made = host.widget.logic.session.scenario.find("colin27")
@@ -216,7 +216,7 @@ def test_a_preview_shows_a_warning_and_is_where_the_volumes_transform_places_it(
     assert bounds[5] == pytest.approx(100.0 + 70.0 * SIZE, abs=3.0)
 
 
-def test_the_threshold_that_is_typed_is_the_one_that_the_head_is_looked_for_with(host):
+def test_the_typed_threshold_is_used_to_find_the_head(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     unfold(host, "newScenarioCollapsibleButton", "adjustHeadGroupBox")
     host.choose("scanComboBox", volume)
@@ -242,7 +242,7 @@ def test_a_canceled_preview_leaves_nothing_behind(host):
 
 
 @pytest.mark.usefixtures("own_processes")
-def test_a_canceled_search_for_another_head_leaves_the_one_that_is_shown(host):
+def test_canceling_a_search_for_another_head_keeps_the_one_that_is_shown(host):
     volume = add_volume(host.scene, phantom(spacing=(2.5, 2.5, 2.5), size=SIZE), "MRI")
     host.press("showScenarioButton")
     unfold(host, "otherHeadGroupBox")
@@ -256,7 +256,7 @@ def test_a_canceled_search_for_another_head_leaves_the_one_that_is_shown(host):
     assert findNode(host.scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetDisplayVisibility()
 
 
-def test_the_setup_that_is_shown_is_the_usual_one_until_it_is_changed(host):
+def test_the_default_setup_is_shown_until_it_is_changed(host):
     unfold(host, "newScenarioCollapsibleButton", "setUpGroupBox")
     form = host.widget._panels._panels
     (panel,) = [each for each in form if type(each).__name__ == "NewScenarioPanel"]
@@ -271,7 +271,7 @@ def test_the_setup_that_is_shown_is_the_usual_one_until_it_is_changed(host):
     assert changed.robot_base == (0.0, -40.0)
 
 
-def test_a_plan_in_the_scene_goes_into_the_scenario(host, tmp_path):
+def test_a_plan_in_the_scene_is_included_in_the_scenario(host, tmp_path):
     targets = host.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Targets")
     setPoints(targets, ("Tumor", "Cyst"), np.array([[1.0, 2, 3], [4, 5, 6]]))
     line = host.scene.AddNewNodeByClass("vtkMRMLMarkupsLineNode", "Biopsy")

@@ -61,7 +61,7 @@ def test_a_session_leads_from_an_empty_slicer_to_the_next_trial():
     ]
 
 
-def test_while_the_trainee_does_the_tutorial_the_line_says_so_and_how_to_leave_it_out():
+def test_during_the_tutorial_the_line_says_so_and_how_to_skip_it():
     step = step_of(CHOSEN, isLearning=True)
     assert step.title == "Start the trial run"
     assert step.sentence.startswith("T001 does the tutorial first")
@@ -71,7 +71,7 @@ def test_while_the_trainee_does_the_tutorial_the_line_says_so_and_how_to_leave_i
     assert "uncheck" not in led.sentence
 
 
-def test_the_section_of_a_step_is_that_in_which_it_can_be_done():
+def test_the_section_of_a_step_is_the_one_in_which_it_can_be_done():
     assert step_of(OFF, needsSetup=True).section is Section.SETUP
     assert step_of(OFF).section is Section.SIMULATOR
     assert step_of(CONNECTED).section is Section.TRAINEES
@@ -95,12 +95,12 @@ def test_an_unexpected_end_is_reported_and_the_program_can_be_started_again():
     assert (ended.action, ended.sentence) == (NextAction.START_SIMULATOR, "It ended: no screen.")
 
 
-def test_a_port_that_is_taken_by_something_else_does_not_keep_from_starting():
+def test_a_port_used_by_something_else_does_not_prevent_starting():
     assert step_of(OFF, link=link(LinkState.OTHER_PROGRAM)).action is NextAction.START_SIMULATOR
     assert step_of(OFF, link=link(LinkState.ABSENT)).action is NextAction.START_SIMULATOR
 
 
-def test_a_simulator_of_another_computer_is_only_connected_to():
+def test_a_simulator_on_another_computer_is_only_connected_to():
     assert step_of(OFF, isElsewhere=True).action is NextAction.CONNECT
     assert step_of(OFF, isElsewhere=True, needsSetup=True).action is NextAction.CONNECT
     absent = step_of(OFF, isElsewhere=True, link=link(LinkState.ABSENT))
@@ -110,26 +110,26 @@ def test_a_simulator_of_another_computer_is_only_connected_to():
     )
 
 
-def test_who_has_disconnected_from_a_simulator_that_runs_here_can_connect_again():
+def test_after_disconnecting_from_a_local_simulator_one_can_connect_again():
     assert step_of(OFF, program=ProgramState.READY).action is NextAction.CONNECT
 
 
-def test_a_simulator_that_runs_already_is_connected_to_rather_than_started_beside():
+def test_a_running_simulator_is_connected_to_instead_of_starting_another():
     found = step_of(OFF, runningSentence="One runs already.")
     assert (found.action, found.sentence) == (NextAction.CONNECT_TO_RUNNING, "One runs already.")
 
 
-def test_nothing_can_be_pressed_while_the_simulator_is_set_up():
+def test_nothing_can_be_pressed_while_the_simulator_is_being_set_up():
     assert step_of(OFF, isBeingSetUp=True).action is NextAction.WAIT
 
 
-def test_a_trial_stays_in_sight_while_the_simulator_is_silent():
+def test_a_trial_stays_in_view_while_the_simulator_is_silent():
     silent = step_of(CHOSEN, link=link(LinkState.STALE), phase="running")
     assert (silent.action, silent.section) == (NextAction.WAIT, Section.TRAINING)
 
 
 @pytest.mark.parametrize("phase", [phase.value for phase in Phase])
-def test_there_is_something_to_do_and_a_word_for_each_phase_of_a_trial(phase):
+def test_each_phase_of_a_trial_has_a_title_a_sentence_and_an_action(phase):
     found = step_of(CHOSEN, phase=phase, touched=15)
     assert found.title
     assert found.sentence
@@ -137,7 +137,7 @@ def test_there_is_something_to_do_and_a_word_for_each_phase_of_a_trial(phase):
         assert found.action is NextAction.PAUSE
 
 
-def test_a_study_with_trainees_lets_choose_one():
+def test_a_study_with_trainees_offers_choosing_one():
     assert step_of(CONNECTED, hasTrainees=True).action is NextAction.CHOOSE_TRAINEE
 
 
@@ -151,19 +151,19 @@ def test_a_study_decides_what_its_trainee_does_next():
     }
 
 
-def test_a_trial_that_cannot_be_scored_does_not_keep_from_the_next_one():
+def test_a_trial_that_cannot_be_scored_does_not_prevent_the_next_one():
     stuck = step_of(PRACTICED, phase="registered", isUnscored=True)
     assert stuck.action is NextAction.START_TASK
 
 
-def test_the_port_is_the_preferred_one_unless_somebody_listens_there():
+def test_the_preferred_port_is_used_unless_something_listens_there():
     with SimulatorDouble() as listening:
         taken = listening.port
         assert freePort(taken) == ANY
     assert freePort(taken) == taken
 
 
-def test_an_aborted_step_of_a_study_asks_for_its_reason_before_it_is_started():
+def test_an_aborted_step_of_a_study_asks_for_a_reason_before_it_is_started_again():
     step = step_of(PRACTICED, studyStep=StepKind.TRIAL, needsRepeatReason=True)
     assert step.action is NextAction.EXPLAIN_REPEAT
     assert step.section is Section.STUDY

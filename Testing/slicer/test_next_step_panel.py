@@ -68,7 +68,7 @@ def test_at_first_one_section_is_open_and_the_button_says_what_to_do(host):
     assert host.find("nextStepButton").enabled
 
 
-def test_a_section_opens_when_its_step_comes_and_is_folded_after_it(instructor):
+def test_a_section_opens_when_its_step_comes_and_folds_after_it(instructor):
     assert instructor.open_sections() == {"trainees"}
     instructor.host.press("nextStepButton")
     assert instructor.open_sections() == {"training"}
@@ -79,7 +79,7 @@ def test_a_section_opens_when_its_step_comes_and_is_folded_after_it(instructor):
         instructor.host.press("nextStepButton")
 
 
-def test_sections_that_the_user_opens_or_folds_stay_so_until_the_next_step(instructor):
+def test_sections_the_user_opens_or_folds_stay_so_until_the_next_step(instructor):
     host = instructor.host
     host.press("createTraineeButton")
     instructor.wait_for("Start the trial run")
@@ -96,7 +96,7 @@ def test_sections_that_the_user_opens_or_folds_stay_so_until_the_next_step(instr
     assert instructor.open_sections() == {"trainees"}
 
 
-def test_sections_that_are_no_steps_are_the_users_alone(instructor):
+def test_sections_without_a_step_are_left_to_the_user(instructor):
     host = instructor.host
     host.unfold("taskComboBox")
     host.unfold("placeTargetButton")
@@ -134,7 +134,7 @@ def test_the_trial_run_waits_for_the_tutorial_unless_the_instructor_unchecks_it(
     )
 
 
-def test_another_computers_simulator_is_connected_to_by_the_same_button(host):
+def test_the_same_button_connects_to_a_simulator_on_another_computer(host):
     host.open()
     host.type("hostLineEdit", "localhost.localdomain")
     host.wait_until(lambda: host.text("nextStepButton") == "Connect", "the button follows")
@@ -142,7 +142,7 @@ def test_another_computers_simulator_is_connected_to_by_the_same_button(host):
     host.wait_until(lambda: host.text("linkText") != "Not connected", "it is looked for")
 
 
-def test_the_button_is_reached_by_the_keyboard(host):
+def test_the_button_can_be_reached_by_keyboard(host):
     host.open()
     button = host.find("nextStepButton")._qt
     button.window().activateWindow()
@@ -157,7 +157,7 @@ def test_the_button_is_reached_by_the_keyboard(host):
     host.wait_until(lambda: host.messages, "the shortcut asks whether to set up")
 
 
-def test_the_usual_states_fit_into_one_screen(instructor, tmp_path):
+def test_the_usual_states_fit_on_one_screen(instructor, tmp_path):
     host, heights = instructor.host, {}
 
     def measure(state):

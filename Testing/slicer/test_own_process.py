@@ -32,7 +32,7 @@ def ignore(_step, _share):
     pass
 
 
-def test_the_head_is_the_one_that_is_made_here():
+def test_a_head_found_in_a_separate_process_equals_one_found_in_this_process():
     scan, settings = phantom(spacing=(3.0, 3.0, 3.0), size=0.4), HeadSettings()
     told = []
     found = OwnProcess(PYTHON)(FIND_HEAD, lambda *step: told.append(step), scan, settings)
@@ -43,14 +43,14 @@ def test_the_head_is_the_one_that_is_made_here():
     assert told[-1] == ("Closing tunnels", 0.7)
 
 
-def test_what_cannot_be_used_is_refused_in_the_same_words(tmp_path, monkeypatch):
+def test_unusable_input_is_refused_in_the_same_words(tmp_path, monkeypatch):
     (tmp_path / "refusing.py").write_text(REFUSES, encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     with pytest.raises(InputError, match=r"^“µ” cannot be used\.$"):
         OwnProcess(PYTHON)("refusing:work", ignore)
 
 
-def test_a_process_that_ends_before_it_is_done_is_reported(tmp_path, monkeypatch):
+def test_a_process_that_ends_before_finishing_is_reported(tmp_path, monkeypatch):
     (tmp_path / "failing.py").write_text(
         "import os\ndef work(progress):\n    print('Out of paper.', flush=True)\n    os._exit(1)\n"
     )
@@ -83,7 +83,7 @@ def test_where_no_process_can_be_started_the_work_is_done_here(tmp_path, monkeyp
     assert "cannot be started: " in caplog.text
 
 
-def test_what_is_canceled_ends(tmp_path, monkeypatch):
+def test_canceled_work_ends(tmp_path, monkeypatch):
     (tmp_path / "endless.py").write_text(
         "import time\n"
         "def work(path, progress):\n"

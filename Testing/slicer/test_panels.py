@@ -114,7 +114,7 @@ def cells(host, name):
 # Trainees
 
 
-def test_a_trainee_is_created_chosen_archived_and_brought_back(panels, study_path):
+def test_a_trainee_is_created_chosen_archived_and_restored(panels, study_path):
     assert panels.find("pseudonymLineEdit").placeholderText == "T001"
     panels.press("createTraineeButton")
     assert panels.find("traineeComboBox").currentText == "T001"
@@ -142,7 +142,7 @@ def test_what_cannot_be_done_with_a_trainee_is_explained(panels):
     assert "taken; choose another" in panels.messages[-1].text
 
 
-def test_a_study_locked_by_another_program_is_reported_and_shown_again_by_itself(
+def test_a_study_locked_by_another_program_is_reported_and_shown_again_automatically(
     panels, study_path, add_trial
 ):
     panels.press("createTraineeButton")
@@ -162,7 +162,7 @@ def test_a_study_locked_by_another_program_is_reported_and_shown_again_by_itself
     assert panels.find("historyTable").rowCount == 1
 
 
-def test_a_trainee_is_deleted_only_after_a_yes(panels, add_trial, study_path):
+def test_a_trainee_is_deleted_only_after_confirmation(panels, add_trial, study_path):
     add_trial(1, "T-001")
     panels.type("pseudonymLineEdit", "other")
     panels.press("createTraineeButton")
@@ -199,7 +199,7 @@ def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
     assert len(json.loads((tmp_path / "trainee.json").read_text())["trials"]) == 3
 
 
-def test_a_file_gets_its_suffix_and_replaces_another_only_after_a_yes(panels, add_trial, tmp_path):
+def test_a_file_gets_its_suffix_and_replaces_another_once_confirmed(panels, add_trial, tmp_path):
     add_trial(1, "T-001")
     panels.press("createTraineeButton")
     panels.choose("traineeComboBox", "T-001")
@@ -232,7 +232,7 @@ def test_another_study_file_is_used_when_chosen_and_an_invalid_one_is_reported(p
     assert panels.find("traineeComboBox").count == 2
 
 
-def test_an_address_that_cannot_be_used_is_refused_without_repeating_its_password(panels):
+def test_an_unusable_address_is_refused_without_repeating_its_password(panels):
     panels.type("studyAddressLineEdit", "postgresql://seat:secret@host/study")
     assert "must not hold a password" in panels.messages[-1].text
     assert "secret" not in panels.messages[-1].text
@@ -333,7 +333,7 @@ def test_the_transform_is_applied_or_not_by_a_checkbox(panels, touched):
     panels.wait_until(lambda: not panels.find("appliedCheckBox").checked, "the box follows")
 
 
-def test_another_target_is_chosen_and_the_head_colored(panels, touched):
+def test_another_target_is_chosen_and_the_head_is_colored(panels, touched):
     touch(panels, touched)
     before = panels.text("treText")
     target = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Tumor")
@@ -345,7 +345,7 @@ def test_another_target_is_chosen_and_the_head_colored(panels, touched):
     assert head.GetDisplayNode().GetScalarVisibility()
 
 
-def test_one_small_legend_is_drawn_in_the_3d_view_alone(panels, touched, tmp_path):
+def test_one_small_legend_is_drawn_only_in_the_3d_view(panels, touched, tmp_path):
     touch(panels, touched)
     head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL).GetDisplayNode()
     head.SetOpacity(0.4)
@@ -383,7 +383,7 @@ def test_a_plan_says_what_is_missing_until_it_can_be_sent(panels, touched):
         panels.press("sendPlanButton")
 
 
-def test_targets_are_added_removed_and_brought_back(panels):
+def test_targets_are_added_removed_and_restored(panels):
     with pytest.raises(AssertionError, match="No point is placed"):
         panels.press("removePlanPointButton")
     for place in ((10.0, 20.0, 0.0), (20.0, 10.0, 5.0)):
@@ -401,7 +401,7 @@ def test_targets_are_added_removed_and_brought_back(panels):
     assert node.GetNumberOfControlPoints() == 1
 
 
-def test_the_expected_error_is_shown_at_any_target_of_a_list(panels, touched):
+def test_the_expected_error_is_shown_at_any_target_in_a_list(panels, touched):
     touch(panels, touched)
     targets = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Targets")
     setPoints(targets, ("Tumor", "Cyst"), np.array([[0.0, 0.0, 20.0], [60.0, 60.0, -60.0]]))
@@ -467,7 +467,7 @@ def test_the_report_of_those_who_consent_is_written_and_opened(
     assert len((tmp_path / "report" / "trials.csv").read_text().splitlines()) == 4
 
 
-def test_a_trial_has_feedback_and_is_shown_again(panels, add_trial):
+def test_a_trial_gets_feedback_and_is_replayed(panels, add_trial):
     add_trial(1, "T-001")
     panels.press("createTraineeButton")
     panels.choose("traineeComboBox", "T-001")
@@ -484,9 +484,7 @@ def test_a_trial_has_feedback_and_is_shown_again(panels, add_trial):
     assert tool.GetTransformNodeID() is not None
 
 
-def test_a_replay_that_is_canceled_or_whose_scene_is_closed_leaves_nothing_behind(
-    panels, add_trial
-):
+def test_a_canceled_replay_or_one_whose_scene_is_closed_leaves_nothing_behind(panels, add_trial):
     add_trial(1, "T-001")
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
     panels.press("createTraineeButton")
@@ -495,7 +493,7 @@ def test_a_replay_that_is_canceled_or_whose_scene_is_closed_leaves_nothing_behin
     for meddle in (lambda: panels.press("replayButton"), panels.clear_scene):
         done = []
 
-        def meddle_once(meddle=meddle, done=done):
+        def interfere_once(meddle=meddle, done=done):
             # Not before the first of the replay's nodes is in the scene.
             if (
                 panels.scene.GetFirstNodeByName("T-001, task-1: WorldToHead") is not None
@@ -506,7 +504,7 @@ def test_a_replay_that_is_canceled_or_whose_scene_is_closed_leaves_nothing_behin
                 meddle()
 
         timer = QtCore.QTimer()
-        timer.timeout.connect(meddle_once)
+        timer.timeout.connect(interfere_once)
         timer.start(0)
         panels.press("replayButton")
         timer.stop()
@@ -518,7 +516,7 @@ def test_a_replay_that_is_canceled_or_whose_scene_is_closed_leaves_nothing_behin
     assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1") is not None
 
 
-def test_who_is_deleted_leaves_no_trace_in_database_journals_and_later_exports(
+def test_deleting_a_trainee_leaves_no_trace_in_database_journals_and_later_exports(
     panels, add_trial, study_path, tmp_path
 ):
     trial_id, trials = str(uuid.UUID(int=1)), Path.home() / "RASTrainer" / "trials"
@@ -576,7 +574,7 @@ def test_the_simulator_must_be_set_up_before_it_is_started(panels, tmp_path):
     assert "There are no wheels" in panels.messages[-1].text
 
 
-def test_how_a_headset_is_paired_is_shown_while_the_simulator_runs(panels, tmp_path):
+def test_how_to_pair_a_headset_is_shown_while_the_simulator_runs(panels, tmp_path):
     program = tmp_path / "rastrainer"
     program.write_text(f"#!{sys.executable}\n{PAIRED}", encoding="utf-8")
     program.chmod(0o755)

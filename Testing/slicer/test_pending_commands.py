@@ -110,7 +110,7 @@ def test_a_finished_trial_is_handed_over_in_the_next_turn(make_room):
     assert records == [{"number": 1}]
 
 
-def test_one_turn_is_requested_however_much_arrives(make_room):
+def test_only_one_turn_is_requested_however_much_arrives(make_room):
     room = make_room()
     room.link.process()
     room.stop_clock()
@@ -124,7 +124,7 @@ def test_one_turn_is_requested_however_much_arrives(make_room):
     assert len(room.soon) == 1
 
 
-def test_a_turn_that_comes_after_the_link_was_closed_does_nothing(make_room):
+def test_a_turn_after_the_link_was_closed_does_nothing(make_room):
     room = make_room()
     room.ask()
     room.wait_for_turn()
@@ -133,7 +133,7 @@ def test_a_turn_that_comes_after_the_link_was_closed_does_nothing(make_room):
     assert len(room.replies) == 1
 
 
-def test_a_burst_is_sent_a_few_at_a_time_and_answered_whole_in_its_order(make_room):
+def test_a_burst_is_sent_a_few_at_a_time_and_fully_answered_in_order(make_room):
     room, numbers = make_room(lambda _name, arguments: {"number": arguments.get("folder")}), []
     for number in range(BURST):
         room.link.send(
@@ -145,7 +145,7 @@ def test_a_burst_is_sent_a_few_at_a_time_and_answered_whole_in_its_order(make_ro
     assert numbers == [str(number) for number in range(BURST)]
 
 
-def test_to_a_simulator_that_does_not_answer_no_more_is_sent(silent):
+def test_nothing_more_is_sent_to_a_simulator_that_does_not_answer(silent):
     for _ in range(BURST):
         silent.ask()
     for _ in range(50):
@@ -157,7 +157,7 @@ def test_to_a_simulator_that_does_not_answer_no_more_is_sent(silent):
     assert all(reply.ok for reply in silent.replies)
 
 
-def test_sending_stops_for_this_turn_when_its_time_is_over(make_room, monkeypatch):
+def test_sending_stops_for_this_turn_when_its_time_is_up(make_room, monkeypatch):
     room = make_room()
     connector = room.link.connector
     send = connector.SendCommand
@@ -181,7 +181,7 @@ def test_sending_stops_for_this_turn_when_its_time_is_over(make_room, monkeypatc
     room.run_until(lambda: len(room.replies) == 5)
 
 
-def test_what_still_waited_when_the_connection_was_lost_is_refused(silent):
+def test_commands_still_waiting_when_the_connection_is_lost_are_refused(silent):
     silent.stop_clock()
     for _ in range(BURST):
         silent.ask()
@@ -192,7 +192,7 @@ def test_what_still_waited_when_the_connection_was_lost_is_refused(silent):
     }
 
 
-def test_a_command_that_was_given_up_lives_until_the_connector_is_done_with_it(silent):
+def test_an_abandoned_command_lives_until_the_connector_is_done_with_it(silent):
     silent.ask(timeoutS=2.0)
     wait_until(lambda: silent.asked(), lambda: None)
     silent.clock.ahead += 3.0

@@ -11,8 +11,8 @@ from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.scenario.points import LABELS, PlannedTarget, PlannedTrajectory
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.plan_logic import PlanLogic, targetsOf
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
+from rastrainer.slicer.logic.target_plan_logic import PlanLogic, targetsOf
 from rastrainer.slicer.logic.views import jumpTo
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
 from rastrainer.slicer.scene.plan_points import startPlacing, stopPlacing
@@ -74,7 +74,7 @@ def room(scene, scenario):
     room.simulator.close()
 
 
-def test_a_target_is_mapped_into_world_with_the_error_to_expect_there(room):
+def test_a_target_is_mapped_into_world_with_its_expected_error(room):
     room.register()
     plan = room.logic.read(room.target(TUMOR))
     shown = room.registration.shown
@@ -169,7 +169,7 @@ def test_an_answer_is_not_shown_for_another_plan(change, room):
     assert "The plan has changed" in room.logic.sentence
 
 
-def test_an_answer_that_comes_after_the_plan_was_changed_is_not_shown(room):
+def test_an_answer_that_arrives_after_the_plan_was_changed_is_not_shown(room):
     room.register()
     room.connect()
     node = room.target(TUMOR)
@@ -182,7 +182,7 @@ def test_an_answer_that_comes_after_the_plan_was_changed_is_not_shown(room):
     assert room.logic.isReachable is True
 
 
-def test_a_target_that_is_placed_erases_none_and_each_change_can_be_undone(room):
+def test_placing_a_target_erases_none_and_each_change_can_be_undone(room):
     points = room.logic.points
     node = room.target(TUMOR)
     assert room.target(ENTRY) is node
@@ -200,7 +200,7 @@ def test_a_target_that_is_placed_erases_none_and_each_change_can_be_undone(room)
     assert not points.canUndo
 
 
-def test_undo_skips_what_was_not_placed_and_what_was_removed(room):
+def test_undo_skips_points_that_were_not_placed_and_removed_ones(room):
     points = room.logic.points
     node = room.target(TUMOR)
     points.newTarget()
@@ -210,7 +210,7 @@ def test_undo_skips_what_was_not_placed_and_what_was_removed(room):
     assert node.GetNumberOfControlPoints() == 0
 
 
-def test_a_second_trajectory_is_another_line_and_an_unfinished_one_is_finished(room):
+def test_a_second_trajectory_is_another_line_and_an_unfinished_one_is_completed(room):
     line = room.logic.points.newTrajectory()
     line.AddControlPoint(*ENTRY)
     assert room.logic.points.newTrajectory() is line
@@ -232,7 +232,7 @@ def test_the_points_of_a_scenario_are_not_removed(scene, scenario):
 
 
 @pytest.mark.parametrize("is_sent_first", [True, False])
-def test_the_true_error_at_the_target_is_shown_when_the_head_is_known(is_sent_first, room):
+def test_the_true_error_at_the_target_is_shown_once_the_head_pose_is_known(is_sent_first, room):
     room.register()
     room.connect()
     if not is_sent_first:
@@ -249,7 +249,7 @@ def test_the_true_error_at_the_target_is_shown_when_the_head_is_known(is_sent_fi
     assert room.logic.trueErrorMm is None
 
 
-def test_without_a_point_or_a_registration_it_is_said_what_is_missing(room):
+def test_without_a_point_or_a_registration_the_message_says_what_is_missing(room):
     with pytest.raises(InputError, match="Place a target or a trajectory"):
         room.logic.read(None)
     with pytest.raises(InputError, match="has no point yet"):
@@ -269,7 +269,7 @@ def test_clicks_place_the_plan(room):
     assert interaction.GetCurrentInteractionMode() == interaction.ViewTransform
 
 
-def test_slices_jump_to_a_place_and_stay_where_they_look(room):
+def test_slices_jump_to_a_place_without_moving_in_their_plane(room):
     view = room.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Red")
     view.SetOrientation("Axial")
     view.JumpSliceByCentering(7.0, -5.0, 0.0)

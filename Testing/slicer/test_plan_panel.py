@@ -35,7 +35,7 @@ def planner(host):
 def test_reachability_is_shown_only_for_the_plan_that_was_sent(planner):
     planner.press("sendPlanButton")
     planner.wait_until(lambda: "can carry it out" in planner.text("reachableText"), "the answer")
-    planner.let_pass(0.3)
+    planner.idle_for(0.3)
     assert "can carry it out" in planner.text("reachableText")
     planner.press("placeTargetButton")
     planner.place(-30.0, 10.0, 5.0)

@@ -89,7 +89,7 @@ def trial(host):
 
 
 @pytest.mark.parametrize("name", ["pauseButton", "nextStepButton"])
-def test_pause_stays_pause_though_the_trainee_pauses_meanwhile(trial, name):
+def test_pause_stays_pause_even_if_the_trainee_pauses_meanwhile(trial, name):
     trial.tell("running")
     press_slowly(trial.host, name, lambda: trial.tell("paused"))
     run_until_received(trial.host.widget.logic.session.link)
@@ -119,7 +119,7 @@ def test_connect_does_not_disconnect_a_link_that_was_started_meanwhile(host):
     assert link.status.state is not LinkState.OFF
 
 
-def test_cancel_does_not_start_again_work_that_ended_meanwhile(host, monkeypatch):
+def test_cancel_does_not_restart_work_that_ended_meanwhile(host, monkeypatch):
     host.open()
     host.unfold("useHeadButton")
     model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", "Mine")
@@ -138,13 +138,13 @@ def test_cancel_does_not_start_again_work_that_ended_meanwhile(host, monkeypatch
     assert begun == [True]
 
 
-def test_the_button_of_a_warning_stays_while_the_registration_is_shown_anew(touched):
+def test_the_button_of_a_warning_stays_while_the_registration_is_redisplayed(touched):
     session = touched.widget.logic.session
     press_slowly(touched, "remedy0Button", lambda: session.registration.chooseKind("similarity"))
     assert touched.find("residualsTable").rowCount == 14
 
 
-def test_a_fiducial_stays_chosen_by_its_label_whichever_row_it_gets(touched):
+def test_a_fiducial_stays_chosen_by_its_label_whichever_row_it_moves_to(touched):
     session = touched.widget.logic.session
     touched.choose("residualsTable", 9)
     session.registration.exclude("7")
@@ -153,7 +153,7 @@ def test_a_fiducial_stays_chosen_by_its_label_whichever_row_it_gets(touched):
     assert not touched.find("excludeButton").enabled
 
 
-def test_the_target_that_is_chosen_is_taken_though_another_was_placed_meanwhile(touched):
+def test_the_chosen_target_is_used_even_if_another_was_placed_meanwhile(touched):
     touched.unfold("planTargetComboBox")
     touched.press("placeTargetButton")
     touched.place(10.0, 20.0, 30.0)
@@ -183,7 +183,7 @@ def test_a_consent_that_could_not_be_saved_is_not_shown_as_given(host, monkeypat
     assert not host.find("consentCheckBox").checked
 
 
-def test_a_set_up_that_could_not_begin_starts_no_simulator_after_the_next(host, tmp_path):
+def test_a_failed_setup_does_not_start_a_simulator_after_the_next_one(host, tmp_path):
     host.open()
     host.find("wheelsPathLineEdit").currentPath = str(tmp_path)
     host.answer("not set up on this computer yet", "Ok")

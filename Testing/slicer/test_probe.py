@@ -15,8 +15,8 @@ from Testing.slicer.simulator_double import SimulatorDouble, wait_until
 from Testing.slicer.strangers import (
     floods,
     is_silent,
+    replies_with,
     says,
-    says_in_answer,
     stranger,
     trickles,
     web_server,
@@ -43,7 +43,7 @@ def ask(host, port):
     return found[-1]
 
 
-def ask_and_lose_patience(behavior, heard):
+def probe_until_timeout(behavior, heard):
     """Ask a stranger, and let the time for an answer pass once so many bytes have come."""
     with stranger(behavior) as port:
         clock = Clock()
@@ -70,17 +70,17 @@ def test_a_web_server_is_recognized():
     ("behavior", "peer"),
     [
         (says(b"SSH-2.0-OpenSSH_9.2p1\r\n"), Peer.OTHER_PROGRAM),
-        (says_in_answer(b"HTTP/1.1 400 Bad Request\r\n\r\n"), Peer.WEB_PAGE),
-        (says_in_answer(b"\x15\x03\x01\0\2\2\x46"), Peer.ENCRYPTED),
-        (says_in_answer(b""), Peer.SILENT),
-        (says_in_answer(TEXT), Peer.OTHER_OPENIGTLINK),
+        (replies_with(b"HTTP/1.1 400 Bad Request\r\n\r\n"), Peer.WEB_PAGE),
+        (replies_with(b"\x15\x03\x01\0\2\2\x46"), Peer.ENCRYPTED),
+        (replies_with(b""), Peer.SILENT),
+        (replies_with(TEXT), Peer.OTHER_OPENIGTLINK),
         (floods(POSE), Peer.OTHER_OPENIGTLINK),
         (floods(b"\0\2" + 56 * b"A"), Peer.OTHER_PROGRAM),
         (floods(b"\0\2STRING" + 56 * b"\xff"), Peer.OTHER_PROGRAM),
         (trickles(b"endless"), Peer.OTHER_PROGRAM),
     ],
 )
-def test_what_is_no_simulator_is_recognized_by_what_it_says(behavior, peer):
+def test_a_peer_other_than_a_simulator_is_recognized_by_what_it_sends(behavior, peer):
     with stranger(behavior) as port:
         assert ask("127.0.0.1", port).peer is peer
 
@@ -94,15 +94,15 @@ def test_what_is_no_simulator_is_recognized_by_what_it_says(behavior, peer):
         (says(b"HTT"), 1, Peer.OTHER_PROGRAM),
     ],
 )
-def test_a_silent_network_is_not_waited_for_without_end(behavior, heard, peer):
-    assert ask_and_lose_patience(behavior, heard).peer is peer
+def test_the_probe_does_not_wait_forever_for_a_silent_network(behavior, heard, peer):
+    assert probe_until_timeout(behavior, heard).peer is peer
 
 
 def test_an_unused_port_is_reported():
     assert ask("127.0.0.1", free_port()) == ProbeResult(Peer.NOBODY, "127.0.0.1")
 
 
-def test_a_name_is_looked_up_beside_the_main_thread_and_once_at_a_time(monkeypatch):
+def test_a_name_is_resolved_off_the_main_thread_and_only_once_at_a_time(monkeypatch):
     answers, asked = threading.Event(), []
 
     def look_up(host, *_more):
@@ -120,7 +120,7 @@ def test_a_name_is_looked_up_beside_the_main_thread_and_once_at_a_time(monkeypat
     assert asked == ["a-computer"]
 
 
-def test_a_name_that_is_looked_up_for_too_long_is_given_up(monkeypatch):
+def test_a_name_lookup_that_takes_too_long_is_given_up(monkeypatch):
     answers, clock = threading.Event(), Clock()
 
     def look_up(*_):
@@ -140,7 +140,7 @@ def test_a_host_without_an_address_is_reported(host):
     assert ask(host, 18944) == ProbeResult(Peer.UNKNOWN_HOST)
 
 
-def test_asking_leaves_no_socket_open():
+def test_probing_leaves_no_socket_open():
     with stranger(is_silent) as port:
         probe = Probe("127.0.0.1", port)
         probe.process()

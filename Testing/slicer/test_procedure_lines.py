@@ -66,7 +66,7 @@ def check(scene, found):
         assert column(scene, "plunge depth (mm)")[row] == pytest.approx(errors.plunge_mm, abs=1e-3)
 
 
-def test_the_lines_of_a_scene_have_the_errors_that_its_table_tells(headless_scene, analysis):
+def test_the_lines_in_a_scene_have_the_errors_shown_in_its_table(headless_scene, analysis):
     scene, found = headless_scene.scene, analysis[1]
     showProcedureErrors(scene, found)
     check(scene, found)
@@ -75,7 +75,7 @@ def test_the_lines_of_a_scene_have_the_errors_that_its_table_tells(headless_scen
     assert all(node.GetLocked() for role in ROLES for node in nodesOf(scene, LINE, role))
 
 
-def test_the_arrows_go_by_the_registration_and_then_by_the_hand_true_to_scale(
+def test_the_arrows_show_the_registration_error_then_the_hand_error_true_to_scale(
     headless_scene, analysis
 ):
     scene, found = headless_scene.scene, analysis[1]
@@ -96,7 +96,7 @@ def test_the_arrows_go_by_the_registration_and_then_by_the_hand_true_to_scale(
             assert np.linalg.norm(points - place, axis=1).min() < 0.3
 
 
-def test_everything_is_still_there_in_a_scene_that_was_saved_and_opened(
+def test_everything_is_still_there_in_a_saved_and_reopened_scene(
     headless_scene, analysis, tmp_path
 ):
     showProcedureErrors(headless_scene.scene, analysis[1])
@@ -109,7 +109,7 @@ def test_everything_is_still_there_in_a_scene_that_was_saved_and_opened(
     check(headless_scene.scene, analysis[1])
 
 
-def test_another_plan_takes_the_place_of_lines_and_errors(headless_scene, analysis):
+def test_another_plan_replaces_lines_and_errors(headless_scene, analysis):
     scene, procedure = headless_scene.scene, analysis[0]
     showProcedureErrors(scene, analysis[1])
     other = made_up_procedure(trajectory("Only", (0.0, 0.0, 90.0), (0.0, 5.0, 10.0)))

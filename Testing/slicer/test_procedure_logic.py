@@ -64,7 +64,7 @@ def theater(scene, scenario):
     theater.close()
 
 
-def test_the_touches_are_registered_as_soon_as_the_procedure_waits_for_that(theater, scenario):
+def test_the_touches_are_registered_as_soon_as_the_procedure_waits_for_it(theater, scenario):
     theater.say("verifying")
     theater.run_until(lambda: theater.sent("UseRegistration"))
     (used,) = theater.sent("UseRegistration")
@@ -77,7 +77,7 @@ def test_the_touches_are_registered_as_soon_as_the_procedure_waits_for_that(thea
     assert len(theater.all_sent("UseRegistration")) == 1
 
 
-def test_after_touching_again_the_touches_are_registered_again(theater):
+def test_touches_made_again_are_registered_again(theater):
     theater.say("verifying")
     theater.run_until(lambda: theater.sent("UseRegistration"))
     theater.say("running")
@@ -85,7 +85,7 @@ def test_after_touching_again_the_touches_are_registered_again(theater):
     theater.run_until(lambda: len(theater.sent("UseRegistration")) == 2)
 
 
-def test_why_the_touches_were_not_registered_is_said_once(theater):
+def test_the_reason_why_touches_were_not_registered_is_shown_once(theater):
     theater.refused = "UseRegistration"
     theater.say("verifying")
     theater.run_until(lambda: theater.said)
@@ -99,7 +99,7 @@ def test_why_the_touches_were_not_registered_is_said_once(theater):
     assert "must hold touches, a list of 15" in theater.said[1]
 
 
-def test_what_fails_once_the_procedure_has_gone_on_is_not_said(theater):
+def test_failures_after_the_procedure_has_moved_on_are_not_shown(theater):
     may_answer = threading.Event()
 
     def refuse_late(_name, _arguments):
@@ -131,7 +131,7 @@ def test_each_step_sends_its_command(theater):
     [None, 7, [], {"name": 3, "trajectory": "x", "trajectories": None, "feedMm": True}],
     ids=["none", "number", "list", "wrong"],
 )
-def test_a_state_of_any_kind_is_no_trouble(theater, told):
+def test_a_malformed_procedure_state_causes_no_trouble(theater, told):
     state = {"trialId": TRIAL, "phase": "drilling", "procedure": told}
     theater.simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     theater.run_until(lambda: theater.procedure.status.phase == "drilling")
@@ -145,5 +145,5 @@ def test_a_trial_with_a_procedure_is_started_with_its_name(theater):
     assert theater.sent("StartTask")[0]["procedure"] == "dbs"
 
 
-def test_the_touches_alone_have_no_procedure():
+def test_a_trial_with_touches_only_has_no_procedure():
     assert not ProcedureStatus.of({"phase": "running", "procedure": None}).isUnderWay

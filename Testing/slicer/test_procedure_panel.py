@@ -71,7 +71,7 @@ def test_a_procedure_is_started_beside_the_task(surgery):
     assert host.text("procedureStateText").startswith("No trial with a procedure is open")
 
 
-def test_the_way_of_registering_is_chosen_beside_the_task(surgery):
+def test_the_registration_method_is_chosen_beside_the_task(surgery):
     host, simulator = surgery
     assert host.find("methodComboBox").currentText == "Fiducials"
     for method in ("Trace over the skin", "Fiducials"):
@@ -86,7 +86,7 @@ def test_the_way_of_registering_is_chosen_beside_the_task(surgery):
     assert "method" not in touched
 
 
-def test_a_head_without_landmarks_offers_its_fiducials_alone(surgery):
+def test_a_head_without_landmarks_offers_only_its_fiducials(surgery):
     host, _simulator = surgery
     session = host.widget.logic.session
     head = replace(session.scenario.find("colin27"), landmarks=())
@@ -128,7 +128,7 @@ def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):
     assert "while the registration is verified" in host.find("acceptButton").toolTip
 
 
-def test_touches_that_cannot_be_registered_can_only_be_touched_again(surgery):
+def test_touches_that_cannot_be_registered_can_only_be_repeated(surgery):
     host, simulator = surgery
     simulator.responder = lambda name, _arguments: f"{name} is refused."
     tell(host, simulator, "verifying", registrationInUse=False)
@@ -140,7 +140,7 @@ def test_touches_that_cannot_be_registered_can_only_be_touched_again(surgery):
     host.wait_until(lambda: sent(simulator, "RegisterAgain"), "they are touched again")
 
 
-def test_the_errors_are_shown_with_what_registration_and_hand_caused(host):
+def test_the_errors_are_shown_with_the_shares_of_registration_and_hand(host):
     host.open()
     session = host.widget.logic.session
     procedure = made_up_procedure()

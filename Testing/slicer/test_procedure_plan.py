@@ -56,7 +56,7 @@ def sphere_node(scene, name="Vessel", resolution=20, is_open=False):
     return node
 
 
-def test_a_plan_that_was_shown_is_read_as_it_was(scene, logic):
+def test_a_displayed_plan_is_read_back_unchanged(scene, logic):
     procedure = made_up_procedure()
     showPlan(scene, procedure.trajectories, {"Vessel": vessel()}, procedure.checkpoints)
     node = scene.GetFirstNodeByName("Checkpoints")
@@ -106,14 +106,14 @@ def test_a_plan_that_was_shown_is_read_as_it_was(scene, logic):
     ],
     ids=["unfinished", "none", "short", "twice", "open", "huge", "empty", "two", "many"],
 )
-def test_what_is_missing_or_unusable_is_one_sentence(scene, logic, spoil, sentence):
+def test_anything_missing_or_unusable_is_reported_in_one_sentence(scene, logic, spoil, sentence):
     spoil(scene, placed(scene))
     with pytest.raises(InputError) as refused:
         logic.read(PLAN)
     assert sentence in str(refused.value)
 
 
-def test_a_plan_needs_a_title_of_which_a_name_can_be_made(scene, logic):
+def test_a_plan_needs_a_title_from_which_a_name_can_be_made(scene, logic):
     placed(scene)
     with pytest.raises(InputError, match="Enter a title"):
         logic.read(replace(PLAN, title="  "))
@@ -122,7 +122,7 @@ def test_a_plan_needs_a_title_of_which_a_name_can_be_made(scene, logic):
     assert logic.read(replace(PLAN, title="Ä first: Try!"))[0].name == "first-try"
 
 
-def test_a_structure_is_where_its_transform_puts_it(scene):
+def test_a_structure_is_where_its_transform_places_it(scene):
     node = sphere_node(scene)
     transform = scene.AddNewNodeByClass("vtkMRMLLinearTransformNode")
     matrix = vtk.vtkMatrix4x4()
@@ -163,7 +163,7 @@ def test_instruments_and_structures_are_kept_with_the_scene(headless_scene, logi
     assert len(meshes) == 1
 
 
-def test_another_plan_removes_its_own_models_and_unmarks_those_of_the_user(scene):
+def test_another_plan_removes_its_own_models_and_unmarks_the_users(scene):
     mine = sphere_node(scene, "Mine")
     showPlan(scene, (), {"Shown": vessel()}, ())
     assert [node.GetName() for node in noGoNodes(scene)] == ["Shown"]

@@ -31,7 +31,7 @@ def at_work(host, make_record):
     return host
 
 
-def test_a_replay_that_is_saved_opened_and_saved_again_leaves_the_log_empty(at_work, tmp_path):
+def test_saving_reopening_and_resaving_a_replay_leaves_the_log_empty(at_work, tmp_path):
     at_work.press("replayButton")
     for name in ("first.mrb", "second.mrb"):
         at_work.save_scene(tmp_path / name)
@@ -40,7 +40,7 @@ def test_a_replay_that_is_saved_opened_and_saved_again_leaves_the_log_empty(at_w
     assert at_work.errors == []
 
 
-def test_a_head_that_is_colored_planned_on_plotted_and_closed_leaves_the_log_empty(at_work):
+def test_coloring_planning_plotting_and_closing_leave_the_log_empty(at_work):
     for _round in range(2):
         at_work.check("headColoredCheckBox")
         at_work.check("headColoredCheckBox", False)

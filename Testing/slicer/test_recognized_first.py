@@ -23,7 +23,7 @@ def run_until_state(link, state):
     run_link_until(link, lambda: link.status.state is state)
 
 
-def run_until_said(link, words):
+def run_until_status_contains(link, words):
     """Wait until the link says so; a server that is late counts as silent at first."""
     run_link_until(link, lambda: words in link.status.sentence)
 
@@ -31,13 +31,13 @@ def run_until_said(link, words):
 def test_a_web_page_is_named_and_never_connected_to(link):
     with web_server() as port:
         link.connectTo(port=port)
-        run_until_said(link, f"What answers at 127.0.0.1:{port} {WEB_PAGE}")
+        run_until_status_contains(link, f"What answers at 127.0.0.1:{port} {WEB_PAGE}")
         assert link.status.state is LinkState.OTHER_PROGRAM
         assert "18944" in link.status.remedy
         assert link.connector is None
 
 
-def test_the_stand_in_of_the_connector_notices_commands_that_died_too_early(scene):
+def test_the_connector_stand_in_notices_commands_that_died_too_early(scene):
     connector = headlessKit().makeConnector()
     scene.AddNode(connector)
     with stranger(says(HTTP)) as port:
@@ -48,7 +48,7 @@ def test_the_stand_in_of_the_connector_notices_commands_that_died_too_early(scen
     takeCrashes()  # It may have connected again before it was stopped.
 
 
-def test_a_simulator_that_comes_to_the_port_of_a_web_page_is_found(link, clock):
+def test_a_simulator_that_replaces_a_web_page_at_the_port_is_found(link, clock):
     with web_server() as port:
         link.connectTo(port=port)
         run_until_state(link, LinkState.OTHER_PROGRAM)
@@ -61,7 +61,7 @@ def test_after_a_loss_the_peer_is_recognized_again(link):
     with SimulatorDouble() as simulator:
         connect(link, simulator)
     with web_server(simulator.port):
-        run_until_said(link, WEB_PAGE)
+        run_until_status_contains(link, WEB_PAGE)
 
 
 def test_another_program_at_the_port_during_a_stall_is_not_connected_to(link):
@@ -87,7 +87,7 @@ def test_after_a_half_open_connection_the_peer_is_recognized_again(link, clock):
     simulator.stop_listening()
     with stranger(is_silent, simulator.port):
         simulator.beats = False
-        run_link_until(link, lambda: clock.goes_on() and SILENT in link.status.sentence)
+        run_link_until(link, lambda: clock.skip_ahead() and SILENT in link.status.sentence)
         assert link.status.state is LinkState.OTHER_PROGRAM
     simulator.close()
 

@@ -80,7 +80,7 @@ def test_three_fits_are_shown_side_by_side_with_the_expected_error(table):
     assert table.node(Role.RESIDUALS).GetNumberOfRows() == 15
 
 
-def test_touches_are_registered_while_the_trial_runs_from_the_third_on(table):
+def test_touches_are_registered_during_the_trial_from_the_third_on(table):
     table.touch(table.touched[:2])
     assert table.logic.comparison is None
     assert "at least 3" in table.logic.problem
@@ -91,7 +91,7 @@ def test_touches_are_registered_while_the_trial_runs_from_the_third_on(table):
 
 
 @pytest.mark.parametrize("touches", [0, 2, 15])
-def test_nothing_is_computed_again_while_nothing_changes(table, touches):
+def test_nothing_is_recomputed_while_nothing_changes(table, touches):
     table.touch(table.touched[:touches])
     count = len(table.changes)
     for _ in range(5):
@@ -112,7 +112,7 @@ def test_the_transform_shows_the_chosen_fit_and_remembers_its_lists(table):
     assert not isApplied(transform)
 
 
-def test_a_bad_touch_is_named_left_out_by_one_click_and_brought_back(table):
+def test_a_bad_touch_is_named_excluded_by_one_click_and_restored(table):
     bad = table.touched.copy()
     bad[6] += [9.0, -6.0, 5.0]
     table.touch(bad)
@@ -129,7 +129,7 @@ def test_a_bad_touch_is_named_left_out_by_one_click_and_brought_back(table):
     assert not table.logic.canUndo
 
 
-def test_exchanged_touches_are_put_in_order_by_one_click(table):
+def test_swapped_touches_are_put_in_order_by_one_click(table):
     order = [0, 1, 3, 2, *range(4, 15)]
     table.touch(table.touched[order])
     remedy = table.warn("order")
@@ -141,7 +141,7 @@ def test_exchanged_touches_are_put_in_order_by_one_click(table):
     assert table.logic.shown.fre_mm > 5.0
 
 
-def test_of_two_touches_at_one_place_the_later_is_left_out(table):
+def test_of_two_touches_at_one_place_the_later_is_excluded(table):
     twice = table.touched.copy()
     twice[9] = twice[4]
     table.touch(twice)
@@ -157,7 +157,7 @@ def test_of_two_touches_at_one_place_the_later_is_left_out(table):
         (lambda points: points / MM_PER_M, "scale"),
     ],
 )
-def test_what_only_the_points_themselves_can_mend_has_a_sentence_and_no_button(change, code, table):
+def test_a_problem_that_only_new_points_can_fix_has_a_message_and_no_button(change, code, table):
     table.touch(change(table.touched))
     remedy = table.warn(code)
     assert remedy.title == ""
@@ -176,7 +176,7 @@ def test_any_fiducial_may_be_left_out_until_too_few_are_left(table):
     assert len(table.logic.shown.labels) == 3
 
 
-def test_a_stated_localization_error_weights_the_rigid_fit_alone_and_is_undone(table):
+def test_a_stated_localization_error_weights_only_the_rigid_fit_and_can_be_undone(table):
     table.touch()
     plain = table.logic.comparison
     table.logic.localize("4", 5.0)
@@ -196,19 +196,19 @@ def test_a_stated_localization_error_weights_the_rigid_fit_alone_and_is_undone(t
     assert table.logic.comparison.fits["rigid"].fre_mm == plain.fits["rigid"].fre_mm
 
 
-def test_the_usual_localization_error_takes_the_weights_back(table):
+def test_the_default_localization_error_removes_the_weights(table):
     table.touch()
     table.logic.localize("4", 5.0)
     table.logic.localize("4", 1.0)
     assert table.logic.choices == Choices()
 
 
-def test_points_put_in_order_keep_their_localization_errors():
+def test_reordered_points_keep_their_localization_errors():
     choices = Choices().localized("2", 3.0).rename({"1": "2", "2": "1"}).without(("5",))
     assert choices == Choices(frozenset({"5"}), (("1", "2"), ("2", "1")), (("2", 3.0),))
 
 
-def test_another_trial_begins_without_the_changes_of_the_one_before(table):
+def test_another_trial_begins_without_the_changes_of_the_previous_one(table):
     table.touch()
     table.logic.exclude("3")
     setPoints(capturedPointsNode(table.scene), (), np.zeros((0, 3)))
@@ -231,7 +231,7 @@ def test_the_target_may_be_any_point_and_is_followed(table):
     assert table.logic.comparison.errors[RIGID].target_mm == (0.0, 0.0, 0.0)
 
 
-def test_the_head_is_colored_by_the_error_to_expect_at_each_place(table):
+def test_the_head_is_colored_by_the_expected_error_at_each_place(table):
     table.touch()
     table.logic.setHeadColored(True)
     head = table.node(Role.HEAD_MODEL, "vtkMRMLModelNode")
@@ -248,7 +248,7 @@ def test_the_head_is_colored_by_the_error_to_expect_at_each_place(table):
     assert not display.GetScalarVisibility()
 
 
-def test_bars_beside_the_head_say_which_color_is_how_many_mm(table):
+def test_color_bars_beside_the_head_are_labeled_in_mm(table):
     table.scene.RegisterNodeClass(slicer.vtkMRMLColorLegendDisplayNode())
     table.touch()
     table.logic.setHeadColored(True)
@@ -262,7 +262,7 @@ def test_bars_beside_the_head_say_which_color_is_how_many_mm(table):
     assert not titles["Residual (mm)"].GetVisibility()
 
 
-def test_points_that_are_not_on_the_head_have_an_error_alike_in_all_directions(table):
+def test_points_off_the_head_have_an_isotropic_error(table):
     setPoints(table.fixed, LABELS, 0.5 * table.scenario.task("task-1").fiducials)
     table.touch(transforms.apply(table.scenario.head_to_world, 0.5 * table.touched_on_mri))
     shown, position = table.logic.shown, table.scenario.target_position
@@ -301,7 +301,7 @@ def test_without_a_registration_no_arrows_of_an_old_one_are_shown(table):
     assert arrows.GetPolyData().GetNumberOfPoints() == 0
 
 
-def test_a_head_that_is_new_is_prepared_by_another_thread_and_its_touches_registered_again(
+def test_a_new_head_is_prepared_in_another_thread_and_its_touches_registered_again(
     scene, scenario, monkeypatch
 ):
     threads, work = set(), BackgroundWork()
@@ -320,7 +320,7 @@ def test_a_head_that_is_new_is_prepared_by_another_thread_and_its_touches_regist
     work.process()
     assert logic.comparison is not None
     while work.isBusy:
-        work.giveTime()
+        work.yieldTime()
         work.process()
     assert threads
     assert threading.get_ident() not in threads
@@ -343,11 +343,11 @@ def logic_in_turns(table, work):
 
 def in_turns(work):
     while work.isBusy:
-        work.giveTime()
+        work.yieldTime()
         work.process()
 
 
-def test_with_turns_touches_are_registered_in_one_and_shown_in_the_next(
+def test_with_turns_touches_are_registered_in_one_turn_and_shown_in_the_next(
     table, logic_in_turns, work
 ):
     logic = logic_in_turns
@@ -361,7 +361,7 @@ def test_with_turns_touches_are_registered_in_one_and_shown_in_the_next(
     np.testing.assert_array_equal(matrixOf(logic.transform()), logic.shown.matrix)
 
 
-def test_with_turns_it_all_comes_out_as_at_once(table, logic_in_turns, work):
+def test_with_turns_the_result_is_the_same_as_at_once(table, logic_in_turns, work):
     table.touch()
     logic_in_turns.process()
     in_turns(work)
@@ -385,7 +385,7 @@ def test_lists_that_are_deleted_between_two_turns_are_not_shown(table, logic_in_
     assert logic_in_turns.problem
 
 
-def test_what_is_done_again_between_two_turns_is_shown_once(table, logic_in_turns, work):
+def test_changes_repeated_between_two_turns_are_shown_once(table, logic_in_turns, work):
     shown = []
     logic_in_turns.changed.connect(lambda: shown.append(logic_in_turns.choices.excluded))
     setPoints(capturedPointsNode(table.scene), LABELS, table.touched)
@@ -397,7 +397,7 @@ def test_what_is_done_again_between_two_turns_is_shown_once(table, logic_in_turn
     assert shown == [{"4"}]
 
 
-def test_a_list_that_changes_back_after_another_reason_registered_it_is_registered_again(
+def test_a_list_that_changes_back_is_registered_again_even_after_another_registration(
     table, logic_in_turns, work
 ):
     logic = logic_in_turns

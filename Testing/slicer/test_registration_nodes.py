@@ -93,7 +93,7 @@ def test_applying_the_result_shows_the_touches_on_the_head(scene, moving, fixed,
     np.testing.assert_allclose(worldPoints(moving), localPoints(moving))
 
 
-def test_registering_again_gives_the_same_whether_applied_or_not(scene, moving, fixed):
+def test_registering_again_gives_the_same_result_whether_applied_or_not(scene, moving, fixed):
     first = registered(moving, fixed)
     node = showRegistration(scene, first, moving, fixed)
     np.testing.assert_array_equal(registered(moving, fixed).matrix, first.matrix)
@@ -115,7 +115,7 @@ def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
     assert registration_nodes.isApplied(node)
 
 
-def test_deleted_lists_are_no_trouble(scene, moving, fixed):
+def test_deleted_lists_cause_no_trouble(scene, moving, fixed):
     node = showRegistration(scene, registered(moving, fixed), moving, fixed)
     scene.RemoveNode(moving)
     assert registration_nodes.movingNode(node) is None
@@ -130,13 +130,13 @@ def test_deleted_lists_are_no_trouble(scene, moving, fixed):
         (("2", *LABELS[1:]), 'label "2" is given to two points'),
     ],
 )
-def test_labels_that_do_not_pair_get_a_sentence(scene, fixed, points, labels, words):
+def test_labels_that_do_not_pair_are_refused_with_a_message(scene, fixed, points, labels, words):
     touched = markups(scene, "Touched", labels, points)
     with pytest.raises(InputError, match=words):
         registered(touched, fixed)
 
 
-def test_the_residual_table_has_a_row_a_fiducial_and_units_in_its_columns(scene, moving, fixed):
+def test_the_residual_table_has_one_row_per_fiducial_and_units_in_its_columns(scene, moving, fixed):
     registration = registered(moving, fixed)
     table = showResiduals(scene, registration)
     assert [table.GetColumnName(i) for i in range(table.GetNumberOfColumns())] == [

@@ -70,12 +70,12 @@ def used(host):
         host.type("hostLineEdit", "127.0.0.1")
         host.type("portSpinBox", "1")
         host.press("connectButton")
-        host.let_pass(0.2)
+        host.idle_for(0.2)
 
     return use
 
 
-def test_a_module_that_is_reloaded_many_times_leaves_no_more_behind_than_once(host, used):
+def test_reloading_the_module_many_times_leaves_no_more_behind_than_once(host, used):
     before, threads = living(host), threading.active_count()
     used()
     host.reload()
@@ -88,7 +88,7 @@ def test_a_module_that_is_reloaded_many_times_leaves_no_more_behind_than_once(ho
     assert {name: many[name] - before[name] for name in KEPT} == dict.fromkeys(KEPT, 1)
 
 
-def test_a_reloaded_module_works_and_the_one_before_does_nothing_more(host, used):
+def test_a_reloaded_module_works_and_the_previous_one_does_nothing_more(host, used):
     used()
     before = host.widget
     host.reload()

@@ -79,9 +79,7 @@ def test_a_replay_registers_all_its_touches_and_to_its_own_tasks_fiducials(host,
     host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "they are registered")
 
 
-def test_a_trial_that_is_played_is_not_disturbed_and_begins_without_the_replays_touches(
-    host, trials
-):
+def test_a_trial_in_progress_is_not_disturbed_and_begins_without_the_replays_touches(host, trials):
     replay(host, trials, 1, "task-1")
     tasks = {"scenario": "colin27", "title": "Colin", "tasks": []}
     answers = {"ListTasks": tasks}

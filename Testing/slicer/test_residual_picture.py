@@ -65,7 +65,7 @@ def test_large_residuals_are_magnified_less(shift, expected):
     assert magnification(register(moving, fixed)) == expected
 
 
-def test_a_residual_of_nothing_is_no_trouble():
+def test_a_zero_residual_causes_no_trouble():
     fixed = 50.0 * np.eye(3)
     data = glyphsPolyData(register(fixed, fixed))
     assert np.isfinite(vtk_to_numpy(data.GetPoints().GetData())).all()
@@ -109,7 +109,7 @@ def test_a_single_label_is_above_to_the_right():
     assert placeLabels(np.zeros((1, 2)), np.array([SIZE]), NOTHING, 10.0) == [(1, 1)]
 
 
-def test_a_label_avoids_what_is_there():
+def test_a_label_avoids_what_is_already_there():
     arrow = np.column_stack([np.linspace(0, 60, 9), np.linspace(0, 30, 9)])
     assert placeLabels(np.zeros((1, 2)), np.array([SIZE]), arrow, 10.0) == [(1, -1)]
 

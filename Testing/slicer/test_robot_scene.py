@@ -73,7 +73,7 @@ def test_the_robot_is_where_its_touches_are_shown(scene, robot, scenario):
     np.testing.assert_allclose(bounds(robot[0]), in_world)
 
 
-def test_what_is_deleted_is_made_again_when_the_robot_is_shown_again(scene, robot):
+def test_deleted_parts_are_recreated_when_the_robot_is_shown_again(scene, robot):
     scene.RemoveNode(robot[3])
     scene.RemoveNode(scene.GetFirstNode("Link5ToWorld", "vtkMRMLLinearTransformNode"))
     followPlacement(scene)
@@ -105,7 +105,7 @@ def test_a_folder_without_a_robot_is_reported(scene, tmp_path):
         pytest.param("</robot>", "", "not well-formed", id="cut-short"),
     ],
 )
-def test_a_malformed_urdf_is_refused_with_a_sentence(scene, tmp_path, before, after, problem):
+def test_a_malformed_urdf_is_refused_with_a_message(scene, tmp_path, before, after, problem):
     text = (ROBOT / "iiwa7.urdf").read_text(encoding="utf-8")
     assert before in text
     (tmp_path / "iiwa7.urdf").write_text(text.replace(before, after), encoding="utf-8")

@@ -13,13 +13,13 @@ from rastrainer.journal.folder import STARTED_BY, read_holder
 from rastrainer.slicer.logic import simulator_logic
 from rastrainer.slicer.logic.simulator_logic import RunningSimulator
 from rastrainer.slicer.program.child_process import OPTIONS
-from rastrainer_simulator.record.journal import RecordsFolder
+from rastrainer_simulator.record.journal_writer import RecordsFolder
 from Testing.slicer.simulator_double import wait_until
 
 LONG_S = 60.0
 SIMULATOR = """
 import pathlib, signal, subprocess, sys, time
-from rastrainer_simulator.record.journal import RecordsFolder
+from rastrainer_simulator.record.journal_writer import RecordsFolder
 if "stubborn" in sys.argv:
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
 records = RecordsFolder(pathlib.Path(sys.argv[1]))
@@ -76,14 +76,14 @@ def running(tmp_path):
     return RunningSimulator(tmp_path, Connections())
 
 
-def test_none_is_found_where_none_records(running):
+def test_none_is_found_where_none_is_recording(running):
     assert not running.look()
     assert (running.sentence, running.canConnect, running.canEnd) == ("", False, False)
     with pytest.raises(InputError, match="no longer a simulator"):
         running.connect()
 
 
-def test_what_was_left_behind_is_found_and_connected_to(left_behind, running):
+def test_a_leftover_simulator_is_found_and_connected_to(left_behind, running):
     process = left_behind()
     assert running.look()
     assert (running.holder.pid, running.holder.started_by) == (process.pid, "Slicer")
@@ -94,7 +94,7 @@ def test_what_was_left_behind_is_found_and_connected_to(left_behind, running):
 
 
 @pytest.mark.parametrize("words", [(), ("stubborn",)])
-def test_what_was_left_behind_is_ended_with_its_window(left_behind, running, monkeypatch, words):
+def test_a_leftover_simulator_is_ended_with_its_window(left_behind, running, monkeypatch, words):
     monkeypatch.setattr(simulator_logic, "KILL_AFTER_S", 0.2)
     process = left_behind(*words)
     running.look()
@@ -109,7 +109,7 @@ def test_what_was_left_behind_is_ended_with_its_window(left_behind, running, mon
     assert process.wait() == -(signal.SIGKILL if words else signal.SIGTERM)
 
 
-def test_a_simulator_started_after_the_shown_one_is_not_ended(left_behind, running):
+def test_a_simulator_started_after_the_displayed_one_is_not_ended(left_behind, running):
     first = left_behind()
     running.look()
     end_group(first)
@@ -120,7 +120,7 @@ def test_a_simulator_started_after_the_shown_one_is_not_ended(left_behind, runni
     assert running.holder.pid == second.pid
 
 
-def test_one_that_a_person_has_started_is_ended_alone_without_its_shell(running, tmp_path):
+def test_one_started_by_a_person_is_ended_without_its_shell(running, tmp_path):
     shell = f"{sys.executable} -c '{SIMULATOR}' {tmp_path} & wait; echo the shell lives"
     process = subprocess.Popen(["sh", "-c", shell], stdout=subprocess.PIPE, **OPTIONS)
     assert process.stdout.readline() == b"ready\n"
@@ -132,7 +132,7 @@ def test_one_that_a_person_has_started_is_ended_alone_without_its_shell(running,
     end_group(process)
 
 
-def test_looking_for_a_simulator_keeps_none_from_starting(tmp_path):
+def test_looking_for_a_simulator_does_not_prevent_one_from_starting(tmp_path):
     look = "import sys, pathlib; from rastrainer.journal.folder import read_holder\n"
     look += "print(flush=True)\nwhile True: read_holder(pathlib.Path(sys.argv[1]))"
     RecordsFolder(tmp_path).close()

@@ -6,7 +6,7 @@ from pathlib import Path
 from rastrainer_simulator.assets import asset_path
 
 
-def test_the_mri_that_comes_with_the_module_is_a_sample_that_needs_no_network(host):
+def test_the_bundled_mri_is_a_sample_that_needs_no_network(host):
     import SampleData
 
     (source,) = SampleData.SampleDataLogic.sampleDataSourcesByCategory("RASTrainer")

@@ -44,7 +44,7 @@ def test_head_and_target_are_shown_in_ras(scene, scenario):
     assert labelsOf(target) == ("center",)
 
 
-def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_target_first(scene, planned):
+def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_first(scene, planned):
     showScenario(scene, planned)
     targets = findNode(scene, FIDUCIALS, Role.TARGET)
     assert labelsOf(targets) == ("center", "Cyst")
@@ -56,7 +56,7 @@ def test_all_targets_and_the_trajectory_are_shown_the_scenarios_own_target_first
     assert line.GetLocked()
 
 
-def test_the_skull_is_seen_through_the_skin_and_called_what_it_is(scene, planned):
+def test_the_skull_is_visible_through_the_skin_and_named_for_what_it_is(scene, planned):
     showScenario(scene, planned)
     skull = findNode(scene, MODEL, Role.SKULL)
     assert skull.GetName() == "Skull (approximation)"
@@ -68,7 +68,7 @@ def test_the_skull_is_seen_through_the_skin_and_called_what_it_is(scene, planned
     assert skull.GetName() == "Skull"
 
 
-def test_what_another_scenario_has_not_goes(scene, planned, scenario):
+def test_anything_the_new_scenario_lacks_is_removed(scene, planned, scenario):
     showScenario(scene, planned)
     showScenario(scene, scenario)
     assert findNode(scene, LINE, Role.TRAJECTORY) is None
@@ -77,7 +77,7 @@ def test_what_another_scenario_has_not_goes(scene, planned, scenario):
     assert findNode(scene, MODEL, Role.HEAD_MODEL).GetDisplayNode().GetOpacity() == 1.0
 
 
-def test_a_surface_is_shown_as_it_is_to_look_so_that_no_view_draws_it_again(scene, planned):
+def test_a_surface_is_shown_in_its_final_look_so_that_no_view_draws_it_again(scene, planned):
     looks = []
 
     def note(display, _event):
@@ -108,18 +108,18 @@ def test_showing_a_scenario_again_adds_no_node(scene, planned):
     assert scene.GetNumberOfNodes() == count
 
 
-def write_anew(path, mesh):
+def overwrite_mesh(path, mesh):
     """Write another mesh in the place of one, a second later by the file's time."""
     later = path.stat().st_mtime + 1.0
     write_head_mesh(path, mesh)
     os.utime(path, (later, later))
 
 
-def test_a_scenario_that_was_built_anew_under_its_name_is_shown_anew(scene, planned):
+def test_a_scenario_rebuilt_under_its_name_is_shown_anew(scene, planned):
     showScenario(scene, planned)
     showTask(scene, planned, "task-1")
-    write_anew(planned.head_mesh, ball_head(70.0))
-    write_anew(planned.skull_mesh, ball_head(60.0))
+    overwrite_mesh(planned.head_mesh, ball_head(70.0))
+    overwrite_mesh(planned.skull_mesh, ball_head(60.0))
     task = planned.task("task-1")
     moved = replace(task, fiducials=task.fiducials * 70.0 / 90.0)
     rebuilt = replace(planned, tasks=(moved,))
@@ -149,12 +149,12 @@ def test_the_fiducials_of_a_task_are_numbered_and_locked(scene, scenario):
     assert node.GetLocked()
 
 
-def test_our_nodes_are_found_when_users_rename_them(scene, scenario):
+def test_our_nodes_are_found_even_if_users_rename_them(scene, scenario):
     node = showTask(scene, scenario, "task-1")
     node.SetName("my points")
     assert showTask(scene, scenario, "task-1") is node
 
 
-def test_an_unknown_task_gets_a_sentence(scene, scenario):
+def test_an_unknown_task_is_refused_with_a_message(scene, scenario):
     with pytest.raises(InputError, match="it has trial-run, task-1, task-2"):
         showTask(scene, scenario, "task-9")

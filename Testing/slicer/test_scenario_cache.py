@@ -22,7 +22,7 @@ def build(folder, title):
     os.utime(folder / "scenario.json", (later, later))
 
 
-def test_a_scenario_that_was_built_anew_is_read_anew(tmp_path):
+def test_a_rebuilt_scenario_is_read_again(tmp_path):
     build(tmp_path / "ball", "First")
     cache = ScenarioCache.below(tmp_path)
     first = cache.find("ball")
@@ -31,7 +31,7 @@ def test_a_scenario_that_was_built_anew_is_read_anew(tmp_path):
     assert cache.find("ball").title == "Second"
 
 
-def test_a_list_reads_only_the_scenarios_whose_files_have_changed(tmp_path, monkeypatch):
+def test_listing_reads_only_the_scenarios_whose_files_have_changed(tmp_path, monkeypatch):
     read = []
 
     def watched(folder):
@@ -51,7 +51,7 @@ def test_a_list_reads_only_the_scenarios_whose_files_have_changed(tmp_path, monk
     assert read == ["egg"]
 
 
-def test_a_scenario_that_was_removed_is_reported(tmp_path):
+def test_a_removed_scenario_is_reported(tmp_path):
     build(tmp_path / "ball", "First")
     cache = ScenarioCache.below(tmp_path)
     cache.find("ball")
@@ -60,7 +60,7 @@ def test_a_scenario_that_was_removed_is_reported(tmp_path):
         cache.find("ball")
 
 
-def test_a_title_that_is_taken_is_answered_with_one_that_is_free(tmp_path):
+def test_for_a_title_in_use_a_free_one_is_suggested(tmp_path):
     for name in ("ball", "ball-2"):
         build(tmp_path / name, "Ball")
         text = (tmp_path / name / "scenario.json").read_text()
@@ -69,7 +69,7 @@ def test_a_title_that_is_taken_is_answered_with_one_that_is_free(tmp_path):
         ScenarioCache.below(tmp_path).newName("Ball")
 
 
-def test_a_scenario_of_ones_own_may_be_moved_away_to_make_it_again(tmp_path, monkeypatch):
+def test_a_users_own_scenario_may_be_moved_away_to_make_it_again(tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path))
     mine = user_library()
     build(mine / "ball", "Ball")

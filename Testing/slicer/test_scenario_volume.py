@@ -29,7 +29,7 @@ class Loading:
     def finish(self):
         self.loader.process()
         while self.work.isBusy:
-            self.work.giveTime()
+            self.work.yieldTime()
             self.work.process()
             self.loader.process()
 
@@ -77,7 +77,7 @@ def test_the_images_lie_where_the_head_is_with_their_window_in_all_slice_views(
     assert loading.problems == []
 
 
-def test_nothing_is_read_before_the_loader_runs_nor_in_its_thread(
+def test_nothing_is_read_before_the_loader_runs_nor_on_the_main_thread(
     scene, loading, imaged, monkeypatch
 ):
     def read(_path):
@@ -93,9 +93,7 @@ def test_nothing_is_read_before_the_loader_runs_nor_in_its_thread(
     assert loading.node.GetImageData() is not None
 
 
-def test_images_that_are_shown_are_not_read_again_and_what_a_user_changed_stays(
-    scene, loading, imaged
-):
+def test_displayed_images_are_not_read_again_and_a_users_changes_stay(scene, loading, imaged):
     showScenario(scene, imaged)
     loading.finish()
     loading.node.GetDisplayNode().SetWindowLevel(40.0, 20.0)
@@ -114,7 +112,7 @@ def test_images_that_are_shown_are_not_read_again_and_what_a_user_changed_stays(
     assert backgrounds(scene) == [loading.node.GetID()] * 3
 
 
-def test_images_that_were_made_anew_are_read_anew(scene, loading, imaged):
+def test_rebuilt_images_are_read_again(scene, loading, imaged):
     showScenario(scene, imaged)
     loading.finish()
     write_head_volume(imaged.volume.path, ball_volume(60.0))
@@ -124,7 +122,7 @@ def test_images_that_were_made_anew_are_read_anew(scene, loading, imaged):
     assert len(loading.shown) == 2
 
 
-def test_a_scenario_without_images_takes_those_of_another_away(scene, loading, imaged, scenario):
+def test_a_scenario_without_images_removes_those_of_another(scene, loading, imaged, scenario):
     showScenario(scene, imaged)
     loading.finish()
     showScenario(scene, scenario)
@@ -133,7 +131,7 @@ def test_a_scenario_without_images_takes_those_of_another_away(scene, loading, i
     assert not any(backgrounds(scene))
 
 
-def test_of_two_scenarios_shown_at_once_the_last_one_has_its_images(scene, loading, imaged):
+def test_of_two_scenarios_shown_at_once_the_last_ones_images_are_shown(scene, loading, imaged):
     path = imaged.folder / "other.nrrd"
     write_head_volume(path, ball_volume(60.0))
     showScenario(scene, imaged)
@@ -158,7 +156,7 @@ def test_unusable_images_are_reported_and_the_head_is_shown(scene, loading, imag
     assert findNode(scene, "vtkMRMLModelNode", Role.HEAD_MODEL) is not None
 
 
-def test_a_node_that_is_deleted_while_it_is_read_stays_away(scene, loading, imaged):
+def test_a_node_deleted_while_it_is_read_stays_deleted(scene, loading, imaged):
     showScenario(scene, imaged)
     loading.loader.process()
     scene.RemoveNode(loading.node)
@@ -167,7 +165,7 @@ def test_a_node_that_is_deleted_while_it_is_read_stays_away(scene, loading, imag
     assert loading.problems == loading.shown == []
 
 
-def test_a_node_whose_display_is_deleted_is_filled_all_the_same(scene, loading, imaged):
+def test_a_node_whose_display_is_deleted_is_filled_anyway(scene, loading, imaged):
     showScenario(scene, imaged)
     scene.RemoveNode(loading.node.GetDisplayNode())
     loading.finish()

@@ -25,7 +25,7 @@ def setup(host, tmp_path):
     return setup
 
 
-def test_source_size_and_folder_are_reported_before_anything_is_fetched(host, monkeypatch):
+def test_source_size_and_folder_are_reported_before_anything_is_downloaded(host, monkeypatch):
     setup = host.open().logic.session.simulator.setup
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setattr("platform.machine", lambda: "x86_64")
@@ -74,7 +74,7 @@ def test_the_simulator_is_set_up_package_by_package_and_removed_when_the_user_co
     assert "not set up yet" in host.text("programText")
 
 
-def test_a_module_without_its_simulator_says_to_install_it_anew(host, setup, tmp_path):
+def test_a_module_without_its_simulator_says_to_reinstall_it(host, setup, tmp_path):
     setup.package = SimulatorPackage(tmp_path)
     host.press("setupButton")
     assert "reinstall the extension RASTrainer" in host.messages[-1].text

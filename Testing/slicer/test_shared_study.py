@@ -31,14 +31,14 @@ def test_a_trainee_of_another_slicer_is_noticed_once(logic, study_place):
     assert not logic.hasChangedElsewhere()
 
 
-def test_what_was_done_here_is_nobody_elses(logic):
+def test_our_own_changes_do_not_count_as_changes_from_elsewhere(logic):
     logic.create("Blue", consent=False)
     logic.wait()
     assert not logic.hasChangedElsewhere()
 
 
 @pytest.mark.parametrize("study_place", ["sqlite"], indirect=True)
-def test_a_study_that_is_locked_is_looked_at_later(logic, study_place):
+def test_a_locked_study_is_checked_later(logic, study_place):
     other = sqlite3.connect(study_place, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
     logic.wait()

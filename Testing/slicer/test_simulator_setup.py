@@ -126,7 +126,7 @@ def replaced(wheel, text):
     write_wheel(wheel.parent, *wheel.name.split("-")[:2], {"bolt.py": text})
 
 
-def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_network(setup, source):
+def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network(setup, source):
     left = setup.folder.with_name("simulator.removed-0123")
     left.mkdir(parents=True)
     (left / "library.so").touch()
@@ -155,7 +155,7 @@ def test_nothing_is_installed_whose_hash_the_module_does_not_know(setup, source,
     assert left_beside(setup) == []
 
 
-def test_nothing_is_built_from_sources_to_set_up_even_if_their_hash_is_known(
+def test_nothing_is_built_from_source_during_setup_even_if_its_hash_is_known(
     setup, source, package, bolt, tmp_path
 ):
     mark = tmp_path / "sources were run"
@@ -179,7 +179,7 @@ def test_only_third_party_packages_are_requested_from_a_private_index(setup, bol
     assert (setup.folder / "rastrainer_simulator" / "cli" / "main.py").is_file()
 
 
-def test_pip_ignores_the_settings_of_the_user(setup, source, bolt, tmp_path, monkeypatch):
+def test_pip_ignores_the_users_settings(setup, source, bolt, tmp_path, monkeypatch):
     with PackageIndex([bolt]) as index:
         settings = tmp_path / "pip.conf"
         text = f"[global]\nindex-url = {index.address}\nextra-index-url = {index.address}\n"
@@ -195,13 +195,13 @@ def test_pip_ignores_the_settings_of_the_user(setup, source, bolt, tmp_path, mon
 
 
 @pytest.mark.parametrize("address", ["pypi", "ftp://127.0.0.1/simple", "https://", "file:///tmp"])
-def test_an_invalid_index_address_is_reported_before_the_set_up_starts(setup, address):
+def test_an_invalid_index_address_is_reported_before_the_setup_starts(setup, address):
     with pytest.raises(InputError, match="start it with https://"):
         setup.begin(SetupSource(index=address))
     assert not setup.folder.parent.exists()
 
 
-def test_a_simulator_that_is_missing_or_damaged_in_the_module_is_reported(setup, source, package):
+def test_a_simulator_missing_or_damaged_in_the_module_is_reported(setup, source, package):
     wheel = package.folder / WHEEL
     wheel.write_bytes(wheel.read_bytes()[:-1])
     with pytest.raises(InputError, match="is damaged: reinstall the extension RASTrainer"):
@@ -212,13 +212,13 @@ def test_a_simulator_that_is_missing_or_damaged_in_the_module_is_reported(setup,
     assert not setup.folder.parent.exists()
 
 
-def test_the_simulator_of_another_module_of_the_same_version_is_not_this_ones(installed):
+def test_another_modules_simulator_of_the_same_version_is_not_taken_for_this_ones(installed):
     assert (installed.installedVersion, installed.isCurrent) == (__version__, True)
     write_package(installed.package.folder, f"{CLI}# Mended.\n")
     assert (installed.installedVersion, installed.isCurrent) == (__version__, False)
 
 
-def test_in_a_checkout_its_sources_are_run_as_they_are(tmp_path):
+def test_in_a_checkout_the_sources_are_run_directly(tmp_path):
     package = write_checkout(tmp_path / "checkout", CLI.replace("import bolt\n", ""))
     setup = SimulatorSetup(Path(sys.executable), tmp_path / "private folder" / "simulator", package)
     write_wheel(tmp_path / "wheels", "bolt", "1.0", {})
@@ -289,7 +289,7 @@ def test_a_simulator_whose_window_is_closed_has_simply_ended(installed):
     assert (program.state, program.sentence) == (ProgramState.STOPPED, "The simulator has ended.")
 
 
-def test_a_set_up_that_fails_leaves_the_old_one_and_says_what_to_do(installed, tmp_path):
+def test_a_failed_setup_leaves_the_old_one_and_says_what_to_do(installed, tmp_path):
     (bolt,) = (tmp_path / "wheels").iterdir()
     replaced(bolt, "")
     _lines, error = run_setup(installed, SetupSource(wheels=bolt.parent))
@@ -298,7 +298,7 @@ def test_a_set_up_that_fails_leaves_the_old_one_and_says_what_to_do(installed, t
     assert left_beside(installed) == ["simulator"]
 
 
-def test_what_was_installed_and_cannot_be_run_is_not_taken(setup, source, tmp_path, bolt):
+def test_an_installation_that_cannot_be_run_is_not_used(setup, source, tmp_path, bolt):
     package = write_package(tmp_path / "broken", CLI + ")", [lock_entry(bolt)])
     broken = SimulatorSetup(Path(sys.executable), setup.folder, package)
     lines, error = run_setup(broken, source)
@@ -307,7 +307,7 @@ def test_what_was_installed_and_cannot_be_run_is_not_taken(setup, source, tmp_pa
     assert left_beside(setup) == []
 
 
-def test_a_set_up_can_be_canceled(setup, source):
+def test_a_setup_can_be_canceled(setup, source):
     ends = []
     setup.finished.connect(ends.append)
     setup.begin(source)
@@ -341,7 +341,7 @@ def test_slicers_python_and_the_checkout_are_found_where_they_are(tmp_path):
     assert SimulatorPackage.of(tmp_path / "RASTrainer").checkout == tmp_path
 
 
-def test_the_size_of_a_set_up_is_known_for_measured_platforms(package, monkeypatch):
+def test_the_size_of_a_setup_is_known_for_measured_platforms(package, monkeypatch):
     assert package.sizes() is None
     ours = SimulatorPackage.of(Path(__file__).parents[2] / "RASTrainer")
     monkeypatch.setattr(sys, "platform", "linux")

@@ -15,7 +15,7 @@ def test_a_stall_is_reported_with_its_length(host):
     assert max(stall.seconds for stall in watch.stalls) == watch.longest_s
 
 
-def test_what_runs_in_a_stall_is_named(host):
+def test_the_code_that_runs_during_a_stall_is_named(host):
     host.open()
     process = host.widget.logic.session.process
 

@@ -18,7 +18,7 @@ def server():
 
 
 @pytest.fixture(autouse=True)
-def _a_patient_window(monkeypatch):
+def _patient_window(monkeypatch):
     """A busy machine may take longer to connect than a window waits."""
     monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 60.0)
     monkeypatch.setattr(postgres_connecting, "INTERACTIVE_SILENCE_S", 60)
@@ -29,7 +29,7 @@ def names(host):
     return [combo.itemText(row) for row in range(1, combo.count)]
 
 
-def test_a_study_at_an_address_is_used_kept_and_left_again(start_slicer, server):
+def test_a_study_at_an_address_is_used_remembered_and_left_again(start_slicer, server):
     place = server.new_study()
     with Study.open(place) as study:
         study.create_trainee("Blue")
@@ -59,7 +59,7 @@ def test_the_list_shows_a_trainee_of_another_seat(start_slicer, server):
     host.wait_until(lambda: names(host) == ["Blue"], "the list shows it")
 
 
-def test_a_server_that_is_away_is_said_and_used_again_when_it_is_back(start_slicer, server):
+def test_a_server_that_is_away_is_reported_and_used_again_when_it_is_back(start_slicer, server):
     place = server.new_study()
     host = start_slicer("trainees")
     host.type("studyAddressLineEdit", str(place))

@@ -49,7 +49,7 @@ class Lab:
     def skip(self, reason):
         self.logic.skipStep(self.next, reason)
 
-    def be_in_the_step_for(self, minutes):
+    def spend_in_step(self, minutes):
         """Set the clock to a time after the step has begun, however long the machine took."""
         since = moment(self.logic.progress().since_utc)
         self.moment = since + timedelta(minutes=minutes)
@@ -90,7 +90,7 @@ def test_without_a_protocol_trainees_practice_freely(lab):
     lab.room.run_until(lambda: lab.room.sent("StartTask"))
 
 
-def test_who_is_not_enrolled_starts_no_trial_in_a_study_with_a_protocol(lab):
+def test_a_trainee_who_is_not_enrolled_starts_no_trial_in_a_study_with_a_protocol(lab):
     lab.logic.begin(SHIPPED)
     with pytest.raises(InputError, match="Enroll the trainee"):
         lab.logic.startTrial("task-1", "hmd")
@@ -119,13 +119,13 @@ def test_the_study_starts_only_what_comes_next(enrolled):
     assert room.sent("StartTask") == [{"task": "trial-run", "trainee": "T001", "mode": "hmd"}]
 
 
-def test_the_time_of_a_trial_run_outlives_an_interruption(enrolled, tmp_path):
+def test_the_elapsed_time_of_a_trial_run_survives_an_interruption(enrolled, tmp_path):
     enrolled.logic.answer([0] * 16)
     enrolled.practice(120.0)
     enrolled.close()
     again = Lab(enrolled.room, tmp_path)
     again.trainees.choose("T001")
-    assert again.logic.minutesOver(again.logic.progress()) == 2.0
+    assert again.logic.minutesElapsed(again.logic.progress()) == 2.0
     again.practice(179.0)
     assert again.next == "hmd/trial-run"
     again.practice(1.0)
@@ -144,11 +144,11 @@ def test_the_trial_run_ends_by_itself_while_it_is_played(enrolled):
     assert enrolled.logic.progress().entries[-1].details == {"minutes": 5.0}
 
 
-def test_what_a_slicer_before_may_have_counted_of_a_trial_run_is_not_counted_again(enrolled):
+def test_trial_run_time_before_this_slicer_connected_is_not_counted_again(enrolled):
     enrolled.logic.answer([0] * 16)
     enrolled.tell(phase="running", elapsedS=250.0)
     enrolled.tell(phase="running", elapsedS=280.0)
-    assert enrolled.logic.minutesOver(enrolled.logic.progress()) == 0.5
+    assert enrolled.logic.minutesElapsed(enrolled.logic.progress()) == 0.5
 
 
 def test_practice_of_another_trainee_or_task_does_not_count(enrolled):
@@ -156,7 +156,7 @@ def test_practice_of_another_trainee_or_task_does_not_count(enrolled):
     for other in ({"trainee": "T002"}, {"task": "task-1"}, {"mode": "desktop"}):
         enrolled.practice(600.0, **other)
     enrolled.practice(6.0)
-    assert enrolled.logic.minutesOver(enrolled.logic.progress()) == pytest.approx(0.1)
+    assert enrolled.logic.minutesElapsed(enrolled.logic.progress()) == pytest.approx(0.1)
 
 
 def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_away(
@@ -185,7 +185,7 @@ def test_a_break_ends_after_the_protocols_minutes_for_any_trainee(lab):
     lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 0})
     lab.skip("the headset's battery was empty")
     assert lab.next == "desktop/break"
-    lab.be_in_the_step_for(9.9)
+    lab.spend_in_step(9.9)
     lab.trainees.choose("")
     lab.logic.process()
     lab.trainees.choose("T001")
@@ -256,7 +256,7 @@ def test_a_break_that_another_slicer_has_ended_ends_no_other_step(lab):
     assert lab.next == "desktop/trial-run"
 
 
-def test_practice_before_another_study_is_chosen_counts_in_the_former_study_alone(enrolled):
+def test_practice_before_switching_studies_counts_only_in_the_former_study(enrolled):
     enrolled.logic.answer([0] * 16)
     enrolled.tell(phase="running", elapsedS=0.0)
     enrolled.tell(phase="running", elapsedS=3.0)
@@ -275,7 +275,7 @@ def test_practice_before_another_study_is_chosen_counts_in_the_former_study_alon
         assert StudyProgress(study).progress("T001").practiced_s == pytest.approx(3.0)
 
 
-def test_a_second_trial_run_counts_from_its_start_though_it_lasts_longer(enrolled):
+def test_a_second_trial_run_counts_from_its_start_even_if_it_lasts_longer(enrolled):
     enrolled.logic.answer([0] * 16)
     enrolled.tell(phase="running", elapsedS=0.0)
     enrolled.tell(phase="running", elapsedS=20.0)
@@ -323,13 +323,13 @@ def test_a_reconnected_simulator_is_sent_the_steps_of_all_trainees(enrolled):
     assert {step["trainee"] for step in room.sent("StudyStep")[before:]} == {"T001", "T002"}
 
 
-def test_who_is_deleted_is_led_no_more(enrolled):
+def test_a_deleted_trainee_is_no_longer_in_the_study(enrolled):
     enrolled.room.run_until(lambda: told(enrolled))
     enrolled.trainees.delete()
     enrolled.room.run_until(lambda: told(enrolled) == {"trainee": "T001", "kind": "free"})
 
 
-def test_a_trial_of_a_trainee_who_is_not_chosen_counts_and_the_simulator_is_sent_the_next_step(
+def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_next_step(
     enrolled, make_record
 ):
     enrolled.logic.answer([0] * 16)
@@ -376,7 +376,7 @@ def answered(lab, **changes):
     lab.room.simulator.send_command("StepAnswered", {**told, **changes})
 
 
-def test_answers_at_the_simulator_are_stored_once_for_any_chosen_trainee(enrolled):
+def test_answers_given_at_the_simulator_are_stored_once_for_whichever_trainee_is_chosen(enrolled):
     enrolled.trainees.choose("")
     answered(enrolled)
     answered(enrolled, answers=[3] * 16)
@@ -411,7 +411,7 @@ def test_a_simulator_that_connects_later_is_sent_the_elapsed_time_of_a_break(lab
     lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 0})
     lab.skip("the headset's battery was empty")
     lab.room.run_until(lambda: told(lab).get("minutes") == 10.0)
-    lab.be_in_the_step_for(4.0)
+    lab.spend_in_step(4.0)
     lab.room.link.disconnect()
     before = len(lab.room.sent("StudyStep"))
     lab.room.link.connectTo(port=lab.room.simulator.port)
@@ -446,7 +446,7 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     assert enrolled.logic.offProtocolSentence() == ""
 
 
-def test_a_trial_of_a_study_is_started_by_the_method_of_its_protocol(lab):
+def test_a_study_trial_is_started_with_the_method_of_its_protocol(lab):
     skin = {"shiftMm": 2.0, "indentationMm": 0.0}
     lab.begin(
         modes=["desktop"],

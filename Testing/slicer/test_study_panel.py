@@ -47,7 +47,7 @@ def outcomes(host):
     return [table.item(row, 1).text() for row in range(table.rowCount)]
 
 
-def test_a_study_begins_with_a_protocol_only_after_a_yes(panel, tmp_path):
+def test_a_study_begins_with_a_protocol_only_after_confirmation(panel, tmp_path):
     assert "practice freely" in panel.text("protocolText")
     with pytest.raises(AssertionError, match="Choose the file of a protocol first"):
         panel.press("beginStudyButton")
@@ -67,7 +67,7 @@ def test_a_study_begins_with_a_protocol_only_after_a_yes(panel, tmp_path):
         panel.press("beginStudyButton")
 
 
-def test_a_questionnaire_is_a_form_that_keeps_no_half_answers(begun):
+def test_a_questionnaire_is_a_form_that_keeps_no_partial_answers(begun):
     assert begun.text("stepText") == "Step 1 of 19: Answer the questionnaire SSQ."
     begun.choose("ssq_nauseaComboBox", "2")
     begun.press("saveAnswersButton")
@@ -80,7 +80,7 @@ def test_a_questionnaire_is_a_form_that_keeps_no_half_answers(begun):
     assert outcomes(begun)[:3] == ["done", "next", ""]
 
 
-def test_the_form_says_at_its_line_that_performance_runs_from_perfect_to_failure(panel, tmp_path):
+def test_the_form_states_that_performance_runs_from_perfect_to_failure(panel, tmp_path):
     protocol = json.loads(SHIPPED.read_text())
     protocol["questionnaires"] = [{"name": "nasa-tlx", "when": "before-all", "modes": []}]
     path = tmp_path / "protocol.json"

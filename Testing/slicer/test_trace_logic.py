@@ -102,7 +102,7 @@ def has_points(tracing, count):
     return lambda: tracing.shown is not None and len(tracing.shown) == count
 
 
-def test_points_lie_where_the_landmarks_put_them_and_the_skin_is_colored(tracing):
+def test_points_lie_where_the_landmarks_place_them_and_the_skin_is_colored(tracing):
     tracing.draw(40)
     tracing.run_until(has_points(tracing, 40))
     np.testing.assert_allclose(tracing.shown, tracing.places, atol=1e-3)
@@ -116,7 +116,7 @@ def test_points_lie_where_the_landmarks_put_them_and_the_skin_is_colored(tracing
     np.testing.assert_allclose(away, np.minimum(expected, 20.0), atol=1e-3)
 
 
-def test_the_place_to_draw_next_is_marked_away_from_the_trace(tracing):
+def test_the_next_place_to_draw_is_marked_away_from_the_trace(tracing):
     tracing.draw(40)
     tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
     place = np.array(tracing.node(Role.NEXT_PLACE).GetNthControlPointPosition(0))
@@ -124,14 +124,14 @@ def test_the_place_to_draw_next_is_marked_away_from_the_trace(tracing):
     assert np.linalg.norm(place) == pytest.approx(90.0, abs=0.5)
 
 
-def test_a_trainee_without_guidance_is_shown_the_points_alone(tracing):
+def test_a_trainee_without_guidance_is_shown_only_the_points(tracing):
     tracing.draw(40, is_guided=False)
     tracing.run_until(has_points(tracing, 40))
     assert tracing.node(Role.NEXT_PLACE) is None
     assert not tracing.head.GetDisplayNode().GetScalarVisibility()
 
 
-def test_the_trace_is_asked_for_once_a_second_and_only_as_it_grows(tracing):
+def test_the_trace_is_requested_once_a_second_and_only_as_it_grows(tracing):
     tracing.draw(5)
     tracing.run_until(has_points(tracing, 5))
     tracing.now -= 0.5
@@ -146,14 +146,14 @@ def test_the_trace_is_asked_for_once_a_second_and_only_as_it_grows(tracing):
     assert tracing.sent("GetTrial") == 2 * [{"trialId": TRIAL}]
 
 
-def test_an_undone_stroke_goes_from_the_scene(tracing):
+def test_an_undone_stroke_disappears_from_the_scene(tracing):
     tracing.draw(40)
     tracing.run_until(has_points(tracing, 40))
     tracing.draw(10)
     tracing.run_until(has_points(tracing, 10))
 
 
-def test_all_of_it_goes_when_the_trial_ends(tracing):
+def test_the_whole_trace_disappears_when_the_trial_ends(tracing):
     opacity = 1.0
     tracing.draw(40)
     tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)
@@ -166,7 +166,7 @@ def test_all_of_it_goes_when_the_trial_ends(tracing):
     assert tracing.head.GetPolyData().GetPointData().GetArray(DISTANCE_SCALARS) is None
 
 
-def test_what_the_simulator_says_wrongly_shows_nothing_and_breaks_nothing(tracing):
+def test_invalid_data_from_the_simulator_shows_nothing_and_breaks_nothing(tracing):
     tracing.draw(40, trace={"kept": "many", "strokes": None, "on": 3})
     tracing.places = np.full((600, 3), np.nan)
     tracing.run_until(lambda: tracing.sent("GetTrial"))
@@ -178,7 +178,7 @@ def test_what_the_simulator_says_wrongly_shows_nothing_and_breaks_nothing(tracin
     tracing.run_until(has_points(tracing, 12))
 
 
-def test_it_is_kept_in_a_saved_scene(headless_scene, marked, tmp_path):
+def test_the_trace_is_kept_in_a_saved_scene(headless_scene, marked, tmp_path):
     tracing = Tracing(headless_scene.scene, marked)
     tracing.draw(40)
     tracing.run_until(lambda: tracing.node(Role.NEXT_PLACE) is not None)

@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.procedure.plan import ProcedureKind
 from rastrainer.slicer.logic.trainee_logic import TraineeLogic
 from rastrainer.slicer.scene.nodes import Role, findNode
-from rastrainer.slicer.scene.score_board import (
+from rastrainer.slicer.scene.score_tables import (
     Row,
     ctpsRows,
     motionRows,
@@ -94,7 +94,7 @@ def test_a_deleted_trainee_is_removed_and_journals_elsewhere_are_named(logic, ad
     assert (logic.chosen, logic.history(), logic.chosenTrainee()) == ("", (), None)
 
 
-def test_a_trainee_that_another_slicer_has_deleted_is_chosen_no_more(logic, tmp_path):
+def test_a_trainee_deleted_by_another_slicer_is_no_longer_chosen(logic, tmp_path):
     logic.create("a", consent=False)
     with Study.open(tmp_path / "study.db") as other:
         other.delete_trainee("a")
@@ -138,7 +138,7 @@ def test_the_history_is_a_table_and_two_learning_curves(scene, add_trial):
         assert table.GetColumnIndex(series.GetYColumnName()) >= 0
 
 
-def test_the_plot_of_the_learning_curves_begins_at_nought_and_holds_every_trial(scene, add_trial):
+def test_the_learning_curve_plot_begins_at_zero_and_includes_every_trial(scene, add_trial):
     trials = [add_trial(number, trainee="a") for number in range(1, 8)]
     assert showLearningCurve(scene, "a", trials[:1]).GetXAxisRange() == (0.0, 5.0)
     chart = showLearningCurve(scene, "a", trials)
@@ -171,7 +171,7 @@ def test_true_and_expected_errors_of_all_trainees_are_a_table_and_a_plot(scene, 
     assert (right > expected.max(), top > 6.0) == (True, True)
 
 
-def test_a_study_without_truths_has_an_empty_plot_and_a_sentence(scene, logic, make_record):
+def test_a_study_without_truths_has_an_empty_plot_and_a_message(scene, logic, make_record):
     logic.study.add_trial(make_record(str(uuid.UUID(int=7))))
     found = logic.calibration()
     assert showCalibration(scene, found).GetTitle() == "True against expected TRE"
@@ -181,7 +181,7 @@ def test_a_study_without_truths_has_an_empty_plot_and_a_sentence(scene, logic, m
     ]
 
 
-def test_a_learning_curve_over_two_versions_of_the_score_says_so(scene, logic, add_trial):
+def test_a_learning_curve_over_two_score_versions_says_so(scene, logic, add_trial):
     first, second = add_trial(1), add_trial(2)
     assert (
         showLearningCurve(scene, "T-001", [first, second]).GetTitle() == "Learning curve of T-001"
@@ -218,7 +218,7 @@ def test_the_score_is_shown_with_its_parts_and_ctps_with_its_warning(add_trial):
     assert ctpsRows(trial, []) == []
 
 
-def test_the_score_of_a_procedure_stands_beside_that_of_the_touches(logic, add_trial):
+def test_the_score_of_a_procedure_is_shown_beside_that_of_the_touches(logic, add_trial):
     trial = add_trial(1)
     assert "Score of the procedure" not in {row.title for row in scoreRows(trial)}
     dbs = outcome(ProcedureKind.DBS)
@@ -231,7 +231,7 @@ def test_the_score_of_a_procedure_stands_beside_that_of_the_touches(logic, add_t
     assert rows["… target point error"].value == dbs.analysis.target_rms_mm
 
 
-def test_a_trial_is_compared_with_own_ones_other_trainees_and_a_reference_group(logic, add_trial):
+def test_a_trial_is_compared_with_the_trainees_own_others_and_a_reference_group(logic, add_trial):
     add_trial(1, trainee="a", completionTimeS=120.0)
     add_trial(2, trainee="b", completionTimeS=60.0)
     add_trial(3, trainee="b", task="task-2", completionTimeS=10.0)
@@ -278,7 +278,7 @@ def test_motion_metrics_come_with_their_definitions(add_trial):
     assert all(len(row.note) > 20 for row in rows)
 
 
-def test_score_comparison_and_motion_become_tables_of_the_scene(scene, logic, add_trial):
+def test_score_comparison_and_motion_become_tables_in_the_scene(scene, logic, add_trial):
     trial = add_trial(1, motion={"sparc": -1.9})
     showScore(scene, [*scoreRows(trial), *ctpsRows(trial, COHORT)])
     showStandings(scene, standings(logic.study, trial, COHORT))

@@ -23,7 +23,7 @@ def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):
         room.logic.start("T001", "", "hmd")
 
 
-def test_the_trial_run_waits_for_the_tutorial_where_the_simulator_says_so(room):
+def test_the_trial_run_waits_for_the_tutorial_if_the_simulator_requires_it(room):
     room.needsTutorial = True
     room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)
     room.run_until(lambda: room.answers)
@@ -39,7 +39,7 @@ def test_the_trial_run_waits_for_the_tutorial_where_the_simulator_says_so(room):
     room.run_until(lambda: not room.logic.learner)
 
 
-def test_only_the_trial_run_waits_and_only_where_that_is_wanted(room):
+def test_only_the_trial_run_waits_and_only_on_request(room):
     room.needsTutorial = True
     room.logic.start("T001", "task-1", "desktop", isTutorialFirst=True)
     room.logic.start("T001", "trial-run", "desktop")
@@ -47,7 +47,7 @@ def test_only_the_trial_run_waits_and_only_where_that_is_wanted(room):
     assert room.all_sent("StartTutorial") == []
 
 
-def test_a_tutorial_that_is_refused_says_why(room):
+def test_a_refused_tutorial_reports_the_reason(room):
     room.refusal = "P07 is doing the tutorial."
     room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)
     room.run_until(lambda: room.answers)
@@ -65,7 +65,7 @@ def test_the_fiducials_of_a_running_task_are_shown_before_the_first_touch(room, 
     assert room.node(Role.HEAD_MODEL, "vtkMRMLModelNode") is not None
 
 
-def test_touches_appear_on_the_head_as_it_is_planned_while_the_trial_runs(room, scenario):
+def test_touches_appear_on_the_planned_head_while_the_trial_runs(room, scenario):
     room.tell()
     room.run_until(lambda: room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode"))
     fiducial = scenario.task("task-1").fiducials[0]
@@ -95,7 +95,7 @@ def test_progress_contains_the_next_point_the_clearance_and_the_running_time(roo
     assert room.logic.progress.elapsedS == 36.0
 
 
-def test_a_cleared_scene_does_not_turn_the_trials_time_back(room):
+def test_a_cleared_scene_does_not_turn_back_the_trials_clock(room):
     room.tell(elapsedS=30.0)
     room.run_until(lambda: room.logic.progress.phase == "running")
     room.now += 5.0
@@ -118,7 +118,7 @@ def test_a_trial_is_paused_resumed_and_aborted(room):
     assert room.sent("Abort") == [{"trialId": TRIAL}]
 
 
-def test_a_trial_that_started_during_the_question_about_another_is_not_aborted(room):
+def test_a_trial_started_during_the_question_about_another_is_not_aborted(room):
     room.tell()
     room.run_until(lambda: room.logic.progress.trialId == TRIAL)
     room.tell(trialId="another")
@@ -147,7 +147,7 @@ def test_a_cleared_scene_gets_the_running_trial_back(room):
     assert room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode") is not None
 
 
-def test_numbers_that_are_none_are_not_believed(room):
+def test_invalid_numbers_are_ignored(room):
     room.tell(clearanceMm="near", elapsedS=None, nextPoint=None)
     room.run_until(lambda: room.logic.progress.phase == "running")
     progress = room.logic.progress

@@ -80,7 +80,7 @@ def test_there_is_no_score_before_the_truth_is_revealed(scenario, record):
     assert not any(sentence.startswith("Score") for sentence in analysis.feedback.sentences)
 
 
-def test_a_common_bias_is_scored_and_told_with_its_direction(scenario, make_record):
+def test_a_common_bias_is_scored_and_reported_with_its_direction(scenario, make_record):
     value = make_record(str(uuid.UUID(int=1)))
     truth, record = truth_of(scenario), TrialRecord.from_json(value)
     honest = analyze_trial(record, scenario, truth=truth)
@@ -107,7 +107,7 @@ def along_skin(normals, vector):
     return vector - normals * (normals @ vector)[:, None]
 
 
-def test_an_offset_that_all_touches_share_is_seen_by_the_score_alone(scenario, make_record):
+def test_only_the_score_detects_an_offset_shared_by_all_touches(scenario, make_record):
     value = make_record(str(uuid.UUID(int=1)))
     for point in value["points"]:
         point["positionMm"] = [point["positionMm"][0] + 9.0, *point["positionMm"][1:]]
@@ -121,7 +121,7 @@ def test_an_offset_that_all_touches_share_is_seen_by_the_score_alone(scenario, m
     assert aside.score.score < 10 < honest.score.score
 
 
-def test_a_score_keeps_the_version_that_it_was_made_in(scenario, record):
+def test_a_score_keeps_the_version_in_which_it_was_computed(scenario, record):
     first, truth = first_score(60.0, 0.4), truth_of(scenario)
     analysis = analyze_trial(record, scenario).scored_as(first, scenario, truth)
     assert analysis.score == analysis.feedback.score == first
@@ -140,7 +140,7 @@ def test_without_a_cohort_there_is_no_ctps(scenario, record):
     assert analyze_trial(record, scenario).published_score is None
 
 
-def test_the_mode_plays_no_part_and_the_protocols_references_count(scenario, record):
+def test_the_mode_does_not_affect_the_score_and_the_protocols_references_apply(scenario, record):
     def score(record=record, **others):
         return analyze_trial(record, scenario, truth=truth_of(scenario), **others).score
 
@@ -159,7 +159,7 @@ def test_the_feedback_names_the_worst_touches_and_their_place_on_the_skin(scenar
     assert feedback.sentences[0].startswith("Score ")
 
 
-def test_a_task_that_the_scenario_lacks_gets_a_sentence(scenario, make_record):
+def test_a_task_missing_from_the_scenario_is_reported_with_a_message(scenario, make_record):
     value = make_record(str(uuid.UUID(int=1))) | {"task": "task-9"}
     with pytest.raises(InputError, match="it has trial-run, task-1, task-2"):
         analyze_trial(TrialRecord.from_json(value), scenario)
@@ -178,6 +178,6 @@ def test_the_results_are_json_with_finite_numbers(scenario, record):
 @pytest.mark.parametrize(
     "answer", [{}, {"headToWorld": [1.0] * 16}, {"headToWorld": [1.0] * 15, "trueTreMm": 1.0}]
 )
-def test_a_truth_that_is_none_gets_a_sentence(answer):
+def test_an_invalid_truth_is_refused_with_a_message(answer):
     with pytest.raises(InputError, match="must hold headToWorld"):
         RevealedTruth.from_json(answer)

@@ -113,7 +113,7 @@ def lab(scene, scenario, tmp_path):
     lab.close()
 
 
-def test_a_finished_trial_is_kept_acknowledged_scored_and_its_truth_kept(lab, make_record):
+def test_a_finished_trial_and_its_truth_are_stored_acknowledged_and_scored(lab, make_record):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL, seed=SEED))
     lab.run_until(lambda: lab.scored)
     stored = lab.stored()
@@ -145,7 +145,7 @@ def test_the_trial_is_shown_in_the_scene(lab, make_record):
         assert findNode(lab.scene, class_name, role) is not None
 
 
-def test_twice_is_once(lab, make_record):
+def test_delivering_twice_stores_once(lab, make_record):
     for _ in range(3):
         lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
@@ -158,7 +158,7 @@ def test_twice_is_once(lab, make_record):
         assert len(study.history("T-001")) == 1
 
 
-def test_a_trial_is_not_acknowledged_before_it_is_kept(lab, make_record):
+def test_a_trial_is_not_acknowledged_before_it_is_stored(lab, make_record):
     lab.is_study_broken = True
     lab.logic.close()
     lab.logic = lab.new_logic()
@@ -181,7 +181,7 @@ def test_an_invalid_record_is_reported_and_not_acknowledged(lab, make_record):
     assert not lab.all_sent("AcknowledgeTrial")
 
 
-def test_a_trial_that_cannot_be_scored_is_kept_all_the_same(lab, make_record):
+def test_a_trial_that_cannot_be_scored_is_stored_anyway(lab, make_record):
     record = make_record(TRIAL, scenario="elsewhere")
     lab.simulator.send_command("TrialCompleted", record)
     lab.run_until(lambda: lab.sent("AcknowledgeTrial"))
@@ -192,7 +192,7 @@ def test_a_trial_that_cannot_be_scored_is_kept_all_the_same(lab, make_record):
     assert not lab.all_sent("TrialScored")
 
 
-def test_a_refused_score_is_reported_and_the_trial_kept(lab, make_record):
+def test_a_refused_score_is_reported_and_the_trial_is_kept(lab, make_record):
     lab.refusal = "There is no such trial."
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.problems)
@@ -201,7 +201,7 @@ def test_a_refused_score_is_reported_and_the_trial_kept(lab, make_record):
     assert lab.stored().score is None
 
 
-def test_a_trial_whose_contacts_were_not_measured_is_kept_with_its_truth_and_not_scored(
+def test_a_trial_whose_contacts_were_not_measured_is_stored_with_its_truth_and_not_scored(
     lab, make_record
 ):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL, motion={}))
@@ -298,7 +298,7 @@ def test_each_score_is_sent_once_even_if_the_link_opens_again_meanwhile(lab, mak
     assert sorted(trial.record.trial_id for trial in lab.scored) == trials
 
 
-def test_a_trial_is_being_scored_from_when_it_is_stored(lab, make_record):
+def test_a_trial_counts_as_being_scored_as_soon_as_it_is_stored(lab, make_record):
     """So that feedback on it, which is in the study by then, waits for the score."""
     lab.link.trialCompleted.emit(make_record(TRIAL))
     assert lab.logic.isBeingScored(TRIAL)
@@ -331,7 +331,7 @@ def test_a_trial_deleted_with_its_trainee_is_acknowledged_and_not_stored_again(l
     assert len(lab.scored) == 1
 
 
-def test_trials_of_a_break_in_the_connection_all_arrive(lab, make_record):
+def test_trials_finished_during_a_connection_loss_all_arrive(lab, make_record):
     trials = [str(uuid.UUID(int=number)) for number in range(1, 5)]
     lab.link.disconnect()
     lab.connect()
@@ -367,7 +367,7 @@ def test_the_main_thread_neither_scores_nor_opens_the_study(lab, make_record, re
     assert main not in lab.threads | {thread for _trial, thread in reviews}
 
 
-def test_what_is_known_is_acknowledged_and_not_scored_again(lab, make_record, reviews):
+def test_known_trials_are_acknowledged_and_not_scored_again(lab, make_record, reviews):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
     for count in range(2, 5):
@@ -376,7 +376,7 @@ def test_what_is_known_is_acknowledged_and_not_scored_again(lab, make_record, re
     assert len(reviews) == 2
 
 
-def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, reviews):
+def test_an_invalid_trial_is_refused_before_it_is_scored(lab, make_record, reviews):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
     for changes, told in (
@@ -394,7 +394,7 @@ def test_what_is_no_trial_is_refused_before_it_is_scored(lab, make_record, revie
         assert [trainee.pseudonym for trainee in study.trainees()] == ["T-001"]
 
 
-def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_rest_is_reported(
+def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_excess_is_reported(
     lab, make_record, monkeypatch
 ):
     waiting = 8
@@ -433,7 +433,7 @@ def test_a_trial_waits_while_another_program_has_the_study_locked(lab, make_reco
     assert lab.stored().true_tre_mm is not None
 
 
-def test_a_trial_kept_when_slicer_ends_is_acknowledged_and_counted_once_by_the_next(
+def test_a_trial_stored_when_slicer_ends_is_acknowledged_and_counted_once_by_the_next(
     lab, make_record, monkeypatch
 ):
     monkeypatch.setattr(background_work, "CLOSING_S", 120.0)
@@ -453,7 +453,7 @@ def test_a_trial_kept_when_slicer_ends_is_acknowledged_and_counted_once_by_the_n
         assert len(study.history("T-001")) == 1
 
 
-def test_after_the_study_is_changed_trials_go_into_the_new_one(lab, make_record, tmp_path):
+def test_after_switching_studies_trials_go_into_the_new_one(lab, make_record, tmp_path):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
     lab.path = tmp_path / "another.db"

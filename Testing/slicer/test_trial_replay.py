@@ -69,7 +69,7 @@ def test_the_tool_is_where_it_was_at_every_time(scene, replayed, tips):
         assert said == f"{30.0 - 5.0 * shown:.1f} mm"
 
 
-def test_touches_come_when_they_were_made(scene, replayed):  # noqa: ARG001
+def test_touches_appear_at_the_time_they_were_made(scene, replayed):  # noqa: ARG001
     counts = []
     for seconds in (0.9, 1.1, 2.5, 3.0):
         goTo(scene, seconds)
@@ -78,7 +78,7 @@ def test_touches_come_when_they_were_made(scene, replayed):  # noqa: ARG001
     assert node(scene, "touches").GetNthControlPointLabel(2) == "3"
 
 
-def test_a_trace_grows_as_it_was_drawn_on_the_head_and_goes_with_the_replay(scene, tmp_path):
+def test_a_trace_grows_as_it_was_drawn_on_the_head_and_is_removed_with_the_replay(scene, tmp_path):
     tips = write_recorded_trial(tmp_path, TRIAL, traced=45)
     track = find_track(tmp_path, TRIAL)
     showReplay(scene, "Trial 1", track, readArmChain(URDF), WORLD_TO_HEAD)
@@ -95,7 +95,7 @@ def test_a_trace_grows_as_it_was_drawn_on_the_head_and_goes_with_the_replay(scen
     assert scene.GetFirstNodeByName("Trial 1: trace") is None
 
 
-def test_another_trial_takes_the_place_of_the_one_before(scene, replayed, tmp_path):
+def test_another_trial_replaces_the_previous_one(scene, replayed, tmp_path):
     before = shown(scene)
     write_recorded_trial(tmp_path / "other", TRIAL, seconds=1.0)
     track = find_track(tmp_path / "other", TRIAL)
@@ -126,7 +126,7 @@ def test_a_replayed_trace_is_saved_with_the_scene(headless_scene, scene, tmp_pat
     assert node(again.scene, "trace").GetPolyData().GetNumberOfPoints() == 45
 
 
-def test_a_journal_of_another_robot_or_none_at_all_is_reported(scene, tips, tmp_path):  # noqa: ARG001
+def test_a_journal_from_another_robot_or_no_journal_at_all_is_reported(scene, tips, tmp_path):  # noqa: ARG001
     chain = readArmChain(URDF)
     longer = chain.origins.copy()
     longer[3, 2, 3] += 10.0
@@ -138,7 +138,7 @@ def test_a_journal_of_another_robot_or_none_at_all_is_reported(scene, tips, tmp_
         find_track(tmp_path, TRIAL[:-1] + "2")
 
 
-def test_the_application_may_draw_after_each_slice_of_a_replay(scene, tips, tmp_path):  # noqa: ARG001
+def test_the_application_may_redraw_after_each_slice_of_a_replay(scene, tips, tmp_path):  # noqa: ARG001
     shares = []
     track = find_track(tmp_path, TRIAL)
     replay = showReplay(scene, "1", track, readArmChain(URDF), WORLD_TO_HEAD, shares.append)

@@ -60,7 +60,7 @@ def test_the_slices_jump_to_each_next_point(room, follower, scenario):
         np.testing.assert_allclose(place(room.scene), fiducials[int(label) - 1], atol=1e-3)
 
 
-def test_where_a_user_scrolls_to_the_slices_stay_until_another_point_is_next(room, follower):
+def test_slices_scrolled_by_the_user_stay_until_another_point_is_next(room, follower):
     play(room, follower, "1")
     jumpTo(room.scene, (1.0, 2.0, 3.0))
     follower.process()
@@ -81,7 +81,7 @@ def test_the_first_point_of_another_task_is_shown_once_its_fiducials_are(room, f
     np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[0], atol=1e-3)
 
 
-def test_the_slices_stay_where_they_are_when_that_is_wished_or_no_trial_runs(room, follower):
+def test_the_slices_stay_where_they_are_on_request_or_without_a_trial(room, follower):
     jumpTo(room.scene, (1.0, 2.0, 3.0))
     follower.showsNextPoint = False
     play(room, follower, "1")
@@ -97,7 +97,7 @@ def pose_of_tool(room):
     return poseOnHead(room.scene, DeviceName.TOOL_TIP_TO_WORLD)
 
 
-def test_the_tip_of_the_tool_is_where_the_registration_puts_it_on_the_head(room, scenario):
+def test_the_tool_tip_is_where_the_registration_places_it_on_the_head(room, scenario):
     assert pose_of_tool(room) is None
     prepareNodes(room.scene)
     assert pose_of_tool(room) is None
@@ -108,7 +108,7 @@ def test_the_tip_of_the_tool_is_where_the_registration_puts_it_on_the_head(room,
     np.testing.assert_allclose(pose_of_tool(room)[:3, 3], wanted)
 
 
-def test_the_slices_follow_the_tool_in_the_place_of_the_next_point(room, follower, scenario):
+def test_the_slices_follow_the_tool_instead_of_the_next_point(room, follower, scenario):
     stand(room, scenario)
     put_tool(room.scene, TIP)
     follower.followsTool = True
@@ -120,7 +120,7 @@ def test_the_slices_follow_the_tool_in_the_place_of_the_next_point(room, followe
     np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[0], atol=1e-3)
 
 
-def test_following_is_limited_in_rate_and_needs_a_move(room, follower, scenario):
+def test_following_is_rate_limited_and_needs_motion(room, follower, scenario):
     stand(room, scenario)
     put_tool(room.scene, TIP)
     follower.followsTool = True
@@ -138,7 +138,7 @@ def test_following_is_limited_in_rate_and_needs_a_move(room, follower, scenario)
     np.testing.assert_allclose(place(room.scene), first + UP, atol=1e-3)
 
 
-def test_a_place_that_was_shown_is_shown_again_after_the_views_were_moved(room, follower):
+def test_a_shown_place_is_shown_again_after_the_views_were_moved(room, follower):
     follower.showAgain()
     follower.show((10.0, 20.0, 30.0))
     jumpTo(room.scene, (0.0, 0.0, 0.0))
@@ -146,9 +146,7 @@ def test_a_place_that_was_shown_is_shown_again_after_the_views_were_moved(room, 
     np.testing.assert_allclose(place(room.scene), [10, 20, 30])
 
 
-def test_a_scene_that_is_cleared_and_shown_again_at_once_gets_its_next_point(
-    room, follower, scenario
-):
+def test_a_scene_cleared_and_shown_again_at_once_gets_its_next_point(room, follower, scenario):
     play(room, follower, "3")
     room.scene.Clear(False)
     follower.forgetScene()
@@ -158,7 +156,7 @@ def test_a_scene_that_is_cleared_and_shown_again_at_once_gets_its_next_point(
     np.testing.assert_allclose(place(room.scene), scenario.task("task-1").fiducials[2], atol=1e-3)
 
 
-def test_in_a_cleared_scene_the_slices_go_to_a_tool_that_stands_still(room, follower, scenario):
+def test_in_a_cleared_scene_the_slices_go_to_a_stationary_tool(room, follower, scenario):
     follower.followsTool = True
     stand(room, scenario)
     put_tool(room.scene, TIP)
@@ -188,7 +186,7 @@ def axes_of(scene, name):
     return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(3)])
 
 
-def test_the_slices_lie_along_drill_and_instrument_and_then_as_before(room, follower, scenario):
+def test_the_slices_align_with_drill_and_instrument_and_are_then_restored(room, follower, scenario):
     stand(room, scenario)
     before = {name: axes_of(room.scene, name)[:, :3] for name in ("Red", "Green", "Yellow")}
     direction = np.array([0.2, -0.3, -0.93])
@@ -214,7 +212,7 @@ def test_the_slices_lie_along_drill_and_instrument_and_then_as_before(room, foll
         np.testing.assert_allclose(axes_of(room.scene, name)[:, :3], axes)
 
 
-def test_views_that_are_not_to_lie_along_the_instrument_do_not(room, follower, scenario):
+def test_views_do_not_align_with_the_instrument_unless_wanted(room, follower, scenario):
     stand(room, scenario)
     put_instrument(room.scene, TIP, np.array([0.0, 0.0, -1.0]))
     follower.liesAlong = False

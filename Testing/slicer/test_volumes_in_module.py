@@ -44,10 +44,10 @@ def refuse_each(host, folder, cases):
     assert not user_library().exists()
 
 
-def test_a_broken_volume_gets_a_sentence_and_leaves_scene_and_library_as_they_were(host, tmp_path):
+def test_a_broken_volume_is_reported_and_leaves_scene_and_library_unchanged(host, tmp_path):
     refuse_each(host, tmp_path, {"2D": BUTTONS[:1], "NaN": BUTTONS[1:], "a block": BUTTONS[:1]})
 
 
 @pytest.mark.soak
-def test_each_broken_volume_gets_its_sentence_at_each_button(host, tmp_path):
+def test_each_broken_volume_is_reported_in_its_own_sentence_at_each_button(host, tmp_path):
     refuse_each(host, tmp_path, dict.fromkeys(ALL, BUTTONS))

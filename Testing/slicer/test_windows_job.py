@@ -188,20 +188,20 @@ def started(windows):
     return process, WindowsJob(process, windows.kernel)
 
 
-def test_what_a_program_starts_in_its_first_moment_ends_with_it(windows):
+def test_anything_a_program_starts_in_its_first_moment_ends_with_it(windows):
     _process, job = started(windows)
     assert len(windows.running) == 2
     job.kill()
     assert windows.running == set()
 
 
-def test_a_program_that_is_not_suspended_would_leave_what_it_starts_at_once(windows):
+def test_a_program_not_started_suspended_would_leave_its_first_children_behind(windows):
     process = windows.start(0)
     WindowsJob(process, windows.kernel).kill()
     assert len(windows.running) == 1
 
 
-def test_no_handle_is_left_open_and_the_last_one_ends_nothing(windows):
+def test_no_handle_is_leaked_and_closing_the_last_one_ends_nothing(windows):
     process, job = started(windows)
     kinds = sorted(kind for kind, _value in windows.open_handles.values())
     assert kinds == ["job", "process"]
@@ -212,7 +212,7 @@ def test_no_handle_is_left_open_and_the_last_one_ends_nothing(windows):
 
 
 @pytest.mark.parametrize("call", ["CreateJobObjectW", "AssignProcessToJobObject"])
-def test_without_a_job_it_runs_all_the_same_and_ends_as_a_tree(windows, monkeypatch, call):
+def test_without_a_job_it_still_runs_and_is_ended_as_a_tree(windows, monkeypatch, call):
     windows.refused.add(call)
     ended = []
     monkeypatch.setattr(windows_job, "endTree", ended.append)
@@ -223,7 +223,7 @@ def test_without_a_job_it_runs_all_the_same_and_ends_as_a_tree(windows, monkeypa
 
 
 @pytest.mark.parametrize("call", ["CreateToolhelp32Snapshot", "OpenThread", "ResumeThread"])
-def test_a_program_that_does_not_go_on_is_ended_and_told(windows, call):
+def test_a_program_that_cannot_be_resumed_is_ended_and_reported(windows, call):
     windows.refused.add(call)
     with pytest.raises(OSError, match="does not let it run"):
         started(windows)
@@ -239,7 +239,7 @@ time.sleep(600)
 
 
 @pytest.mark.skipif(sys.platform != "win32", reason="the job objects of Windows itself")
-def test_windows_ends_a_program_with_what_it_starts():
+def test_windows_ends_a_program_with_everything_it_started():
     words = [sys.executable, "-c", PARENT]
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, **WINDOWS_OPTIONS) as process:
         job = WindowsJob(process)

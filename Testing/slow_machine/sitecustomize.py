@@ -30,7 +30,7 @@ def _late(share: float, longest_s: float) -> float:
     return _random.random() ** 2 * longest_s if _random.random() < share else 0.0
 
 
-def _be_late(share: float, longest_s: float) -> None:
+def _sleep_randomly(share: float, longest_s: float) -> None:
     time.sleep(_late(share, longest_s))
 
 
@@ -38,7 +38,7 @@ def _delay_others() -> None:
     run, submit, fsync = threading.Thread.run, ThreadPoolExecutor.submit, os.fsync
 
     def late_run(thread):
-        _be_late(0.5, LONGEST_THREAD_S)
+        _sleep_randomly(0.5, LONGEST_THREAD_S)
         run(thread)
 
     def late_submit(pool, work, /, *arguments, **named):
@@ -47,7 +47,7 @@ def _delay_others() -> None:
         is_journal = pool._thread_name_prefix == "journal"
 
         def late_work(*arguments, **named):
-            _be_late(0.0 if is_journal else 0.4, LONGEST_THREAD_S)
+            _sleep_randomly(0.0 if is_journal else 0.4, LONGEST_THREAD_S)
             return work(*arguments, **named)
 
         future = submit(pool, late_work, *arguments, **named)
@@ -56,7 +56,7 @@ def _delay_others() -> None:
         return future
 
     def late_fsync(descriptor):
-        _be_late(0.3, LONGEST_DISK_S)
+        _sleep_randomly(0.3, LONGEST_DISK_S)
         fsync(descriptor)
 
     threading.Thread.run = late_run
@@ -64,7 +64,7 @@ def _delay_others() -> None:
     os.fsync = late_fsync
 
 
-def _hold_up_those_who_start_or_send() -> None:
+def _delay_thread_starts_and_sends() -> None:
     start, set_event = threading.Thread.start, threading.Event.set
     start_process, call_soon = subprocess.Popen.__init__, asyncio.BaseEventLoop.call_soon_threadsafe
 
@@ -75,17 +75,17 @@ def _hold_up_those_who_start_or_send() -> None:
 
     def set_and_wait(event):
         set_event(event)
-        _be_late(0.1, LONGEST_AFTER_SENDING_S)
+        _sleep_randomly(0.1, LONGEST_AFTER_SENDING_S)
 
     def start_process_and_wait(process, *arguments, **named):
         start_process(process, *arguments, **named)
         if not _is_in_loop():
-            _be_late(0.3, LONGEST_START_S)
+            _sleep_randomly(0.3, LONGEST_START_S)
 
     def call_soon_and_wait(loop, *arguments, **named):
         handle = call_soon(loop, *arguments, **named)
         if not _is_in_loop():
-            _be_late(0.2, LONGEST_AFTER_SENDING_S)
+            _sleep_randomly(0.2, LONGEST_AFTER_SENDING_S)
         return handle
 
     threading.Thread.start = start_and_wait
@@ -102,7 +102,7 @@ def _held_up_after(send):
     def send_and_wait(sender, *arguments):
         sent = send(sender, *arguments)
         if not _is_in_loop():
-            _be_late(0.1, LONGEST_AFTER_SENDING_S)
+            _sleep_randomly(0.1, LONGEST_AFTER_SENDING_S)
         return sent
 
     return send_and_wait
@@ -115,5 +115,5 @@ def _is_in_loop() -> bool:
 
 if os.environ.get("RASTRAINER_SLOW"):
     _delay_others()
-    _hold_up_those_who_start_or_send()
-    _be_late(1.0, LONGEST_START_S)
+    _delay_thread_starts_and_sends()
+    _sleep_randomly(1.0, LONGEST_START_S)

@@ -17,12 +17,12 @@ from playwright.sync_api import sync_playwright
 from rastrainer.protocol import Phase
 from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer_simulator.board.class_table import ClassReader, ClassStanding
-from rastrainer_simulator.flow.session.curricula import AssignmentWords
+from rastrainer_simulator.flow.session.curricula import AssignmentTexts
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
-from rastrainer_simulator.net.views.presenter import Seat
-from rastrainer_simulator.ops.texts.english import ENGLISH
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.presentation.presenter import Seat
 from rastrainer_simulator.state import TouchStage
+from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.texts import Texts
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import BoardClient
 from Testing.simulator.board.seat_double import HOST, serve_seat
@@ -36,7 +36,7 @@ SAY = Texts(ENGLISH).say
 
 def assignments(found: ClassStanding, trainee: str) -> str:
     """Return where a trainee stands, as the seat says it."""
-    words = AssignmentWords(Texts(ENGLISH), lambda task: SAY(f"task.{task}"), str.capitalize)
+    words = AssignmentTexts(Texts(ENGLISH), lambda task: SAY(f"task.{task}"), str.capitalize)
     return words.in_brief(CurriculumMessage.of(trainee, found.standings[trainee]))
 
 

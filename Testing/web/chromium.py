@@ -15,7 +15,7 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, Playwright, Response
 
 from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.net.views.screen import Screen, without_secrets
+from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ServedViews
 from tools.build_page import install_packages
@@ -164,7 +164,7 @@ def draw_nothing(page: Page) -> None:
     page.add_init_script(_DRAW_NOTHING)
 
 
-def draw_a_while(page: Page) -> np.ndarray:
+def draw_for_a_while(page: Page) -> np.ndarray:
     """Let a page that draws nothing draw some pictures; return the last as `pixels` does."""
     page.evaluate("drawsNothing = false; page.isDue = true; frames_(3)")
     picture = pixels(page)

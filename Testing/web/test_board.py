@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.net.views.presenter import Seat
-from rastrainer_simulator.net.views.screen import Screen, ScreenMessage
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
+from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.presentation.screen import Screen, ScreenMessage
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import PIN, BoardClient, WatchedSimulator
 from Testing.simulator.net.views.served import ServedViews
@@ -99,7 +99,7 @@ def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_remov
     browser, board, simulator
 ):
     presenter = simulator.served.presenter
-    presenter.told_of_seat = AT_WORK
+    presenter.reported_seat = AT_WORK
     page = open_board(browser, board)
     assert page.locator("#empty").is_visible()
     page.focus("#add")
@@ -117,7 +117,7 @@ def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_remov
     page.wait_for_selector("#seats > li[data-link=watching] .who:has-text('P07')")
     page.wait_for_selector("#seats > li:has-text('71.5 / 100')")
     page.wait_for_selector("#count:text-is('1 of 1 seats connected, 0 training')")
-    presenter.told_of_seat = Seat("<img src=x onerror=alert(1)>")
+    presenter.reported_seat = Seat("<img src=x onerror=alert(1)>")
     page.wait_for_selector("#seats .who:has-text('<img src=x')")
 
     press(page, "Send a sentence")
@@ -154,7 +154,7 @@ CANCEL_AND_OPEN_AGAIN = """async () => {
 }"""
 
 
-def test_a_form_stays_that_is_opened_while_the_one_before_closes(browser, board):
+def test_a_form_opened_while_the_previous_one_closes_stays_open(browser, board):
     page = open_board(browser, board)
     page.click("#add")
     assert page.evaluate(CANCEL_AND_OPEN_AGAIN)
@@ -195,10 +195,10 @@ def test_a_seat_is_watched_live_from_the_board(browser, board, simulator):
         pytest.param("zh-CN", "头显控制器", marks=pytest.mark.soak),
     ],
 )
-def test_the_board_breaks_no_rule_of_accessibility_and_fits_every_size_in_its_own_language(
+def test_the_board_breaks_no_accessibility_rule_and_fits_every_size_in_its_own_language(
     browser, board, simulator, locale, driven
 ):
-    simulator.served.presenter.told_of_seat = LONG
+    simulator.served.presenter.reported_seat = LONG
     for name in ("Window 3", "A place whose name is as long as may be..."[:40]):
         board.add(simulator, name)
     page = open_board(browser, board, locale)

@@ -97,9 +97,7 @@ def test_while_the_study_is_away_the_page_says_so_once_and_keeps_the_table(
 
 
 @pytest.mark.soak
-def test_without_trainees_without_a_curriculum_and_without_a_study_there_is_a_sentence(
-    browser, tmp_path
-):
+def test_without_trainees_a_curriculum_or_a_study_a_message_is_shown(browser, tmp_path):
     path = tmp_path / "study.db"
     Study.open(path).close()
     with open_class(browser, tmp_path, "--study", str(path)) as page:

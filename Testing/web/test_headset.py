@@ -98,7 +98,7 @@ def forward(page) -> np.ndarray:
     return -eyes(page)[0][:3, 2]
 
 
-def let_arm_rest(page, trainee) -> None:
+def wait_for_arm_to_rest(page, trainee) -> None:
     """Wait until the arm stands, and is seen where it stands."""
     trainee.until_still()
     page.evaluate("frames_(3)")
@@ -109,7 +109,7 @@ def halves(picture: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return picture[:, :middle], picture[:, middle : 2 * middle]
 
 
-def test_two_eyes_stand_a_pupil_distance_apart_and_see_the_room(worn):
+def test_two_eyes_are_a_pupil_distance_apart_and_see_the_room(worn):
     left, right = eyes(worn)
     between = right[:3, 3] - left[:3, 3]
     np.testing.assert_allclose(np.linalg.norm(between), IPD_M, atol=0.003)
@@ -118,7 +118,7 @@ def test_two_eyes_stand_a_pupil_distance_apart_and_see_the_room(worn):
         assert half.std() > 20.0
 
 
-def test_what_one_eye_sees_lies_farther_right_than_what_the_other_sees(worn):
+def test_one_eye_sees_things_farther_right_than_the_other(worn):
     left, right = (half.mean(axis=2)[100:] for half in halves(pixels(worn)))
     width = left.shape[1]
     costs = {
@@ -136,7 +136,7 @@ def test_the_view_turns_with_the_head(worn):
 
 
 @pytest.mark.parametrize("height", [1.1, 1.9])
-def test_who_sits_and_who_stands_recenter_to_the_same_place_at_the_table(place, worn, height):
+def test_sitting_and_standing_users_recenter_to_the_same_place_at_the_table(place, worn, height):
     trainee = place.carried_trainee(Controllers(worn))
     trainee.go_home()
     stand(worn, 0.7, height, -0.4, yaw=0.6)
@@ -152,7 +152,7 @@ def test_the_headsets_own_button_recenters_too(worn):
     np.testing.assert_allclose(eye_place(worn), EYES_HOME, atol=0.01)
 
 
-def test_the_table_is_raised_and_lowered_and_stays_so(place, worn):
+def test_the_table_can_be_raised_and_lowered_and_stays_so(place, worn):
     place.carried_trainee(Controllers(worn)).go_home()
     hands = Controllers(worn)
     hands.point_at("local recenter")
@@ -169,16 +169,16 @@ def test_the_table_is_raised_and_lowered_and_stays_so(place, worn):
     np.testing.assert_allclose(eye_place(worn), EYES_HOME, atol=0.01)
 
 
-def test_the_tip_follows_the_hand_that_grabs_until_it_lets_go(place, worn, trainee):
+def test_the_tip_follows_the_grabbing_hand_until_it_lets_go(place, worn, trainee):
     hands = trainee.hands
-    let_arm_rest(worn, trainee)
+    wait_for_arm_to_rest(worn, trainee)
     wanted = trainee.tip
     hands.grab(True)
     for _ in range(STEPS):
         wanted = wanted + hands.move(0.006, 0.008, 0.004)
         trainee.until(lambda w=wanted: np.linalg.norm(trainee.tip - w) < 0.006, "the tip there")
     hands.grab(False)
-    let_arm_rest(worn, trainee)
+    wait_for_arm_to_rest(worn, trainee)
     held = trainee.tip
     hands.move(-0.03, -0.04, -0.02)
     for _ in range(30):
@@ -187,7 +187,7 @@ def test_the_tip_follows_the_hand_that_grabs_until_it_lets_go(place, worn, train
 
 
 def test_the_sticks_follow_the_eyes(worn, trainee):
-    let_arm_rest(worn, trainee)
+    wait_for_arm_to_rest(worn, trainee)
     start = trainee.tip
     # A quarter turn to the right: the eyes look along World's x.
     worn.evaluate("device.quaternion.set(0, -Math.SQRT1_2, 0, Math.SQRT1_2); frames_(3)")
@@ -204,7 +204,7 @@ def test_grabbing_can_be_switched_off(place, worn, trainee):
     trainee.press("menu", lambda: trainee.menu is not None, "the menu")
     trainee.hands.point_at("local grab")
     trainee.resume()
-    let_arm_rest(worn, trainee)
+    wait_for_arm_to_rest(worn, trainee)
     start = trainee.tip
     trainee.hands.grab(True)
     trainee.hands.move(0.0, 0.05, 0.0)
@@ -225,7 +225,7 @@ def test_proximity_pulses_both_controllers(worn, trainee):
     assert all(0 < value <= 1 and ms > 0 for _hand, value, ms in pulses)
 
 
-def test_who_holds_the_control_is_read_while_driving_and_in_menus(worn, trainee):
+def test_who_has_control_is_shown_while_driving_and_in_menus(worn, trainee):
     holder = "You drive: headset's controllers"
     trainee.press("camera", lambda: trainee.view.state["camera"] == "far", "the far camera")
     wait_for(worn, f"page.headset.boards.work.shown.includes(`{holder}`)")
@@ -234,7 +234,7 @@ def test_who_holds_the_control_is_read_while_driving_and_in_menus(worn, trainee)
     wait_for(worn, f"page.headset.boards.actions.shown.includes(`{holder}`)")
 
 
-def test_doffing_pauses_the_trial_and_loses_nothing(place, worn, trainee):
+def test_taking_the_headset_off_pauses_the_trial_and_loses_nothing(place, worn, trainee):
     trainee.touch_all(1)
     trainee.hands.push(0.0, 0.0, 0.8)
     trainee.until(lambda: place.view.state["clearanceMm"] > 40, "the tip off the head")
@@ -251,7 +251,7 @@ def test_doffing_pauses_the_trial_and_loses_nothing(place, worn, trainee):
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")
 
 
-def test_leaving_the_headset_pauses_the_trial_and_loses_nothing(place, worn, trainee):
+def test_leaving_the_immersive_session_pauses_the_trial_and_loses_nothing(place, worn, trainee):
     trainee.touch_all(1)
     leave_headset(worn)
     trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")
@@ -261,7 +261,7 @@ def test_leaving_the_headset_pauses_the_trial_and_loses_nothing(place, worn, tra
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")
 
 
-def test_the_journal_tells_mode_headset_rate_and_frames(place, trainee):
+def test_the_journal_records_mode_headset_rate_and_frames(place, trainee):
     (begun,) = place.entries("header")
     assert begun["mode"] == "hmd"
 
@@ -276,7 +276,7 @@ def test_the_journal_tells_mode_headset_rate_and_frames(place, trainee):
     assert report["dropped"] >= 0
 
 
-def test_a_quest_3_is_told_by_its_name_and_drawn_with_most_foveation(place, browser):
+def test_a_quest_3_is_recognized_by_its_name_and_drawn_with_maximum_foveation(place, browser):
     page = open_page(browser, place.simulator.url, place.simulator.code, "metaQuest3")
     enter_headset(page)
     assert page.evaluate("page.headset.hello().device") == "Meta Quest 3"

@@ -8,8 +8,8 @@ import pytest
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.net.views.screen import Menu, MenuItem, Screen
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.presentation.screen import Menu, MenuItem, Screen
+from rastrainer_simulator.texts.texts import LANGUAGES
 from Testing.simulator.flow.languages import LONGEST, LONGEST_OR_EACH, letters, screens_in
 from Testing.web.chromium import EYES_M, enter_headset, open_page, show
 from Testing.web.test_page_access import at_work
@@ -113,7 +113,7 @@ def stand(page, forward=0.0, yaw=0.0):
 
 
 @pytest.mark.parametrize("yaw", TURNED)
-def test_a_menu_is_before_the_eyes_wherever_they_turn(menu, yaw):
+def test_a_menu_stays_before_the_eyes_wherever_they_turn(menu, yaw):
     stand(menu, yaw=yaw)
     board = menu.evaluate(BOARD, "menu")
     assert board["aside"] < 35.0
@@ -121,7 +121,7 @@ def test_a_menu_is_before_the_eyes_wherever_they_turn(menu, yaw):
     assert board["away"] < 0.7, "nearer than the arm"
 
 
-def test_a_menu_that_opens_comes_up_where_the_eyes_look(work):
+def test_a_menu_opens_where_the_eyes_look(work):
     stand(work, yaw=0.5)
     work.evaluate("page.headset.showScreen(page.screen)")
     work.evaluate("frames_(3)")
@@ -144,21 +144,21 @@ TWICE = """() => {
 }"""
 
 
-def test_a_menu_that_is_opened_again_is_drawn_again(menu):
+def test_a_reopened_menu_is_drawn_again(menu):
     seen = menu.evaluate(TWICE)
     assert (seen["isSame"], seen["isHidden"], seen["isOther"]) == (True, True, True)
     assert seen["items"] == menu.evaluate("page.screen.menu.items.map(({ name }) => name)")
 
 
 @pytest.mark.parametrize("name", ["work", "closeUp", "warning"])
-def test_a_panel_is_read_from_behind_the_head_too(work, name):
+def test_a_panel_is_readable_from_behind_the_head_too(work, name):
     stand(work, forward=BEHIND_M, yaw=3.14159)
     board = work.evaluate(BOARD, name)
     assert board["facing"] < 5.0
     assert board["aside"] < 50.0
 
 
-def test_a_banner_stands_in_the_room_above_the_head_and_not_in_the_close_up(work):
+def test_a_banner_is_in_the_room_above_the_head_and_not_in_the_close_up(work):
     board = work.evaluate(BOARD, "warning")
     assert board["isInRoom"], "the close-up is drawn without the room's boards"
     assert not work.evaluate(COVERED)
@@ -207,7 +207,7 @@ AHEAD = """() => {
 }"""
 
 
-def test_an_arrow_leads_the_eyes_to_a_next_point_that_is_out_of_sight(work):
+def test_an_arrow_points_to_a_next_point_that_is_out_of_sight(work):
     assert not work.evaluate(ARROW, work.evaluate(AHEAD % "1"))["isSeen"]
     behind = work.evaluate(AHEAD % "-1")
     arrow = work.evaluate(ARROW, behind)
@@ -218,7 +218,7 @@ def test_an_arrow_leads_the_eyes_to_a_next_point_that_is_out_of_sight(work):
     assert not work.evaluate(ARROW, None)["isSeen"]
 
 
-def test_hints_and_holder_are_written_on_lines_of_their_own(worn):
+def test_hints_and_control_holder_are_on_separate_lines(worn):
     worn.evaluate("page.headset.boards.work.shown = ''")
     written = worn.evaluate(WRITTEN % WORK)
     (holder,) = [y for text, y in written if "robot" in text]
@@ -268,7 +268,7 @@ WITHOUT_ROOM = """() => {
 
 
 @pytest.mark.parametrize("language", LONGEST_OR_EACH)
-def test_nothing_on_a_board_is_cut_or_over_something_else(worn, served, loop, outside, language):
+def test_nothing_on_a_board_is_cut_off_or_overlaps(worn, served, loop, outside, language):
     presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
     spoken = LANGUAGES if language == LONGEST else [language]
     screens = {**screens_in(presenter, language), "work": max(map(at_work, spoken), key=letters)}

@@ -56,9 +56,7 @@ def play(lab, tre_mm: float) -> None:
         ),
     ],
 )
-def test_the_page_of_a_launch_breaks_no_rule_of_accessibility_and_fits_every_size(
-    browser, lab, locale
-):
+def test_the_launch_page_breaks_no_accessibility_rule_and_fits_every_size(browser, lab, locale):
     empty = open_link(browser, lab, locale)
     assert empty.locator(".trial").count() == 0
     empty.context.close()

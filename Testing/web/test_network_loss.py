@@ -45,7 +45,7 @@ def stands(place, trainee) -> bool:
 
 
 @pytest.mark.soak
-def test_a_broken_connection_pauses_the_trial_which_goes_on_when_it_is_mended(
+def test_a_broken_connection_pauses_the_trial_which_resumes_when_it_is_restored(
     place, relay, browser
 ):
     page, trainee = begin(place, relay, browser, "")
@@ -63,7 +63,7 @@ def test_a_broken_connection_pauses_the_trial_which_goes_on_when_it_is_mended(
 
 @pytest.mark.soak
 @pytest.mark.parametrize("headset", ["", "metaQuest2"])
-def test_a_network_that_stands_still_pauses_the_trial_and_is_told(place, relay, browser, headset):
+def test_a_stalled_network_pauses_the_trial_and_is_reported(place, relay, browser, headset):
     page, trainee = begin(place, relay, browser, headset)
     relay.stall()
     trainee.until(lambda: place.view.state["phase"] == "paused", "the pause")

@@ -6,7 +6,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from Testing.web.chromium import draw_a_while, open_page
+from Testing.web.chromium import draw_for_a_while, open_page
 from Testing.web.hands import BrowserPad, PageKeys
 from Testing.web.place import PATIENT, Place, scored_trial
 
@@ -39,9 +39,9 @@ def begin_by_keyboard(place, page):
     return trainee
 
 
-def test_by_keyboard_a_trial_begins_and_a_touch_is_taken_back(place, page):
+def test_a_trial_is_begun_and_a_touch_undone_by_keyboard(place, page):
     trainee = begin_by_keyboard(place, page)
-    assert draw_a_while(page).std() > 20.0
+    assert draw_for_a_while(page).std() > 20.0
     trainee.touch_all(1)
     trainee.press("undo", lambda: trainee.touched == 0, "the undo")
 
@@ -60,7 +60,7 @@ def test_a_trial_by_keyboard_is_registered_and_scored(place, page):
 
 
 @pytest.mark.soak
-def test_a_gamepad_of_the_browser_begins_a_task_and_steers(place, page):
+def test_a_browser_gamepad_begins_a_task_and_steers(place, page):
     trainee = place.trainee(BrowserPad(page))
     trainee.begin("task-2", page)
     before = trainee.tip
@@ -70,7 +70,7 @@ def test_a_gamepad_of_the_browser_begins_a_task_and_steers(place, page):
     page.wait_for_selector("""#control:has-text("You drive: browser's gamepad")""")
 
 
-def test_a_click_chooses_and_the_text_is_what_the_simulator_says(place, page):
+def test_a_click_chooses_an_item_and_the_text_is_the_simulators(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_home()
     page.wait_for_selector("body[data-menu=start]")
@@ -80,7 +80,7 @@ def test_a_click_chooses_and_the_text_is_what_the_simulator_says(place, page):
     assert page.inner_text("#menu h2") == trainee.menu.title
 
 
-def test_the_introduction_shows_a_picture_of_what_is_held_with_its_inputs_colored(place, page):
+def test_the_introduction_shows_the_device_in_use_with_its_inputs_colored(place, page):
     colored = {}
     for hands in (PageKeys, BrowserPad):
         trainee = place.trainee(hands(page))
@@ -97,7 +97,7 @@ def test_the_introduction_shows_a_picture_of_what_is_held_with_its_inputs_colore
     assert colored == {PageKeys: 19, BrowserPad: 9}
 
 
-def test_the_menu_of_heads_shows_the_picture_of_the_one_in_focus(place, page):
+def test_the_menu_of_heads_shows_the_picture_of_the_focused_one(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_to_experiment()
     trainee.choose("scenario")
@@ -109,7 +109,7 @@ def test_the_menu_of_heads_shows_the_picture_of_the_one_in_focus(place, page):
     page.wait_for_selector("#menu img", state="detached")
 
 
-def test_the_page_weighs_less_than_a_megabyte_and_loads_nothing_from_elsewhere(place, page):
+def test_the_page_is_smaller_than_a_megabyte_and_loads_nothing_from_elsewhere(place, page):
     own = (place.simulator.url, "data:")
     assert [url for url in page.loaded if not url.startswith(own)] == []
     scenes = [size for url, size in page.loaded.items() if url.endswith(".glb")]

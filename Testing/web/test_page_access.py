@@ -10,8 +10,8 @@ import pytest
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.net.views.screen import Screen, ScreenMessage, Tone
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.presentation.screen import Screen, ScreenMessage, Tone
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
 from Testing.web.chromium import accessibility_checker, open_page, resize, show
 from Testing.web.hands import PageKeys
@@ -125,7 +125,7 @@ def told_page(served, browser):
 
 @LOOKED_AT
 @pytest.mark.parametrize("language", LONGEST_OR_EACH)
-def test_no_page_of_the_simulator_breaks_a_rule_of_accessibility_or_overlaps_at_any_size(
+def test_no_page_of_the_simulator_breaks_an_accessibility_rule_or_overlaps_at_any_size(
     told_page, served, loop, outside, language, sizes
 ):
     presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
@@ -164,7 +164,7 @@ AT_A_GUIDE = """(procedure) => {
 }"""
 
 
-def test_what_a_thumb_works_with_overlaps_nothing_at_any_size(browser, served):
+def test_thumb_controls_overlap_nothing_at_any_size(browser, served):
     page = checked_page(browser, served.url, served.code, has_touch=True)
     page.wait_for_selector("#touch-controls", state="attached")
     page.evaluate("page.takeState = () => undefined")
@@ -189,7 +189,7 @@ def shown(page, trainee) -> str:
 
 @pytest.mark.soak
 @LOOKED_AT
-def test_no_part_of_a_trial_breaks_a_rule_of_accessibility_or_overlaps_at_any_size(
+def test_no_part_of_a_trial_breaks_an_accessibility_rule_or_overlaps_at_any_size(
     place, page, sizes
 ):
     trainee = place.carried_trainee(PageKeys(page))
@@ -218,7 +218,7 @@ NOBODY_DRIVES = {
 }
 
 
-def test_the_page_says_its_language(told_page, served):
+def test_the_page_declares_its_language(told_page, served):
     assert NAMES_OF_PICTURE.keys() == LANGUAGES.keys()
     for language, name in NAMES_OF_PICTURE.items():
         served.tell(Screen(language=language))
@@ -249,7 +249,7 @@ def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(pla
     trainee.press("right", lambda: trainee.value(choice.name) == before, "the value before")
 
 
-def test_the_menu_of_the_tasks_is_whole_on_a_laptop(place, page):
+def test_the_task_menu_is_complete_on_a_laptop(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_to_experiment()
     assert shown(page, trainee) == "experiment"
@@ -270,7 +270,7 @@ def contrast(one, other):
     return (bright + 0.05) / (dark + 0.05)
 
 
-def test_what_cannot_be_chosen_is_legible_over_any_picture():
+def test_disabled_items_are_legible_over_any_picture():
     css = (WEB / "static" / "page.css").read_text(encoding="utf-8").replace("/ ", "")
     pale = bytes.fromhex(re.search(r"--pale: #(\w+);", css)[1])
     layers = [
@@ -288,7 +288,7 @@ def test_what_cannot_be_chosen_is_legible_over_any_picture():
     assert contrast(pale, row) >= 4.5
 
 
-def test_a_selection_is_seen_where_the_system_chooses_the_colors(place, page):
+def test_a_selection_is_visible_where_the_system_chooses_the_colors(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_home()
     shown(page, trainee)
@@ -303,7 +303,7 @@ def test_a_selection_is_seen_where_the_system_chooses_the_colors(place, page):
     assert focused not in others
 
 
-def test_zoom_makes_text_larger(page):
+def test_zoom_enlarges_text(page):
     """At 200 % a window has half as many pixels each way, and each is twice as large."""
     sizes = []
     for size in ((1280, 720), (640, 360)):

@@ -7,8 +7,8 @@ import json
 import pytest
 
 from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
-from rastrainer_simulator.net.views.screen import DepthRuler, Screen
+from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.presentation.screen import DepthRuler, Screen
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.web.chromium import enter_headset, open_page, wait_for
 
@@ -44,7 +44,7 @@ def draw(page):
     return lambda **changes: page.evaluate(DRAW, changes)
 
 
-def test_tip_ring_and_frame_are_red_only_where_a_touch_goes_wrong(draw):
+def test_tip_ring_and_frame_are_red_only_while_a_touch_goes_wrong(draw):
     for stage in TouchStage:
         seen = draw(touch=stage.value, clearanceMm=0.0)
         is_wrong = stage in TOUCH_ERRORS
@@ -60,7 +60,7 @@ def test_the_ring_closes_as_the_tip_comes_nearer(draw):
     assert radii == pytest.approx([0.025, 0.015, 0.005])
 
 
-def test_a_ghost_is_where_the_stream_says_and_goes_when_it_ends(draw):
+def test_a_ghost_is_where_the_stream_places_it_and_disappears_when_it_ends(draw):
     assert draw()["ghost"] == []
     poses = {"link_7": [0.4, 0.1, 0.7, 0, 0, 0, 1], "tool": [0.4, 0.1, 0.5, 0, 0, 0, 1]}
     assert draw(ghost=poses)["ghost"] == [pytest.approx(pose[:3]) for pose in poses.values()]
@@ -94,7 +94,7 @@ def told(known, points, guidance=NOT_GUIDED):
     return f"page.take({json.dumps(json.loads(outgoing.trace(known, points, guidance)))})"
 
 
-def test_what_was_traced_is_marked_painted_and_taken_back(page):
+def test_a_trace_is_marked_painted_and_undone(page):
     page.evaluate(told(0, [[x, 84.9, -36.7] for x in range(-3, 4)], GUIDED))
     wait_for(page, "page.trace.ring.visible")
     drawn = page.evaluate(TRACE)
@@ -111,7 +111,7 @@ def test_what_was_traced_is_marked_painted_and_taken_back(page):
     assert left["color"] == pytest.approx(page.evaluate("page.stage.model.skinColor.toArray()"))
 
 
-def test_a_page_that_joins_again_forgets_what_it_knew(page):
+def test_a_page_that_rejoins_forgets_what_it_knew(page):
     page.evaluate(told(0, [list(NOSE)], GUIDED))
     wait_for(page, "page.trace.marks.count === 1")
     page.evaluate("page.connection.rejoin({ kind: 'page', device: '', refreshHz: 0 })")

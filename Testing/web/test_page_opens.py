@@ -71,7 +71,7 @@ def paired(place, browser):
 
 
 @pytest.mark.parametrize("way", ["loopback", "network"])
-def test_who_has_not_paired_sees_the_form_and_nothing_else(place, stranger, way):
+def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, way):
     url = place.simulator.url if way == "loopback" else place.network
     stranger.goto(url)
     stranger.wait_for_selector("#pairing:not([hidden])")
@@ -97,7 +97,7 @@ def test_who_has_not_paired_sees_the_form_and_nothing_else(place, stranger, way)
 def foreign_url():
     """Where a page of somebody else is served, on this computer, too."""
 
-    class Foreign(BaseHTTPRequestHandler):
+    class ForeignHandler(BaseHTTPRequestHandler):
         def do_GET(self):
             self.send_response(200)
             self.end_headers()
@@ -105,13 +105,13 @@ def foreign_url():
         def log_message(self, *_arguments):
             pass
 
-    server = HTTPServer(("127.0.0.1", 0), Foreign)
+    server = HTTPServer(("127.0.0.1", 0), ForeignHandler)
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_port}"
     server.shutdown()
 
 
-def test_a_page_of_another_origin_cannot_connect(place, paired, foreign_url):
+def test_a_page_from_another_origin_cannot_connect(place, paired, foreign_url):
     foreign = paired.context.new_page()
     foreign.goto(foreign_url)
     assert foreign.evaluate(TRY_TO_JOIN, place.simulator.url.replace("http", "ws", 1)) == "refused"
@@ -138,7 +138,7 @@ def test_a_code_in_the_address_does_not_stay_there(place, stranger):
     assert stranger.evaluate("[location.hash, history.length]") == ["", 2]
 
 
-def test_the_private_key_is_the_owners_alone_and_a_cable_is_told(place):
+def test_the_private_key_is_readable_only_by_its_owner_and_a_cable_is_recommended(place):
     file = place.records.with_name("records-config") / "certificates" / "views.pem"
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
     assert "adb reverse tcp:" in place.cable
@@ -159,7 +159,7 @@ def address(place) -> str:
     return f"{place.simulator.url}/#code={place.simulator.code}"
 
 
-def test_the_scene_tells_how_much_of_it_has_come(place, stranger):
+def test_the_scene_shows_how_much_of_it_has_loaded(place, stranger):
     stranger.add_init_script(NOTE_LOADING)
     stranger.goto(address(place))
     stranger.wait_for_selector("body[data-scene]")
@@ -173,7 +173,7 @@ def test_the_scene_tells_how_much_of_it_has_come(place, stranger):
     assert loaded[0] < loaded[-1] == total
 
 
-def test_without_webgl_menus_are_read_and_chosen_and_the_page_says_what_is_missing(place, driver):
+def test_without_webgl_menus_work_and_the_page_says_what_is_missing(place, driver):
     browser = launch(driver, "--disable-3d-apis")
     page = new_page(browser)
     problems = []
@@ -189,7 +189,7 @@ def test_without_webgl_menus_are_read_and_chosen_and_the_page_says_what_is_missi
     browser.close()
 
 
-def test_a_second_operator_cannot_take_the_control_unasked(place, paired, browser):
+def test_a_second_operator_cannot_take_control_unasked(place, paired, browser):
     other = open_page(browser, place.simulator.url, place.simulator.code, draws=False)
     first = place.trainee(PageKeys(paired))
     first.go_home()
@@ -215,7 +215,7 @@ def try_code(page, code):
         page.click("#pairing button")
 
 
-def test_a_code_that_is_no_longer_valid_says_so_and_so_does_a_new_one(place, browser):
+def test_an_expired_code_is_reported_as_such_and_so_is_a_new_one(place, browser):
     # The place has another code afterwards: this test is the last.
     page = new_page(browser, locale="de-DE")
     draw_nothing(page)

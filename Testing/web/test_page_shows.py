@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from rastrainer_simulator.net.views.screen import (
+from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Fact,
     Hint,
@@ -16,7 +16,7 @@ from rastrainer_simulator.net.views.screen import (
     ScreenMessage,
     Tone,
 )
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.texts.texts import LANGUAGES
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
 from Testing.simulator.flow.scored_journals import task_menu
 from Testing.web.chromium import open_page, show, wait_for
@@ -49,7 +49,7 @@ def arrow(tone, height):
     return ErrorArrow((0.5, 0.0, 0.4), (0.5, 0.0, height), tone)
 
 
-def test_arrows_come_with_the_screen_and_go_with_it(page, served):
+def test_arrows_appear_and_disappear_with_the_screen(page, served):
     arrows = tuple(map(arrow, (Tone.GOOD, Tone.WARNING, Tone.ERROR), (0.41, 0.42, 0.43)))
     served.tell(Screen(errors=arrows, hints=(Hint("Esc", "Result", "back"), Hint("D", "Turn"))))
     wait_for(page, "page.errors.group.children.length === 6")
@@ -72,7 +72,7 @@ PICTURE = "#menu img"
     "language",
     ["en", *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES if tag != "en")],
 )
-def test_the_plot_stands_beside_the_tasks_and_every_score_is_its_text(
+def test_the_plot_is_beside_the_tasks_and_every_score_is_in_its_text(
     page, served, loop, outside, language
 ):
     served.tell(task_menu(loop, outside.services, language=language))
@@ -89,7 +89,7 @@ def test_the_plot_stands_beside_the_tasks_and_every_score_is_its_text(
 LEGEND = "Within 10 mm of traced points"
 
 
-def test_the_legend_is_read_with_a_sample_of_the_paint(page, served):
+def test_the_legend_is_shown_with_a_sample_of_the_paint(page, served):
     served.tell(Screen(status=("Task 1",), coverage=LEGEND))
     page.wait_for_selector("#status .legend")
     assert page.inner_text("#status .legend") == LEGEND
@@ -122,7 +122,7 @@ def heard(page, count):
     return [text for _language, text in page.evaluate("window.heard")]
 
 
-def test_what_is_new_is_read_in_its_language_one_sentence_after_the_other(page, served):
+def test_new_text_is_read_aloud_in_its_language_one_sentence_after_the_other(page, served):
     page.evaluate(LISTEN)
     served.tell(Screen(instruction=ScreenMessage("Not read."), status=("quiet",)))
     page.wait_for_selector("#status:has-text('quiet')")
@@ -149,7 +149,7 @@ def test_what_is_new_is_read_in_its_language_one_sentence_after_the_other(page, 
     assert page.evaluate("window.heard[5][0]") == "zh-CN", "voices are named by region"
 
 
-def test_what_is_being_read_stops_when_reading_is_switched_off(page, served):
+def test_reading_stops_when_it_is_switched_off(page, served):
     page.evaluate(LISTEN)
     served.tell(spoken(instruction=ScreenMessage("A long sentence.")))
     assert heard(page, 1) == ["A long sentence."]
@@ -160,7 +160,7 @@ def test_what_is_being_read_stops_when_reading_is_switched_off(page, served):
 
 
 @pytest.mark.soak
-def test_every_page_is_shown_the_same_when_it_is_opened_again(page, served, presenter):
+def test_every_page_looks_the_same_when_it_is_opened_again(page, served, presenter):
     screens = every_screen(presenter)
     assert names_of_pages() <= screens.keys()
 

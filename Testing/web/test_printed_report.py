@@ -58,7 +58,7 @@ def test_a_printed_report_has_hardly_more_pages_than_its_content_fills(printed, 
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", STUDY)
-def test_every_printed_page_but_the_last_is_more_than_half_full(printed, name):
+def test_every_printed_page_except_the_last_is_more_than_half_full(printed, name):
     _, pdf = printed(STUDY[name]())
     shares = [filled_share(page) for page in pages_of(pdf)]
     assert len(shares) > 2
@@ -84,7 +84,7 @@ def filled_share(page):
 
 
 @pytest.mark.soak
-def test_a_half_empty_page_would_be_noticed(browser):
+def test_a_half_empty_page_would_be_detected(browser):
     page = browser.new_page()
     page.set_default_timeout(PATIENCE_MS)
     page.set_content("<style>@page { size: A4; margin: 16mm 15mm 18mm }</style><p>one line</p>")

@@ -88,7 +88,7 @@ def begin(surgeon: HeadsetSurgeon, page: Page) -> None:
     surgeon.until(lambda: surgeon.view.state["phase"] == "running", "the trial")
 
 
-def test_the_whole_procedure_is_carried_out_by_the_controllers_alone(operated):
+def test_the_whole_procedure_is_carried_out_with_the_controllers_alone(operated):
     assert operated["operators"] == {XR}
     assert operated["problems"] == []
 
@@ -97,13 +97,13 @@ def test_a_checkpoint_is_touched_before_the_registration_is_accepted(operated):
     assert len(operated["checked"]) == 1
 
 
-def test_the_controllers_bring_the_guide_onto_the_line_by_the_bulls_eye(operated):
+def test_the_controllers_bring_the_guide_onto_the_line_with_the_bulls_eye(operated):
     aim = operated["aligned"]
     assert aim["entryDistanceMm"] <= ALIGNED_MM
     assert aim["angleDeg"] <= ALIGNED_DEG
 
 
-def test_the_ruler_brings_the_needle_to_its_depth(operated):
+def test_the_ruler_guides_the_needle_to_its_depth(operated):
     depth_mm, target_mm = operated["inserted"]
     assert depth_mm == pytest.approx(target_mm, abs=1.0)
 

@@ -8,7 +8,7 @@ import pytest
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.virtual.scripted_trial import play_trial, say_hello
+from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.web.chromium import open_page, wait_for
 from Testing.web.hands import PageKeys
 from Testing.web.place import WITHOUT_GRAPHICS, Place
@@ -32,7 +32,7 @@ def place(tmp_path_factory):
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     with Place(folder, "--speed", "4", limits=WITHOUT_GRAPHICS) as place:
         with Client(port=place.simulator.port) as slicer:
-            say_hello(slicer, "Slicer")
+            send_hello(slicer, "Slicer")
             trial = play_trial(slicer, scenario, "task-1", "P07", 5)
             for command, arguments in (
                 ("SubmitRegistration", REGISTRATION),
@@ -43,7 +43,7 @@ def place(tmp_path_factory):
         yield place
 
 
-def test_the_trial_is_shown_sought_and_left_by_the_keyboard(place, browser):
+def test_a_trial_is_replayed_sought_and_closed_by_keyboard(place, browser):
     page = open_page(browser, place.simulator.url, place.simulator.code)
     trainee = place.trainee(PageKeys(page))
     trainee.until_menu("result")

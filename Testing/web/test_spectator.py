@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from rastrainer_simulator.net.views.screen import Hint, Menu, MenuItem, Screen, ScreenMessage
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.presentation.screen import Hint, Menu, MenuItem, Screen, ScreenMessage
+from rastrainer_simulator.texts.texts import LANGUAGES
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.igtl.servers import LoopThread
 from Testing.simulator.net.views.served import ViewClient
@@ -92,7 +92,7 @@ def page(opened, served):
     return opened
 
 
-def test_keys_clicks_pad_and_pointer_of_a_spectator_go_nowhere(served, page):
+def test_a_spectators_keys_clicks_gamepad_and_pointer_have_no_effect(served, page):
     page.evaluate(NOTE_WHAT_IS_SENT)
     page.evaluate(USE_PAD)
     for name in ("train", "language"):
@@ -116,7 +116,7 @@ def test_keys_clicks_pad_and_pointer_of_a_spectator_go_nowhere(served, page):
     assert served.presenter.calls == []
 
 
-def test_the_form_lets_who_pairs_choose_to_watch(browser, served):
+def test_the_pairing_form_offers_watching_only(browser, served):
     context = browser.new_context()
     page = context.new_page()
     draw_nothing(page)
@@ -134,7 +134,7 @@ def test_the_form_lets_who_pairs_choose_to_watch(browser, served):
     assert served.presenter.calls == []
 
 
-def test_a_spectator_looks_through_the_eyes_of_who_wears_a_headset(served, page):
+def test_a_spectator_looks_through_the_eyes_of_the_headset_wearer(served, page):
     served.tell(WORKING)
     worn = {"type": "worn", "eyes": EYES, "left": None, "right": HAND}
     with LoopThread() as thread, ViewClient(thread, served.url, served.new_key()) as headset:
@@ -169,7 +169,7 @@ def _vector(pose: list[float]) -> str:
     "language",
     ["de", *(pytest.param(tag, marks=pytest.mark.soak) for tag in LANGUAGES if tag != "de")],
 )
-def test_what_a_spectator_sees_breaks_no_rule_of_accessibility(page, served, language):
+def test_what_a_spectator_sees_breaks_no_accessibility_rule(page, served, language):
     found = []
     for name, screen in (("menu", SCREEN), ("work", WORKING)):
         served.tell(Screen(menu=screen.menu, instruction=screen.instruction, language=language))
@@ -204,7 +204,7 @@ def _joined(served) -> int:
 
 
 @pytest.mark.soak
-def test_a_headset_is_mirrored_and_its_leaving_pauses_though_somebody_watches(tmp_path, browser):
+def test_a_headset_is_mirrored_and_its_leaving_pauses_even_if_somebody_watches(tmp_path, browser):
     with Place(tmp_path, limits=WITHOUT_GRAPHICS) as place:
         url, code = place.simulator.url, place.simulator.code
         headset = open_page(browser, url, code, "metaQuest2", draws=False)

@@ -58,7 +58,7 @@ def drawn(tmp_path_factory, browser) -> dict:
     return seen
 
 
-def test_the_trace_is_drawn_by_the_controllers_alone(drawn):
+def test_the_trace_is_drawn_with_the_controllers_alone(drawn):
     assert drawn["operators"] == {XR}
     assert len(drawn["traced"]) >= POINTS > MIN_TRACE_POINTS
     assert drawn["problems"] == []

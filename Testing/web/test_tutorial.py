@@ -109,7 +109,7 @@ SAYS = {
 
 @pytest.mark.soak
 @pytest.mark.parametrize("way", WAYS, ids=lambda way: way.name)
-def test_the_tutorial_is_played_from_the_id_to_the_trial_run_by(way, tmp_path, browser):
+def test_the_tutorial_is_played_from_the_id_to_the_trial_run_with(way, tmp_path, browser):
     """Every step is done by the device; the first two have the tip carried to the points."""
     with Place(tmp_path, "--speed", way.speed, limits=WITHOUT_GRAPHICS, **REQUIRED) as place:
         has_touch = way.device is SourceKind.TOUCH_SCREEN

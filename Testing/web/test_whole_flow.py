@@ -46,7 +46,7 @@ WAYS = (
 
 
 @pytest.mark.parametrize("way", WAYS, ids=lambda way: way.name)
-def test_a_trial_is_played_registered_and_scored_by(way, tmp_path, browser):
+def test_a_trial_is_played_registered_and_scored_with(way, tmp_path, browser):
     speed = ("--speed", way.speed)
     with Place(tmp_path, *speed, has_gamepad=way.has_gamepad, limits=WITHOUT_GRAPHICS) as place:
         is_of_browser = way.hands is BrowserPad

@@ -169,7 +169,7 @@ def test_two_thumbs_steer_at_once_stop_the_arm_and_read_on_the_buttons_what_to_p
 
 
 @pytest.mark.soak
-def test_by_two_thumbs_alone_a_whole_trial_is_touched_and_scored(tmp_path, browser):
+def test_a_whole_trial_is_touched_and_scored_with_two_thumbs_alone(tmp_path, browser):
     with Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any") as place:
         page = page_of(place, browser, size=PHONE, has_touch=True)
         trainee = SteeringTrainee(place, page)
@@ -210,7 +210,7 @@ class MouseLearner(ViewLearner):
 
 
 @pytest.mark.soak
-def test_by_the_mouse_alone_the_tutorial_is_done_and_leads_to_the_trial_run(tmp_path, browser):
+def test_the_tutorial_is_done_with_the_mouse_alone_and_leads_to_the_trial_run(tmp_path, browser):
     rules = {"order": "fixed", "tutorial": "required"}
     with Place(tmp_path, "--speed", SLOWEST, limits=PATIENT, **rules) as place:
         page = page_of(place, browser, size=SIZE)
@@ -236,7 +236,7 @@ def test_the_first_touches_of_a_task_are_steered_by_the_mouse(place, mouse):
 
 
 @pytest.mark.soak
-def test_by_the_mouse_alone_a_whole_trial_is_touched_and_scored(tmp_path, browser):
+def test_a_whole_trial_is_touched_and_scored_with_the_mouse_alone(tmp_path, browser):
     with Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any") as place:
         page = page_of(place, browser, size=SIZE)
         trainee = ClickingTrainee(place.view, PageMouse(page))
@@ -257,7 +257,7 @@ def begin(trainee):
     trainee.begin_task("task-1")
 
 
-def test_a_tracked_hand_leads_the_tip_to_a_touch_takes_it_back_and_opens_the_menu(place, hand):
+def test_a_tracked_hand_moves_the_tip_to_a_touch_undoes_it_and_opens_the_menu(place, hand):
     hand.touch("1")
     hand.press("undo", lambda: hand.touched == 0, "the undo")
     hand.press("menu", lambda: hand.menu is not None, "the menu")
@@ -267,6 +267,6 @@ def test_a_tracked_hand_leads_the_tip_to_a_touch_takes_it_back_and_opens_the_men
 
 
 @pytest.mark.soak
-def test_a_whole_trial_is_touched_and_scored_by_a_tracked_hand_alone(place, hand):
+def test_a_whole_trial_is_touched_and_scored_with_a_tracked_hand_alone(place, hand):
     hand.play_to_result()
     assert len(place.entries("touch")) == 15

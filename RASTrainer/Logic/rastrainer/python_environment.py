@@ -6,7 +6,7 @@ whatever they start. A program with packages of its own would load Slicer's Qt, 
 
 The simulator runs on the packages of one folder, filled by `pip install --target`. Slicer's Python
 would search Slicer's packages first, and `.pth` files of a folder on PYTHONPATH are not read, which
-Pinocchio needs. So the program and its child processes are started by `python_words`, and `run`
+Pinocchio needs. So the program and its child processes are started by `python_command`, and `run`
 sets their search path.
 """
 
@@ -99,27 +99,27 @@ _MAPS = Path("/proc/self/maps")
 _folder: Path | None = None
 
 
-def python_words(module: str, *words: str) -> list[str]:
+def python_command(module: str, *words: str) -> list[str]:
     """Return what starts a module as a program, by this Python and on the packages of this one."""
     if _folder is None:
         return [sys.executable, "-m", module, *words]
-    return private_words(Path(sys.executable), _folder, module, *words)
+    return private_command(Path(sys.executable), _folder, module, *words)
 
 
-def private_words(python: Path, folder: Path, module: str, *words: str) -> list[str]:
+def private_command(python: Path, folder: Path, module: str, *words: str) -> list[str]:
     """Return what starts a module as a program, on the packages of a folder alone."""
     return [str(python), "-S", "-c", START, str(folder), module, *words]
 
 
 def run() -> None:
-    """Run the program that `private_words` names; it never returns."""
+    """Run the program that `private_command` names; it never returns."""
     global _folder
     _command, folder, module, *words = sys.argv
     environment = _own_environment(Path(folder))
     loader = [name for name in _LOADER_VARIABLES if environment.get(name) != os.environ.get(name)]
     if loader and os.name == "posix":
         # What the loader has read once cannot be changed any more.
-        arguments = private_words(Path(sys.executable), Path(folder), module, *words)
+        arguments = private_command(Path(sys.executable), Path(folder), module, *words)
         os.execve(sys.executable, arguments, environment)
     given = [place for place in os.environ.get("PYTHONPATH", "").split(os.pathsep) if place]
     os.environ.clear()

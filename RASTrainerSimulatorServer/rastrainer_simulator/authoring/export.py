@@ -170,7 +170,7 @@ FACELESS = " The face was taken off."
 NO_SOURCE = "Removed before the scenario was shared."
 
 
-def pack_for_others(
+def pack_for_sharing(
     folder: Path, package: Path, keeps_face: bool = False, keeps_names: bool = False
 ) -> str:
     """Write a scenario as one zip file and return a sentence about what was removed.

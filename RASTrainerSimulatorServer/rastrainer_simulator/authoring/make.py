@@ -17,7 +17,7 @@ from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
 from rastrainer.procedure.plan import Procedure, read_all_no_go
 from rastrainer.progress import HEAD_MADE, Progress, Warn, no_progress, report_line
-from rastrainer.python_environment import python_words
+from rastrainer.python_environment import python_command
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.points import Landmark, PlannedTarget, PlannedTrajectory, Task, on_skin
 from rastrainer.scenario.scenario import PREVIEW_NAME, Provenance, Scenario, load_scenario
@@ -311,7 +311,7 @@ def head_process(volume: Path, options: list[str]) -> Iterator[HeadProcess]:
     """
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) / "draft"
-        words = python_words(MAKE_HEAD, str(volume), "-o", str(folder), *options)
+        words = python_command(MAKE_HEAD, str(volume), "-o", str(folder), *options)
         with (
             tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors,
             subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True) as process,

@@ -28,9 +28,9 @@ from rastrainer_simulator.board.seats import (
 )
 from rastrainer_simulator.board.watched_seat import SEAT_PATH, LiveView, WatchedSeat
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.gate import ROLE, PairingCode, Sessions, ViewRole
+from rastrainer_simulator.net.views.access_control import ROLE, PairingCode, Sessions, ViewRole
 from rastrainer_simulator.net.views.limited_server import GuardedServer
-from rastrainer_simulator.net.views.presenter import InstructorOrder
+from rastrainer_simulator.presentation.presenter import InstructorOrder
 
 SUBPROTOCOL = "rastrainer.board.1"
 TILES_S = 0.25
@@ -105,7 +105,7 @@ class BoardServer:
             web.get("/", self._send_page),
             web.get("/tiles", self._send_tiles),
             web.get("/class", self._class.send),
-            web.get("/paired", _say_paired),
+            web.get("/paired", _confirm_pairing),
             web.post("/seats", self._add),
             web.delete(SEAT_PATH, self._remove),
             web.post(f"{SEAT_PATH}/order", self._order),
@@ -143,7 +143,7 @@ class BoardServer:
         is_changed = asyncio.Event()
         is_changed.set()
         self._pages.add(is_changed)
-        sending = asyncio.create_task(self._keep_telling(socket, is_changed))
+        sending = asyncio.create_task(self._keep_sending(socket, is_changed))
         try:
             async for _message in socket:
                 # A board's page has nothing to say here.
@@ -154,7 +154,7 @@ class BoardServer:
             await asyncio.gather(sending, return_exceptions=True)
         return socket
 
-    async def _keep_telling(self, socket: web.WebSocketResponse, is_changed: asyncio.Event) -> None:
+    async def _keep_sending(self, socket: web.WebSocketResponse, is_changed: asyncio.Event) -> None:
         with contextlib.suppress(ConnectionError):
             while True:
                 await is_changed.wait()
@@ -227,13 +227,13 @@ class BoardServer:
         return web.json_response({})
 
 
-async def _say_paired(_request: web.Request) -> web.Response:
+async def _confirm_pairing(_request: web.Request) -> web.Response:
     """Tell a browser, which cannot read its cookie, that it has one; without, it is refused."""
     return web.json_response({}, headers={hdrs.CACHE_CONTROL: "no-store"})
 
 
 def _check_teacher(request: web.Request) -> None:
-    if request[ROLE].only_watches:
+    if request[ROLE].is_watch_only:
         raise web.HTTPForbidden(text=ONLY_TEACHERS)
 
 

@@ -23,9 +23,9 @@ from rastrainer.study.curriculum.standing import (
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
-from rastrainer_simulator.flow.session.curricula import AssignmentWords
+from rastrainer_simulator.flow.session.curricula import AssignmentTexts
 from rastrainer_simulator.ops.study_thread import StudyThread
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 
 MOST_TRAINEES = 500
 LOCK_WAIT_S = 5.0
@@ -207,13 +207,13 @@ def class_table(found: ClassStanding, language: str) -> list[dict[str, Any]]:
         key = f"task.{name}"
         return texts.say(key) if key in texts else _spoken(name)
 
-    words = AssignmentWords(texts, task_title, _spoken)
+    words = AssignmentTexts(texts, task_title, _spoken)
     groups = by_curriculum(found.standings)
     return [_table(curriculum, group, words) for curriculum, group in groups.items()]
 
 
 def _table(
-    curriculum: Curriculum, group: Mapping[str, CurriculumStanding], words: AssignmentWords
+    curriculum: Curriculum, group: Mapping[str, CurriculumStanding], words: AssignmentTexts
 ) -> dict[str, Any]:
     first = next(iter(group.values()))
     return {
@@ -223,12 +223,12 @@ def _table(
     }
 
 
-def _column(standing: AssignmentStanding, words: AssignmentWords) -> dict[str, Any]:
+def _column(standing: AssignmentStanding, words: AssignmentTexts) -> dict[str, Any]:
     told = AssignmentMessage.of(standing)
     return {"name": told.name, "label": words.label(told), "goal": words.goal(told)}
 
 
-def _row(name: str, standing: CurriculumStanding, words: AssignmentWords) -> dict[str, Any]:
+def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> dict[str, Any]:
     best = standing.next_best
     return {
         "trainee": name,
@@ -238,7 +238,7 @@ def _row(name: str, standing: CurriculumStanding, words: AssignmentWords) -> dic
     }
 
 
-def _cell(standing: AssignmentStanding, words: AssignmentWords) -> dict[str, Any]:
+def _cell(standing: AssignmentStanding, words: AssignmentTexts) -> dict[str, Any]:
     return {
         "state": standing.state.value,
         "progress": words.progress(AssignmentMessage.of(standing)),

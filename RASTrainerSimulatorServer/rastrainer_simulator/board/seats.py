@@ -23,9 +23,9 @@ from rastrainer.files.reading import printable_name, read_json
 from rastrainer.files.writing import write_private_json
 from rastrainer.json_checks import accepted, decode_message_object, text
 from rastrainer_simulator.net.listener import is_loopback
-from rastrainer_simulator.net.views.gate import LONGEST_KEY, SHORTEST_KEY, ViewRole
-from rastrainer_simulator.net.views.messages import SUBPROTOCOL
-from rastrainer_simulator.net.views.presenter import InstructorOrder
+from rastrainer_simulator.net.views.access_control import LONGEST_KEY, SHORTEST_KEY, ViewRole
+from rastrainer_simulator.net.views.incoming import SUBPROTOCOL
+from rastrainer_simulator.presentation.presenter import InstructorOrder
 
 SEATS_FILE = "board.json"
 FORMAT_VERSION = 1

@@ -35,8 +35,8 @@ from rastrainer_simulator.board.seats import (
     SeatEntry,
     UnpairedError,
 )
-from rastrainer_simulator.net.views.gate import ViewRole
-from rastrainer_simulator.net.views.messages import (
+from rastrainer_simulator.net.views.access_control import ViewRole
+from rastrainer_simulator.net.views.incoming import (
     BOARD,
     HELLO,
     SPECTATOR,
@@ -44,8 +44,8 @@ from rastrainer_simulator.net.views.messages import (
     check_message,
 )
 from rastrainer_simulator.net.views.outgoing import SEAT
-from rastrainer_simulator.ops.texts.typesetting import NARROW_SPACE, NO_BREAK_SPACE
 from rastrainer_simulator.state import TouchStage
+from rastrainer_simulator.texts.typesetting import NARROW_SPACE, NO_BREAK_SPACE
 
 RETRY_S = 2.0
 MOST_WARNINGS = 8

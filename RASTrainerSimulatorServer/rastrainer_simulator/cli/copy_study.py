@@ -8,7 +8,7 @@ from itertools import zip_longest
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
-from rastrainer.study.database.database import Connection, beside_study
+from rastrainer.study.database.database import Connection, path_beside_study
 from rastrainer.study.database.schema import Table, study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.platform_links import PlatformLinks
@@ -44,8 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("FROM and TO are the same study.")
     with Study.open_for_reading(arguments.source) as source, Study.open(arguments.target) as target:
         counts = copy_study(source, target)
-        links = PlatformLinks(beside_study(source.database.place))
-        users = links.copy_to(PlatformLinks(beside_study(target.database.place)))
+        links = PlatformLinks(path_beside_study(source.database.place))
+        users = links.copy_to(PlatformLinks(path_beside_study(target.database.place)))
     print(
         f"{arguments.target}: {counted(counts['trainees'], 'trainee')}, "
         f"{counted(counts['trials'], 'trial')}, {counted(sum(counts.values()), 'row')} in all, "

@@ -25,7 +25,7 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.head.mesh import read_head_mesh
 from rastrainer.igtl.client import Client
 from rastrainer.protocol import DEFAULT_HOST, FIDUCIAL_COUNT, TRIAL_RUN, Proximity
-from rastrainer.python_environment import python_words
+from rastrainer.python_environment import python_command
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.trial.ctps import CTPS_WARNING
@@ -144,7 +144,7 @@ def _slicer(output: Path, port: int) -> Iterator[subprocess.Popen]:
 @contextlib.contextmanager
 def _process(words: list[str], log: TextIO, stdout: Any) -> Iterator[subprocess.Popen]:
     """Run a module with its arguments, `words`, and terminate it at the end."""
-    process = subprocess.Popen(python_words(*words), stdout=stdout, stderr=log, text=True)
+    process = subprocess.Popen(python_command(*words), stdout=stdout, stderr=log, text=True)
     try:
         yield process
     finally:
@@ -160,11 +160,11 @@ def _play(
     port: int, scenario: Scenario, seed: int, speed: float
 ) -> tuple[list[dict[str, Any]], TrialRecord]:
     """Play the tasks; return the states at their last touches, and the record with a procedure."""
-    from rastrainer_simulator.virtual.scripted_trial import play_procedure, play_trial, say_hello
+    from rastrainer_simulator.virtual.scripted_trial import play_procedure, play_trial, send_hello
 
     states, records = [], []
     with Client(DEFAULT_HOST, port) as client:
-        say_hello(client, "scripted trainee")
+        send_hello(client, "scripted trainee")
         for number, name in enumerate(TASKS):
             title = scenario.task(name).title
             print(f"{TRAINEE} plays {title} ({speed:g} times faster than real time)")

@@ -18,7 +18,7 @@ from rastrainer_simulator.cli.scenario_options import (
     add_output,
     add_plan,
     add_procedure,
-    head_words,
+    head_arguments,
     options_of,
     procedure_of,
     targets_of,
@@ -104,11 +104,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 def _build(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.make import check_options, head_process, make_scenario
 
-    _clear_away_when_terminated()
+    _clean_up_when_terminated()
     options = options_of(arguments, arguments.volume.name)
     if arguments.output.exists() and any(arguments.output.iterdir()):
         raise InputError(f"{arguments.output} exists already; name a new folder.")
-    head_options = head_words(arguments)
+    head_options = head_arguments(arguments)
     head_options += ["--no-skull"] if arguments.no_skull or arguments.check else []
     head_options += ["--no-volume"] if arguments.no_volume or arguments.check else []
     with head_process(arguments.volume, head_options) as process:
@@ -136,7 +136,7 @@ def _tasks(arguments: argparse.Namespace) -> int:
     from rastrainer.scenario.writer import read_draft
     from rastrainer_simulator.authoring.make import check_options, make_scenario
 
-    _clear_away_when_terminated()
+    _clean_up_when_terminated()
     options, draft = options_of(arguments, "unknown"), read_draft(arguments.draft)
     if arguments.check:
         check_options(draft, options, print_progress, print_warning)
@@ -150,7 +150,7 @@ def _preview(arguments: argparse.Namespace) -> int:
     from rastrainer_simulator.authoring.make import ScenarioOptions, head_process, without_tasks
     from rastrainer_simulator.rendering.picture import draw_preview
 
-    options = [*head_words(arguments), "--no-skull", "--no-volume"]
+    options = [*head_arguments(arguments), "--no-skull", "--no-volume"]
     with head_process(arguments.volume, options) as process:
         draft = process.head(print_progress, print_warning)
     scenario = without_tasks(draft, ScenarioOptions("Preview", "none", "none"))
@@ -211,10 +211,10 @@ def _landmarks(arguments: argparse.Namespace) -> int:
 
 
 def _pack(arguments: argparse.Namespace) -> int:
-    from rastrainer_simulator.authoring.export import pack_for_others
+    from rastrainer_simulator.authoring.export import pack_for_sharing
 
     package = arguments.package
-    taken = pack_for_others(arguments.folder, package, arguments.keep_face, arguments.keep_names)
+    taken = pack_for_sharing(arguments.folder, package, arguments.keep_face, arguments.keep_names)
     print(f"{package} ({package.stat().st_size / 1e6:.1f} MB)")
     print(taken)
     return 0
@@ -233,6 +233,6 @@ def _list(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _clear_away_when_terminated() -> None:
+def _clean_up_when_terminated() -> None:
     """Exit like an error on SIGTERM, by which Slicer cancels, so that everything is cleaned up."""
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))

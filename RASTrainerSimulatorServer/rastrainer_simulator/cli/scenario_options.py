@@ -144,7 +144,7 @@ def trajectory_of(arguments: argparse.Namespace) -> PlannedTrajectory | None:
     return PlannedTrajectory(_text("--trajectory", name, LONGEST_NAME), places[:3], places[3:])
 
 
-def head_words(arguments: argparse.Namespace) -> list[str]:
+def head_arguments(arguments: argparse.Namespace) -> list[str]:
     """Return how the head is found, for the process that finds it."""
     named = (("--threshold", arguments.threshold), ("--cut", arguments.cut))
     return [f"{name}={value!r}" for name, value in named if value is not None]

@@ -15,7 +15,7 @@ from rastrainer.files.reading import printable_name, read_json, read_text
 from rastrainer.files.writing import write_json
 from rastrainer.json_checks import accepted
 from rastrainer.number_text import counted
-from rastrainer.study.database.database import beside_study
+from rastrainer.study.database.database import path_beside_study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.options import add_study
 from rastrainer_simulator.cli.record_store_settings import (
@@ -24,7 +24,12 @@ from rastrainer_simulator.cli.record_store_settings import (
     read_record_store_settings,
 )
 from rastrainer_simulator.export.xapi import statements
-from rastrainer_simulator.net.record_store import BATCH, Delivery, RecordStore, StoreAwayError
+from rastrainer_simulator.net.record_store import (
+    BATCH,
+    Delivery,
+    RecordStore,
+    StoreUnreachableError,
+)
 
 CREDENTIALS_VARIABLE = "RASTRAINER_XAPI_CREDENTIALS"
 FIRST_RETRY_S, LAST_RETRY_S = 2.0, 300.0
@@ -93,10 +98,10 @@ class Sender:
         """Send once what is missing; return how many statements the store refused.
 
         Raises:
-            StoreAwayError: the store does not answer.
+            StoreUnreachableError: the store does not answer.
             InputError: the study cannot be read, or the store accepts nothing.
         """
-        missing = [each for each in self._sent.missing(self._read()) if self._is_news(each)]
+        missing = [each for each in self._sent.missing(self._read()) if self._is_not_refused(each)]
         for start in range(0, len(missing), BATCH):
             delivery = self._store.deliver(missing[start : start + BATCH])
             self._sent.note(delivery)
@@ -114,7 +119,7 @@ class Sender:
         while True:
             try:
                 self.send()
-            except StoreAwayError as error:
+            except StoreUnreachableError as error:
                 print(f"{error} Nothing is lost; next try in {retry_s:g} s.", flush=True)
                 self._pause(retry_s)
                 retry_s = min(2.0 * retry_s, LAST_RETRY_S)
@@ -122,7 +127,7 @@ class Sender:
                 retry_s = FIRST_RETRY_S
                 self._pause(period_s)
 
-    def _is_news(self, statement: dict[str, Any]) -> bool:
+    def _is_not_refused(self, statement: dict[str, Any]) -> bool:
         return statement["id"] not in self._refused
 
 
@@ -183,13 +188,13 @@ def run(arguments: argparse.Namespace) -> int:
     def read() -> list[dict[str, Any]]:
         return statements(read_study_data(arguments.study, allow_incomplete=True), home_page)
 
-    sent = SentStatements(beside_study(arguments.study), address, home_page)
+    sent = SentStatements(path_beside_study(arguments.study), address, home_page)
     sender = Sender(read, store, sent)
     if arguments.watch is not None:
         sender.watch(arguments.watch)
     try:
         return 1 if sender.send() else 0
-    except StoreAwayError as error:
+    except StoreUnreachableError as error:
         print(f"rastrainer: {error} Nothing is lost: run the command again.", file=sys.stderr)
         return 1
 

@@ -16,9 +16,9 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.ops.texts.texts import LocalizedText, Texts
 from rastrainer_simulator.state import Event, EventKind, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import MoveCommand, PathCommand
+from rastrainer_simulator.texts.texts import LocalizedText, Texts
 from rastrainer_simulator.training.feed import LONGEST_FEED_M, NO_FEED, Feed, FeedDrive, HeadAhead
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
 from rastrainer_simulator.trial_state import GuideAxis, PlannedLine, ProcedureState

@@ -159,7 +159,7 @@ class SimulationSetup:
         """Return whether a journal with this hash of its scenario was recorded with this one."""
         return sha256 in (self.scenario_sha256, self.sha256_with_skull)
 
-    def has_procedure_of(self, header: Mapping[str, Any]) -> bool:
+    def matches_procedure(self, header: Mapping[str, Any]) -> bool:
         """Return whether the procedure of a journal's header, if it names one, is in here.
 
         Raises:
@@ -170,7 +170,7 @@ class SimulationSetup:
             return True
         return self.procedure_sha256.get(recorded["name"]) == recorded["sha256"]
 
-    def has_landmarks_of(self, header: Mapping[str, Any]) -> bool:
+    def matches_landmarks(self, header: Mapping[str, Any]) -> bool:
         """Return whether the landmarks of a journal's header, if it has any, are those in here.
 
         Raises:

@@ -19,7 +19,6 @@ from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.arm import JointMotion, Joints, Postures, start_joints
 from rastrainer_simulator.core.procedure_motion import FED, PlannedBone, ProcedureMotion
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.robot.kinematics import make_kinematics
 from rastrainer_simulator.state import (
     Answer,
@@ -40,6 +39,7 @@ from rastrainer_simulator.teleoperation.commanded_motion import (
 )
 from rastrainer_simulator.teleoperation.steering import ChosenAxes
 from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.replies import TrainingReply
 from rastrainer_simulator.training.rules import TouchMoment, refusal, touch_stage
 from rastrainer_simulator.training.training import Training

@@ -41,7 +41,7 @@ from rastrainer_simulator.desktop.screenshot import (
     save_screenshot,
     write_picture,
 )
-from rastrainer_simulator.net.views.messages import FRAMES, ITEM
+from rastrainer_simulator.net.views.incoming import FRAMES, ITEM
 
 POLL_S = 0.004
 """How often the window polls the keyboard while nothing arrives."""

@@ -20,8 +20,8 @@ from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, read_parts
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
-from rastrainer_simulator.net.views.messages import HELLO, SUBPROTOCOL
-from rastrainer_simulator.net.views.screen import (
+from rastrainer_simulator.net.views.incoming import HELLO, SUBPROTOCOL
+from rastrainer_simulator.presentation.screen import (
     DepthRuler,
     ErrorArrow,
     Fact,
@@ -146,7 +146,7 @@ class ServerConnection:
         self._inbox.trace = ShownTrace()
 
     def _take_trace(self, message: Mapping[str, Any]) -> None:
-        self._inbox.trace = self._inbox.trace.with_news(message)
+        self._inbox.trace = self._inbox.trace.with_update(message)
 
     def _take_event(self, message: Mapping[str, Any]) -> None:
         number = int(message["number"])

@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.shown_scene import glow
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
-from rastrainer_simulator.net.views.screen import ErrorArrow, Tone
+from rastrainer_simulator.presentation.screen import ErrorArrow, Tone
 from rastrainer_simulator.scene.nodes import NEXT, TRACED, Color
 from rastrainer_simulator.scene.surfaces import surface
 

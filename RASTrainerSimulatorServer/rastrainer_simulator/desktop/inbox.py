@@ -19,7 +19,7 @@ from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.screen import Screen
 
 UNREADABLE = "The scene that the simulator sent cannot be read: {reason}."
 

@@ -10,7 +10,7 @@ import pygame
 
 from rastrainer_simulator.desktop.connection import ServerConnection
 from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
-from rastrainer_simulator.net.views.messages import ALIVE, KEY, ORBIT, STICKS, VISIBILITY
+from rastrainer_simulator.net.views.incoming import ALIVE, KEY, ORBIT, STICKS, VISIBILITY
 
 _IN_ORDER = (
     (4, "KeyA KeyB KeyC KeyD KeyE KeyF KeyG KeyH KeyI KeyJ KeyK KeyL KeyM"),

@@ -36,7 +36,7 @@ from rastrainer_simulator.desktop.panels.tip_guides import (
     paint_ring,
     target_arrow,
 )
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.screen import Screen
 
 MAX_WARNINGS = 3
 GLOW = 44

@@ -21,13 +21,13 @@ import numpy as np
 
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.writing import make_folder
-from rastrainer.python_environment import python_words
+from rastrainer.python_environment import python_command
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.rendering.picture import write_png
 
 MODULE = "rastrainer_simulator.desktop.screenshot"
@@ -90,7 +90,7 @@ async def save_screenshot(screenshot: Screenshot) -> None:
         InputError: it cannot be drawn or written.
     """
     pipe = asyncio.subprocess.PIPE
-    process = await asyncio.create_subprocess_exec(*python_words(MODULE), stdin=pipe, stderr=pipe)
+    process = await asyncio.create_subprocess_exec(*python_command(MODULE), stdin=pipe, stderr=pipe)
     _, errors = await process.communicate(pickle.dumps(screenshot))
     if process.returncode == INPUT_ERROR_STATUS:
         raise InputError(errors.decode(errors="replace").strip().rpartition("\n")[2])

@@ -31,7 +31,7 @@ class ShownTrace:
     covered: float = 0.0
     place: tuple[np.ndarray, np.ndarray] | None = None
 
-    def with_news(self, message: Mapping[str, Any]) -> ShownTrace:
+    def with_update(self, message: Mapping[str, Any]) -> ShownTrace:
         """Return the trace after a `trace` message.
 
         Raises:

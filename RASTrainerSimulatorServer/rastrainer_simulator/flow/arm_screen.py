@@ -11,7 +11,13 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, slow_hint
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Hint, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import (
+    DepthRuler,
+    ErrorArrow,
+    Hint,
+    ScreenMessage,
+    Tone,
+)
 from rastrainer_simulator.state import Event, EventKind, SimulationState, TouchStage
 from rastrainer_simulator.teleoperation.steering import ROBOT_AXES, Axes, AxesChoice, camera_axes
 from rastrainer_simulator.vectors import (

@@ -25,12 +25,12 @@ from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.flow.tutorial_screen import TutorialScreen
 from rastrainer_simulator.input.inputs import ControlContext, ControlName
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.net.views.feedback_event import feedback_event, touch_feedback
-from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
-from rastrainer_simulator.ops.texts.texts import LocalizedText
-from rastrainer_simulator.record.beside_the_trial import GhostReport, GuidanceReport
+from rastrainer_simulator.presentation.feedback_event import feedback_event, touch_feedback
+from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
+from rastrainer_simulator.record.trial_context import GhostReport, GuidanceReport
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.state import Answer, SimulationState, StepResult, TouchStage, TrialResult
+from rastrainer_simulator.texts.texts import LocalizedText
 
 OF_A_RESULT = (FinishedPage, ReplayPage, ErrorsPage, ProcedureErrorsPage, ProcedureLinesPage)
 

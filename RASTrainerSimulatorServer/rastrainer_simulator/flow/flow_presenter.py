@@ -25,12 +25,12 @@ from rastrainer_simulator.input.inputs import (
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.results import Subscribers
-from rastrainer_simulator.net.views.feedback_event import (
+from rastrainer_simulator.presentation.feedback_event import (
     FEEDBACK_EFFECTS,
     FeedbackEvent,
     feedback_of,
 )
-from rastrainer_simulator.net.views.presenter import (
+from rastrainer_simulator.presentation.presenter import (
     Control,
     Frames,
     Hello,
@@ -39,8 +39,8 @@ from rastrainer_simulator.net.views.presenter import (
     TraceGuidance,
     ViewUpdate,
 )
-from rastrainer_simulator.net.views.screen import PRESS, Screen, Tone
-from rastrainer_simulator.record.beside_the_trial import DisplayReport
+from rastrainer_simulator.presentation.screen import PRESS, Screen, Tone
+from rastrainer_simulator.record.trial_context import DisplayReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
 from rastrainer_simulator.state import HANDS_OFF, Answer, OperatorInput, SimulationState, StepResult
 from rastrainer_simulator.viewpoint.view_control import Pictures

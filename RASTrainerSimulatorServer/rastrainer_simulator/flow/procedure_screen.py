@@ -14,7 +14,13 @@ from rastrainer_simulator.flow.session.plan_marks import checkpoint_marks, depth
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.trial_screen import TrialScreen
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
-from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Hint, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import (
+    DepthRuler,
+    ErrorArrow,
+    Hint,
+    ScreenMessage,
+    Tone,
+)
 from rastrainer_simulator.state import Event, EventKind
 from rastrainer_simulator.training.feed import FeedLayer
 from rastrainer_simulator.trial_state import ProcedureState

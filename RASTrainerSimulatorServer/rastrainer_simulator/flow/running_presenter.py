@@ -19,7 +19,7 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
-from rastrainer_simulator.input.inputs import SIMULATOR_SEAT, Source, SourceKind
+from rastrainer_simulator.input.inputs import SIMULATOR_STATION, Source, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop
 
 if TYPE_CHECKING:
@@ -88,11 +88,11 @@ class RunningPresenter:
         if self._gamepads is not None:
             self._gamepads.close()
 
-    def gamepad_came(self, number: int, name: str) -> None:  # noqa: ARG002
-        """A gamepad was plugged in: the first sits at the simulator's own seat."""
-        taken = {source.seat for source in self._sources.values()}
-        seat = SIMULATOR_SEAT if SIMULATOR_SEAT not in taken else f"gamepad {number}"
-        self._sources[number] = Source(SourceKind.GAMEPAD, seat, number=number)
+    def gamepad_added(self, number: int, name: str) -> None:  # noqa: ARG002
+        """A gamepad was plugged in: the first belongs to the simulator's own station."""
+        taken = {source.station for source in self._sources.values()}
+        station = SIMULATOR_STATION if SIMULATOR_STATION not in taken else f"gamepad {number}"
+        self._sources[number] = Source(SourceKind.GAMEPAD, station, number=number)
         self.presenter.controls.add(self._sources[number])
         self.presenter.warn("gamepad")
 
@@ -100,7 +100,7 @@ class RunningPresenter:
         """A gamepad has moved."""
         self.presenter.controls.set_inputs(self._sources[number], inputs)
 
-    def gamepad_went(self, number: int, name: str) -> None:
+    def gamepad_removed(self, number: int, name: str) -> None:
         """A gamepad was unplugged: release what it held."""
         self.presenter.unplugged(self._sources.pop(number))
         self.presenter.warn("gamepad", "warning.unplugged", name=name)

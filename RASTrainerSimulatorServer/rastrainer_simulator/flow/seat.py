@@ -8,11 +8,11 @@ from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import ResultPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.controls import Controls
-from rastrainer_simulator.input.inputs import SIMULATOR_SEAT, ControlContext, Source, SourceKind
+from rastrainer_simulator.input.inputs import SIMULATOR_STATION, ControlContext, Source, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.net.views.presenter import Hello, InstructorOrder, Seat
-from rastrainer_simulator.net.views.screen import Screen, Tone
-from rastrainer_simulator.record.beside_the_trial import ViewReport
+from rastrainer_simulator.presentation.presenter import Hello, InstructorOrder, Seat
+from rastrainer_simulator.presentation.screen import Screen, Tone
+from rastrainer_simulator.record.trial_context import ViewReport
 from rastrainer_simulator.replay.playback import PlaybackSwitch
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
@@ -80,10 +80,10 @@ class ViewSources:
         return next((view for view in choices if view is not None), None)
 
     def source(self, kind: SourceKind, view: int) -> Source:
-        """Return a view's source; the simulator's own windows share a seat with its gamepad."""
+        """Return a view's source; the simulator's own windows share a station with its gamepad."""
         hello = self._views.get(view)
         is_own = hello is not None and hello.kind == "desktop"
-        return Source(kind, SIMULATOR_SEAT if is_own else f"view {view}", view)
+        return Source(kind, SIMULATOR_STATION if is_own else f"view {view}", view)
 
     def sticks_source(self, view: int, has_screen_sticks: bool) -> Source:
         """Return whose sticks a view sends: a headset's, a touch screen's, or a mouse's.
@@ -130,7 +130,7 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
 
 def _assignments(session: TrainingSession) -> str:
     told = session.curriculum
-    return "" if told is None else session.assignment_words.in_brief(told)
+    return "" if told is None else session.assignment_texts.in_brief(told)
 
 
 def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text: str) -> str:

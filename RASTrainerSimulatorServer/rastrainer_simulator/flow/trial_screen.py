@@ -23,7 +23,7 @@ from rastrainer_simulator.flow.pages.trial import CompletePage, TrialPage
 from rastrainer_simulator.flow.session.chosen_trial import guidance_of
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
-from rastrainer_simulator.net.views.screen import Hint, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, TouchStage
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, distance, in_meters
@@ -176,7 +176,7 @@ class TrialScreen(ArmScreen):
         if is_on_skin:
             key = session.operator.label(ControlName.TOUCH)
             return ScreenMessage(session.texts.say("work.on skin", touch=key), Tone.GOOD)
-        if self._is_off_the_way():
+        if self._is_off_the_path():
             text = session.texts.say(
                 "work.off the way", trainee=training.trainee, point=training.next_point
             )
@@ -246,7 +246,7 @@ class TrialScreen(ArmScreen):
         left = math.ceil(max(0.0, round(self._practice_s - elapsed, 6)))
         return session.texts.say("status.left", time=session.duration(left))
 
-    def _is_off_the_way(self) -> bool:
+    def _is_off_the_path(self) -> bool:
         """Return whether the tip is beside the way between the last point and the next."""
         training = self._session.training
         target = self._points.get(training.next_point or "")

@@ -15,9 +15,9 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.tutorial.steps import TutorialObservation, TutorialStep
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.net.views.feedback_event import FeedbackEvent, feedback_event
-from rastrainer_simulator.net.views.screen import ErrorArrow, Hint, ScreenMessage, Tone
-from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_event
+from rastrainer_simulator.presentation.screen import ErrorArrow, Hint, ScreenMessage, Tone
+from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES
 from rastrainer_simulator.state import SimulationState, TouchStage
 from rastrainer_simulator.training.training import TrainingReply
 from rastrainer_simulator.vectors import Vector, distance, in_meters
@@ -211,7 +211,7 @@ class TutorialScreen(ArmScreen):
             is_slow=session.held.fine,
             orbit=session.view.control.orbit,
             yaw_deg=session.view.yaw_deg,
-            has_best_view=session.view.has_gone_to(practice.next_point),
+            has_best_view=session.view.has_moved_to(practice.next_point),
             touch=state.touch,
             touched=len(practice.touches),
             undone=practice.undone,

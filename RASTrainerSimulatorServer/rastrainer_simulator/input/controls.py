@@ -49,9 +49,9 @@ class ControlsListener(Protocol):
 class Controls:
     """Who holds the control, and what they do with it.
 
-    Whoever acts first holds the control. What is at the same seat (the simulator's gamepad, the
+    Whoever acts first holds the control. What is at the same station (the simulator's gamepad, the
     keys and the mouse of its windows; the keys, pad and controllers of one page) shares it and
-    passes it on by being used. Another seat's input does nothing, except that pressing `menu`
+    passes it on by being used. Another station's input does nothing, except that pressing `menu`
     takes the control over once the holder has done nothing for `IDLE_S` seconds: on purpose,
     never while someone operates, and only where it `may_be_taken`. A holder that is unplugged or
     leaves gives the control up.
@@ -101,8 +101,8 @@ class Controls:
         return state.view(self.bindings)
 
     def is_operator(self, source: Source) -> bool:
-        """Return whether a source is at the seat of who holds the control, or nobody does."""
-        return self.holder is None or self.holder.seat == source.seat
+        """Return whether a source is at the station of who holds the control, or nobody does."""
+        return self.holder is None or self.holder.station == source.station
 
     @property
     def _held_state(self) -> InputState | None:
@@ -188,12 +188,12 @@ class Controls:
         return self._states[source]
 
     def _noticed(self, source: Source, state: InputState) -> None:
-        """Let pushed sticks pass the control on within a seat, or to a first operator."""
+        """Let pushed sticks pass the control on within a station, or to a first operator."""
         if source == self.holder or state.is_at_rest:
             return
         holding = self._held_state
         if self.holder is None or (
-            self.holder.seat == source.seat and (holding is None or holding.is_at_rest)
+            self.holder.station == source.station and (holding is None or holding.is_at_rest)
         ):
             self._hold(source)
 

@@ -25,13 +25,13 @@ _HINTS = {
 class GamepadListener(Protocol):
     """Receives what happens to gamepads."""
 
-    def gamepad_came(self, number: int, name: str) -> None:
+    def gamepad_added(self, number: int, name: str) -> None:
         """A gamepad was plugged in."""
 
     def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
         """Something of a gamepad has changed; all its inputs, 0…1."""
 
-    def gamepad_went(self, number: int, name: str) -> None:
+    def gamepad_removed(self, number: int, name: str) -> None:
         """A gamepad was unplugged."""
 
     def gamepad_unknown(self, name: str) -> None:
@@ -85,18 +85,18 @@ class Gamepads:
             if not pad.attached():
                 del self._open[number]
                 self._reported.pop(number, None)
-                self._listener.gamepad_went(number, pad.name)
+                self._listener.gamepad_removed(number, pad.name)
         for index in range(self._pygame.joystick.get_count()):
             if not self._controller.is_controller(index):
-                self._tell_unknown(index)
+                self._report_unknown(index)
                 continue
             pad = self._controller.Controller(index)
             number = pad.as_joystick().get_instance_id()
             if number not in self._open:
                 self._open[number] = pad
-                self._listener.gamepad_came(number, pad.name)
+                self._listener.gamepad_added(number, pad.name)
 
-    def _tell_unknown(self, index: int) -> None:
+    def _report_unknown(self, index: int) -> None:
         name = self._pygame.joystick.Joystick(index).get_name()
         if name not in self._unknown:
             self._unknown.add(name)

@@ -57,7 +57,7 @@ _W3C_BUTTONS = (
     "dpright",
     "guide",
 )
-SIMULATOR_SEAT = "simulator"
+SIMULATOR_STATION = "simulator"
 """The place at the simulator itself: its gamepad, and the keys and mouse of its windows."""
 
 
@@ -110,13 +110,13 @@ class Source:
 
     Attributes:
         kind: what it is.
-        seat: where the person sits. What is at one seat belongs to one operator.
+        station: where the person sits. What is at one station belongs to one operator.
         view: number of the view that reads it; None for a gamepad at the simulator.
-        number: of the gamepad, to tell several of one seat apart.
+        number: of the gamepad, to tell several of one station apart.
     """
 
     kind: SourceKind
-    seat: str = SIMULATOR_SEAT
+    station: str = SIMULATOR_STATION
     view: int | None = None
     number: int = 0
 

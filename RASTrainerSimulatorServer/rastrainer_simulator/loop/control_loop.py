@@ -32,8 +32,8 @@ from rastrainer_simulator.loop.timing import (
     sleep_until,
 )
 from rastrainer_simulator.ops.stamps import stamp
-from rastrainer_simulator.record.beside_the_trial import NotedReport
 from rastrainer_simulator.record.trial_archive import TrialArchive
+from rastrainer_simulator.record.trial_context import NotedReport
 from rastrainer_simulator.record.trial_recorder import TrialRecorder
 from rastrainer_simulator.state import (
     HANDS_OFF,

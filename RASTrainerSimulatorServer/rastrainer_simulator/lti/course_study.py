@@ -21,7 +21,7 @@ from urllib.parse import urlsplit, urlunsplit
 from rastrainer.errors import InputError
 from rastrainer.json_checks import text
 from rastrainer.study.database import study_trainees
-from rastrainer.study.database.database import StudyPlace, beside_study
+from rastrainer.study.database.database import StudyPlace, path_beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import moment, utc_now
 from rastrainer.study.platform_links import LinkedAssignment, PlatformLinks
@@ -75,7 +75,7 @@ class CourseStudy:
         if isinstance(place, Path) and not place.is_file():
             raise InputError(f"There is no study {place}; make it in 3D Slicer first.")
         self._study = Study.open(place, must_exist=True)
-        self._links = PlatformLinks(beside_study(place))
+        self._links = PlatformLinks(path_beside_study(place))
 
     def close(self) -> None:
         """Close it."""

@@ -11,7 +11,7 @@ from rastrainer.study.outcomes import task_title
 from rastrainer.study.study_data import TrialRow
 from rastrainer_simulator.lti.course_study import CourseMember
 from rastrainer_simulator.lti.launch_message import MODES, GradeRule, GradeTerms, PlatformLaunch
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 
 MOST_TRIALS = 50
 STYLE = """

@@ -26,7 +26,7 @@ _BUSY = (408, 429)
 _CLOSED = (401, 403)
 
 
-class StoreAwayError(InputError):
+class StoreUnreachableError(InputError):
     """The store does not answer, or asks for patience: the same statements may be sent later."""
 
 
@@ -92,7 +92,7 @@ class RecordStore:
         """Send up to `BATCH` statements; one that is refused does not hold up the others.
 
         Raises:
-            StoreAwayError: the store is not reached; it may have taken some of them.
+            StoreUnreachableError: the store is not reached; it may have taken some of them.
             InputError: it refuses the credentials, or is no record store.
         """
         delivery = Delivery()
@@ -127,7 +127,7 @@ class RecordStore:
             ) from None
         except (OSError, http.client.HTTPException) as error:
             reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-            raise StoreAwayError(f"The record store does not answer: {reason}.") from None
+            raise StoreUnreachableError(f"The record store does not answer: {reason}.") from None
         finally:
             connection.close()
         if response.status in _CLOSED:
@@ -135,7 +135,7 @@ class RecordStore:
                 f"The record store does not accept the credentials (status {response.status})."
             )
         if response.status in _BUSY or response.status >= 500:
-            raise StoreAwayError(f"The record store is busy (status {response.status}).")
+            raise StoreUnreachableError(f"The record store is busy (status {response.status}).")
         if response.status == 404 or 300 <= response.status < 400:
             raise InputError(
                 f"There is no record store at this address (status {response.status}); "

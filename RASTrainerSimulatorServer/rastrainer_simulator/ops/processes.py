@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from rastrainer.python_environment import python_words
+from rastrainer.python_environment import python_command
 
 VIEW_KEY_VARIABLE = "RASTRAINER_VIEW_KEY"
 """Environment variable with a key of the views, shared by a simulator and its window."""
@@ -55,7 +55,7 @@ class DesktopProcess:
         simulator stays, with the trial that is running; `announce` says how to come back.
         """
         options = ("--connect", self._url, "--log-folder", str(self._logs))
-        command = python_words("rastrainer_simulator.cli.main", "window", *options)
+        command = python_command("rastrainer_simulator.cli.main", "window", *options)
         environment = {**os.environ, VIEW_KEY_VARIABLE: self._key}
         self._process = await asyncio.create_subprocess_exec(*command, env=environment)
         status = await self._process.wait()

@@ -11,9 +11,9 @@ from rastrainer.errors import InputError
 from rastrainer.study.ratings import HIGHEST, LOWEST, MARKS, RatingDomain, RatingForm, RatingStore
 from rastrainer_simulator.flow.session.open_pages import OpenPages, Page
 from rastrainer_simulator.input.inputs import InputDevice
-from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.presentation.screen import Fact, Menu, MenuItem
 from rastrainer_simulator.replay.playback import Playback
+from rastrainer_simulator.texts.texts import Texts
 
 
 class RatingWork:

@@ -16,8 +16,8 @@ from rastrainer_simulator.input.inputs import (
     w3c_gamepad_inputs,
 )
 from rastrainer_simulator.loop.results import Subscribers
-from rastrainer_simulator.net.views.feedback_event import FeedbackEvent, feedback_of
-from rastrainer_simulator.net.views.presenter import (
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
+from rastrainer_simulator.presentation.presenter import (
     Control,
     Frames,
     Hello,
@@ -26,12 +26,12 @@ from rastrainer_simulator.net.views.presenter import (
     TraceGuidance,
     ViewUpdate,
 )
-from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage, Tone
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage, Tone
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage, RatingWork
 from rastrainer_simulator.replay.playback import Playback, ShownPlayback
 from rastrainer_simulator.replay.replay_presenter import RATE, ReplayPresenter
 from rastrainer_simulator.state import SimulationState
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.viewpoint.view_control import Pictures
 
 _DOWN = 0.5

@@ -24,7 +24,7 @@ from rastrainer_simulator.core.interrupted_trial import (
     refusing_malformed,
 )
 from rastrainer_simulator.ops.stamps import stamp
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 
 ATTEMPT = "attempt"
 """Kind of the entry that holds the record of an aborted trial."""

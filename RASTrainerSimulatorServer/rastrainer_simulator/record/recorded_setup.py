@@ -62,8 +62,8 @@ def setup_of(
             f"{setup.scenario.name!r} here: give its folder with --scenario."
         )
     try:
-        is_same_procedure = setup.has_procedure_of(header)
-        has_same_landmarks = setup.has_landmarks_of(header)
+        is_same_procedure = setup.matches_procedure(header)
+        has_same_landmarks = setup.matches_landmarks(header)
     except (KeyError, TypeError, AttributeError):
         raise InputError(
             "The journal's header does not name its procedure or method as it should."

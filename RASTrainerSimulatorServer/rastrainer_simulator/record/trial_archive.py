@@ -19,10 +19,10 @@ from rastrainer.journal.journal_file import Integrity, JournalReading, read_jour
 from rastrainer.protocol import CommandName
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
-from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.record.aborted_archive import AbortedArchive
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.state import FinalRegistration
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.true_error import Truth
 
 FIRST_REACH = 1 << 16

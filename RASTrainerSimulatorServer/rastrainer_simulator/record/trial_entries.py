@@ -15,7 +15,7 @@ from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, Registrati
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.ops.stamps import stamp
-from rastrainer_simulator.record.beside_the_trial import (
+from rastrainer_simulator.record.trial_context import (
     DisplayReport,
     GhostReport,
     GuidanceReport,

@@ -13,9 +13,9 @@ from rastrainer.journal.journal_file import JournalReading
 from rastrainer.protocol import AbortReason, CommandName, Phase
 from rastrainer_simulator.ops.stamps import file_stamp, stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
-from rastrainer_simulator.record.beside_the_trial import NotedReport
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive
+from rastrainer_simulator.record.trial_context import NotedReport
 from rastrainer_simulator.record.trial_entries import MUST_LAST, TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord
 from rastrainer_simulator.state import OperatorInput, SimulationState, StepResult

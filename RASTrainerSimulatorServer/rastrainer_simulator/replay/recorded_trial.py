@@ -86,9 +86,9 @@ class RecordedTrial:
         is_same_robot = header["robot"] == setup.robot.name
         if not is_same_robot or not setup.is_of(header["scenario"]["sha256"]):
             raise InputError("The trial was recorded with another scenario or robot.")
-        if not setup.has_procedure_of(header):
+        if not setup.matches_procedure(header):
             raise InputError("The trial was recorded with another procedure.")
-        if not setup.has_landmarks_of(header):
+        if not setup.matches_landmarks(header):
             raise InputError("The trial was recorded with other landmarks.")
         if not track.events:
             raise InputError("The trial cannot be shown again: its journal holds no event.")

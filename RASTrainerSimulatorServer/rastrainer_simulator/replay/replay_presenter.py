@@ -9,8 +9,8 @@ from functools import reduce
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.loop.results import Subscribers
-from rastrainer_simulator.net.views.feedback_event import feedback_event, feedback_of
-from rastrainer_simulator.net.views.presenter import (
+from rastrainer_simulator.presentation.feedback_event import feedback_event, feedback_of
+from rastrainer_simulator.presentation.presenter import (
     Control,
     Frames,
     Hello,
@@ -19,10 +19,10 @@ from rastrainer_simulator.net.views.presenter import (
     TraceGuidance,
     ViewUpdate,
 )
-from rastrainer_simulator.net.views.screen import Hint, Screen, ScreenMessage
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.presentation.screen import Hint, Screen, ScreenMessage
 from rastrainer_simulator.replay.playback import PERIOD_S, Playback
 from rastrainer_simulator.state import SimulationState, StepResult
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 from rastrainer_simulator.viewpoint.best_view import BestViews
 from rastrainer_simulator.viewpoint.view_control import STILL, Pictures, ViewControl, orbit_to
 

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import rastrainer
 from rastrainer.errors import InputError
-from rastrainer.python_environment import python_words
+from rastrainer.python_environment import python_command
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.ops.processes import BELOW_NORMAL, environment_without_secrets
 from rastrainer_simulator.robot.model import RobotModel
@@ -203,7 +203,7 @@ class SceneFiles:
 async def _start() -> asyncio.subprocess.Process:
     try:
         return await asyncio.create_subprocess_exec(
-            *python_words("rastrainer_simulator.scene.scene_glb"),
+            *python_command("rastrainer_simulator.scene.scene_glb"),
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,

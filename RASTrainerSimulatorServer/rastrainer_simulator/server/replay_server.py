@@ -23,10 +23,10 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views.open_views import open_views
-from rastrainer_simulator.net.views.presenter import Presenter
 from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
+from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
 from rastrainer_simulator.record.recorded_setup import setup_of

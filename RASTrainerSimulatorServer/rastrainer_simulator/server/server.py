@@ -40,12 +40,12 @@ from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
-from rastrainer_simulator.record.journal import RecordsFolder
+from rastrainer_simulator.record.journal_writer import RecordsFolder
 from rastrainer_simulator.record.recorded_setup import setup_of, versions
 from rastrainer_simulator.robot.kinematics import kinematics_name
 from rastrainer_simulator.server.scenario_loader import ScenarioLoader
 from rastrainer_simulator.state import Answer
+from rastrainer_simulator.texts.texts import LANGUAGES
 
 if TYPE_CHECKING:
     from rastrainer_simulator.flow.running_presenter import RunningPresenter

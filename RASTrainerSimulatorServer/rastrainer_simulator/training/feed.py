@@ -148,7 +148,7 @@ def recorded_feed(feed: Feed) -> dict[str, float]:
     return {"feedMm": MM_PER_M * feed.depth, "drilledMm": MM_PER_M * feed.drilled}
 
 
-class FeedWay(NamedTuple):
+class FeedMotion(NamedTuple):
     """How far to feed in a tick, m, inward above 0."""
 
     distance: float
@@ -173,16 +173,16 @@ class FeedDrive:
         """End a commanded feed."""
         self._remaining = 0.0
 
-    def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> FeedWay:
+    def way(self, dt: float, phase: Phase, operator_input: OperatorInput) -> FeedMotion:
         """Return how far to feed in `dt` s."""
         up = self._response(operator_input.translation)[2]
         fastest = self._settings.fastest(phase, operator_input.fine)
         if up != 0.0:
             self.stop()
-            return FeedWay(-up * fastest * dt, is_by_stick=True)
+            return FeedMotion(-up * fastest * dt, is_by_stick=True)
         if self._remaining <= 1e-3 * dt:
-            return FeedWay(0.0)
+            return FeedMotion(0.0)
         time = min(dt, self._remaining)
         self._remaining -= dt
         fastest = self._settings.fastest(phase, fine=False)
-        return FeedWay(min(max(self._velocity, -fastest), fastest) * time)
+        return FeedMotion(min(max(self._velocity, -fastest), fastest) * time)

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 from rastrainer.procedure.record import MAX_ATTEMPTS, MAX_TOUCHED_CHECKPOINTS
 from rastrainer.protocol import STAND_OFF_LIMIT_MM, CommandName, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
 from rastrainer_simulator.training.replies import RefusedStep, TrialStep
@@ -248,7 +248,7 @@ class ProcedurePhases:
             drill_depth=0.0,
         )
         return TrialStep(
-            _with_present(entered, locked),
+            _with_current(entered, locked),
             "drill",
             {"name": locked.line.name},
             {
@@ -274,7 +274,7 @@ class ProcedurePhases:
         entered = moment.entering(Phase.INSERTING)
         drilled = replace(_present(entered), drill_depth=feed.drilled)
         return TrialStep(
-            _with_present(entered, drilled),
+            _with_current(entered, drilled),
             "insert",
             {"name": drilled.line.name},
             feed=replace(feed, depth=0.0),
@@ -290,7 +290,7 @@ class ProcedurePhases:
         is_last = following == len(procedure.trajectories)
         entered = moment.entering(Phase.REGISTERED if is_last else Phase.ALIGNING)
         placed = replace(_present(entered), instrument_depth=depth)
-        state = _with_present(entered, placed)
+        state = _with_current(entered, placed)
         assert state.procedure is not None
         if is_last:
             ended = replace(state.procedure, ended_s=moment.elapsed)
@@ -311,6 +311,6 @@ def _present(state: TrainingState) -> TrajectoryState:
     return state.procedure.trajectories[state.procedure.trajectory]
 
 
-def _with_present(state: TrainingState, trajectory: TrajectoryState) -> TrainingState:
+def _with_current(state: TrainingState, trajectory: TrajectoryState) -> TrainingState:
     assert state.procedure is not None
     return replace(state, procedure=state.procedure.with_present(trajectory))

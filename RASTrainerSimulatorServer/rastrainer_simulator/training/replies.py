@@ -10,8 +10,8 @@ import numpy as np
 
 from rastrainer.protocol import Phase, RegistrationMethod
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import Feed
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.trial_state import FinalRegistration

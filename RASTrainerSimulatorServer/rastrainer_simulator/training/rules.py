@@ -20,8 +20,8 @@ from rastrainer.protocol import (
     TouchRule,
 )
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import OperatorCommand, TouchStage, TrainingState
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import NO_FEED, Feed
 from rastrainer_simulator.vectors import ZERO, Vector, distance
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from rastrainer.errors import InputError
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import Event, EventKind, OperatorCommand, TrainingState
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE, ProcedurePhases

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from rastrainer.head.trial_head import SkinShift
 from rastrainer.protocol import TRACED_METHODS, Phase
 from rastrainer.scenario.scenario import method_of, task_by_method
-from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import TrainingState
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import ProcedureSettings
 from rastrainer_simulator.training.procedure_phases import ProcedurePhases
 from rastrainer_simulator.training.rules import TrainingSettings

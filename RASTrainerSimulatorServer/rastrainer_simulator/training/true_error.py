@@ -87,7 +87,7 @@ class Truth:
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
             "trueTreMm": self.target_error_mm(world_to_head),
             "touchErrorsMm": self.touch_errors_mm(touches),
-            **self._told_skin(),
+            **self._revealed_skin(),
         }
 
     def to_json(self) -> dict[str, Any]:
@@ -96,10 +96,10 @@ class Truth:
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
             "target": [float(value) for value in self.target],
             "fiducials": {k: [float(v) for v in point] for k, point in self.fiducials.items()},
-            **self._told_skin(),
+            **self._revealed_skin(),
         }
 
-    def _told_skin(self) -> dict[str, Any]:
+    def _revealed_skin(self) -> dict[str, Any]:
         """Return nothing where the skin lies as in the images: as before it could shift."""
         return {} if self.skin.is_none else {"skin": self.skin.to_json()}
 

@@ -25,7 +25,7 @@ from rastrainer.trial.scoring import ScoreReference
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.ops.stamps import file_stamp, iso
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord
 from rastrainer_simulator.state import (

@@ -116,7 +116,7 @@ class ScriptedTrainee:
         self._planned_for: int | None = None
         self._touched: int | None = None
         self._is_refused = False
-        self._takes_back = False
+        self._is_undoing_touch = False
         self._path: list[np.ndarray] = []
         self._acts_from_s = 0.0
         self._gives_up_at_s = np.inf
@@ -148,7 +148,7 @@ class ScriptedTrainee:
         self._acts_from_s = observation.sim_time_s + DECISION_PERIOD_S
         if observation.phase not in (Phase.RUNNING, Phase.COMPLETE):
             return None
-        if self._takes_back:
+        if self._is_undoing_touch:
             return self._undo(observation)
         if observation.phase is Phase.COMPLETE:
             return CommandName.REGISTER, {}
@@ -163,13 +163,13 @@ class ScriptedTrainee:
         """Note that the last touch was refused: the trainee approaches the point from above."""
         self._touched = None
         self._is_refused = True
-        self._takes_back = False
+        self._is_undoing_touch = False
 
     def _undo(self, observation: Observation) -> Action | None:
         """Undo the slip as soon as it is seen to have been recorded."""
         if observation.next_point == self._touched:
             return None
-        self._takes_back = False
+        self._is_undoing_touch = False
         self._touched = None
         self._acts_from_s = observation.sim_time_s + self._skill.reaction_s
         return CommandName.UNDO, {}
@@ -235,8 +235,8 @@ class ScriptedTrainee:
 
     def _touch(self) -> Action:
         self._touched = self._planned_for
-        self._takes_back = self._touched == self._slip_at
-        if self._takes_back:
+        self._is_undoing_touch = self._touched == self._slip_at
+        if self._is_undoing_touch:
             self._slip_at = None
         self._planned_for = None
         return CommandName.CAPTURE, {}

@@ -37,7 +37,7 @@ class ScriptedTrialResult:
     last_state: dict[str, Any]
 
 
-def say_hello(client: Client, name: str) -> None:
+def send_hello(client: Client, name: str) -> None:
     """Greet the server, and subscribe to poses even while the arm is still: they are our clock.
 
     Raises:

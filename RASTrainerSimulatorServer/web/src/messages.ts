@@ -206,7 +206,7 @@ export interface PairingNews {
 }
 
 /** What is new of a trace over the skin: points in `head`, mm, after the first `known` ones. */
-export interface TraceNews {
+export interface TraceUpdate {
   readonly type: "trace";
   readonly known: number;
   readonly points: readonly Triple[];
@@ -216,7 +216,7 @@ export interface TraceNews {
   readonly next: { readonly positionMm: Triple; readonly normal: Triple } | null;
 }
 
-export type News = TraceNews | Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews | PairingNews;
+export type News = TraceUpdate | Welcome | SceneNews | StateNews | ScreenNews | EventNews | ControlNews | PairingNews;
 
 /** What a browser was paired for: to take part, or only to watch. */
 export type Role = "view" | "spectator";

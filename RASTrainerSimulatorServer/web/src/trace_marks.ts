@@ -13,7 +13,7 @@ import {
   Vector3,
 } from "three";
 
-import type { TraceNews } from "./messages";
+import type { TraceUpdate } from "./messages";
 import { COLORS, type SceneModel } from "./scene_model";
 
 /** As many points as a trial takes. */
@@ -35,7 +35,7 @@ export class TraceMarks {
   private readonly paint = new SkinPaint();
   private points: Vector3[] = [];
   private covered = 0;
-  private next: TraceNews["next"] = null;
+  private next: TraceUpdate["next"] = null;
   private model: SceneModel | null = null;
   private isNew = true;
 
@@ -54,7 +54,7 @@ export class TraceMarks {
   }
 
   /** Take what is new. */
-  take(news: TraceNews): void {
+  take(news: TraceUpdate): void {
     this.points.length = Math.min(news.known, this.points.length);
     for (const [x, y, z] of news.points) this.points.push(new Vector3(x, y, z).multiplyScalar(0.001));
     this.points.length = Math.min(MOST, this.points.length);

@@ -58,7 +58,7 @@ def test_a_name_that_ends_in_json_is_a_markups_file(tmp_path):
         ("x,y,z\n" + "1" * 200_000 + ",2,3\n", "not a CSV file"),
     ],
 )
-def test_unusable_point_files_raise_one_sentence(text, words, tmp_path):
+def test_unusable_point_files_raise_a_one_sentence_error(text, words, tmp_path):
     with pytest.raises(InputError, match=words) as caught:
         read_points(file(tmp_path, text))
     assert "\n" not in str(caught.value)

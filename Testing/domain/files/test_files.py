@@ -26,7 +26,7 @@ def test_a_too_large_file_is_refused_without_being_read(tmp_path):
         read_text(path, LIMIT)
 
 
-def test_a_pipe_that_nobody_writes_to_does_not_hang(tmp_path):
+def test_reading_a_pipe_that_nobody_writes_to_does_not_hang(tmp_path):
     path = tmp_path / "pipe"
     os.mkfifo(path)
     with pytest.raises(InputError, match="not a regular file"):
@@ -50,7 +50,7 @@ def test_other_content_is_refused(content, words, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["missing", "", "nul\0", "x" * 300, "missing/../file"])
-def test_folders_and_devices_are_refused_with_one_sentence(name, tmp_path):
+def test_folders_and_devices_are_refused_in_one_sentence(name, tmp_path):
     with pytest.raises(InputError) as caught:
         read_text(str(tmp_path / name), LIMIT)
     assert "\n" not in str(caught.value)

@@ -45,7 +45,7 @@ def test_wide_json_and_text_of_brackets_are_not_deep():
     assert decode_finite_json('"' + "[" * 1000 + '"') == "[" * 1000
 
 
-def test_a_message_of_very_many_values_is_refused_before_it_is_decoded():
+def test_a_message_with_too_many_values_is_refused_before_it_is_decoded():
     most = f"[{','.join('1' * MAX_MESSAGE_VALUES)}]"
     assert len(decode_message(most)) == MAX_MESSAGE_VALUES
     with pytest.raises(ValueError, match="too many values"):
@@ -63,7 +63,7 @@ def test_a_number_that_is_not_finite_is_refused(number):
     ["-1e999", "[1,[2,-1e999]]", '{"a":{"b":[-1e999,1]}}', f"[-1e999,{'9' * 400}.0]"],
     ids=["alone", "in lists", "in objects", "before another"],
 )
-def test_an_overflowing_number_is_refused_at_any_place(text):
+def test_an_overflowing_number_is_refused_anywhere(text):
     with pytest.raises(ValueError, match=r"^-1e999 is too large a number$"):
         decode_finite_json(text)
 
@@ -87,7 +87,7 @@ def test_integers_of_any_length_and_underflowing_numbers_are_finite():
         pytest.param(json_checks.yes_or_no, 1, "true or false", id="one"),
     ],
 )
-def test_a_check_refuses_with_the_words_that_follow_must_be(check, value, words):
+def test_a_failed_check_says_what_the_value_must_be(check, value, words):
     with pytest.raises(InputError, match=f"^The value must be .*{words}"):
         accepted(check, value, "The value")
 

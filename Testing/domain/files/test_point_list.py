@@ -184,7 +184,7 @@ def test_a_file_without_coordinate_system_is_read_as_lps_and_mm(tmp_path):
         (document(controlPoints=[{"label": "1", "position": [1, 2, 3]}] * 2), "two points"),
     ],
 )
-def test_other_files_are_refused_with_one_sentence_that_names_the_file(content, words, tmp_path):
+def test_other_files_are_refused_in_one_sentence_that_names_the_file(content, words, tmp_path):
     path = written(tmp_path / "bad.mrk.json", content)
     with pytest.raises(InputError, match=words) as caught:
         read_markups(path)

@@ -12,7 +12,7 @@ from rastrainer.study.database.study import Study
 from rastrainer_simulator.flow.session.preferences import Preferences, write_preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS, write_bindings
 from rastrainer_simulator.ops.log_files import keep_logs
-from rastrainer_simulator.record.journal import Journal, RecordsFolder
+from rastrainer_simulator.record.journal_writer import Journal, RecordsFolder
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="on Windows the profile protects")
 ENTRY = {"type": "header", "trainee": "T-001"}

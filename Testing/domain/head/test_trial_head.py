@@ -8,7 +8,7 @@ from rastrainer.head.trial_head import SkinShift
 from Testing.domain.registration.traces import colin27
 
 
-def test_a_shift_has_its_size_is_smooth_and_ends_at_the_base():
+def test_a_shift_has_the_requested_size_is_smooth_and_vanishes_at_the_base():
     head = colin27()
     high = head.vertices[head.vertices[:, 2] > head.vertices[:, 2].min() + 30.0][::40]
     squares = [np.sum(SkinShift(2.0, seed).moved(high, head) ** 2, axis=1) for seed in range(60)]
@@ -21,7 +21,7 @@ def test_a_shift_has_its_size_is_smooth_and_ends_at_the_base():
     assert not shift.moved(np.array([[0.0, 0.0, head.vertices[:, 2].min()]]), head).any()
 
 
-def test_by_default_nothing_moves_and_the_tip_presses_inward():
+def test_by_default_nothing_moves_and_an_indentation_points_inward():
     head, rows = colin27(), slice(0, 2000, 50)
     points, normals = head.vertices[rows], head.vertex_normals[rows]
     assert np.array_equal(SkinShift().touched(points, normals, head), points)

@@ -15,7 +15,7 @@ def head():
 
 
 @pytest.mark.parametrize("off_mm", [0.0, 0.5, 5.0, 60.0])
-def test_the_nearest_points_are_those_of_the_search_for_one(head, off_mm):
+def test_nearest_points_of_many_match_those_found_one_by_one(head, off_mm):
     random = np.random.default_rng(1)
     points = head.vertices[random.integers(0, len(head.vertices), 25)]
     points = points + off_mm * random.normal(0.0, 1.0, points.shape)
@@ -27,7 +27,7 @@ def test_the_nearest_points_are_those_of_the_search_for_one(head, off_mm):
     assert (found.positions <= corners.max(axis=1) + 1e-9).all()
 
 
-def test_points_that_are_followed_have_the_nearest_points_of_a_new_search(head):
+def test_tracked_points_have_the_same_nearest_points_as_a_new_search(head):
     random = np.random.default_rng(2)
     points = head.vertices[random.integers(0, len(head.vertices), 60)] + random.normal(
         0, 3, (60, 3)
@@ -47,7 +47,7 @@ def test_points_that_are_followed_have_the_nearest_points_of_a_new_search(head):
         points = points[kept]
 
 
-def test_copies_of_followed_points_have_the_nearest_points_of_a_new_search(head):
+def test_copies_of_tracked_points_have_the_same_nearest_points_as_a_new_search(head):
     random = np.random.default_rng(3)
     points = head.vertices[random.integers(0, len(head.vertices), 40)]
     points = points + random.normal(0.0, 1.0, points.shape)
@@ -62,7 +62,7 @@ def test_copies_of_followed_points_have_the_nearest_points_of_a_new_search(head)
         assert np.allclose(found.positions, again.positions, atol=1e-9)
 
 
-def test_one_triangle_and_triangles_without_area_have_nearest_points():
+def test_a_single_triangle_and_degenerate_triangles_have_nearest_points():
     corners = np.array([[[0.0, 0, 0], [2, 0, 0], [0, 2, 0]], [[5.0, 0, 0], [6, 0, 0], [7, 0, 0]]])
     one = TriangleTree(corners[:1]).nearest(np.array([[0.5, 0.5, 3.0], [-1.0, -1.0, 0.0]]))
     assert np.allclose(one.positions, [[0.5, 0.5, 0.0], [0.0, 0.0, 0.0]])
@@ -71,7 +71,7 @@ def test_one_triangle_and_triangles_without_area_have_nearest_points():
     assert line.triangles[0] == 1
 
 
-def test_distances_to_a_sphere_are_known():
+def test_distances_to_a_sphere_are_correct():
     sphere = sphere_mesh(3)
     directions = np.random.default_rng(3).normal(size=(50, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)

@@ -101,7 +101,7 @@ def test_left_handed_axes_and_big_endian_numbers_are_read(tmp_path):
     assert np.linalg.det(matrix[:3, :3]) < 0
 
 
-def test_comments_and_key_value_texts_are_ignored(tmp_path):
+def test_comments_and_key_value_pairs_are_ignored(tmp_path):
     fields, voxels = good_file()
     fields |= {"content": "Erika Mustermann", "# by": "scanner 5", "PatientName": "=Mustermann"}
     path = write(tmp_path / "a.nrrd", fields, voxels, "\r\n")

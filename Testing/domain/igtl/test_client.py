@@ -130,7 +130,7 @@ def test_received_messages_remain_available_after_the_connection_is_lost(peer):
 
 
 @pytest.mark.parametrize("body", ["[]", "no JSON", '{"x": NaN}'])
-def test_answer_that_is_no_json_object_is_an_error_and_the_link_survives(peer, body):
+def test_answer_that_is_not_a_json_object_is_an_error_and_the_link_survives(peer, body):
     bodies = [body, "{}"]
     server = peer(lambda server, message: server.send(reply_to(message, bodies.pop(0))))
     with Client(port=server.port) as client:
@@ -139,7 +139,7 @@ def test_answer_that_is_no_json_object_is_an_error_and_the_link_survives(peer, b
         assert client.send_command("Capture").ok
 
 
-def test_answer_without_a_status_is_no_success(peer):
+def test_answer_without_a_status_is_not_a_success(peer):
     # With header version 2 none can be sent; with version 1 nothing else can.
     def answer(server, message):
         server.send(replace(reply_to(message, metadata={}), version=1))
@@ -149,7 +149,7 @@ def test_answer_without_a_status_is_no_success(peer):
         assert not client.send_command("Capture").ok
 
 
-def test_server_that_sends_no_openigtlink_is_disconnected(peer):
+def test_server_that_does_not_speak_openigtlink_is_disconnected(peer):
     server = peer(greeting=b"x" * 200_000)
     with Client(port=server.port) as client, pytest.raises(LinkError):
         client.wait_for("Tip")

@@ -23,7 +23,7 @@ def metrics_of(*entries, trajectory=0):
     return recording.metrics(trajectory)
 
 
-def test_way_time_and_greatest_speed_are_those_of_the_samples():
+def test_path_time_and_top_speed_are_computed_from_the_samples():
     found = metrics_of(phase("drilling"), *samples([0.0, 0.1, 0.15, 0.15, 0.25]))
     assert found["drill_path_mm"] == pytest.approx(0.25)
     assert found["drill_moving_s"] == pytest.approx(0.06)
@@ -42,11 +42,11 @@ def test_way_time_and_greatest_speed_are_those_of_the_samples():
         ([0.0, 1.0, 0.0, 1.0, 0.0], 3),
     ],
 )
-def test_a_way_back_counts_as_reversed_beyond_a_tremor(depths_mm, reversals):
+def test_backward_motion_counts_as_a_reversal_only_beyond_tremor(depths_mm, reversals):
     assert metrics_of(phase("inserting"), *samples(depths_mm))["instrument_reversals"] == reversals
 
 
-def test_tools_and_trajectories_are_kept_apart_and_the_exchange_is_no_way():
+def test_tools_and_trajectories_are_kept_apart_and_a_tool_change_adds_no_path():
     entries = (
         phase("drilling"),
         *samples([0.0, 0.1]),
@@ -61,7 +61,7 @@ def test_tools_and_trajectories_are_kept_apart_and_the_exchange_is_no_way():
 
 
 @pytest.mark.parametrize("between", [phase("drilling"), {"kind": "continued"}])
-def test_a_pause_or_another_hole_is_no_way_and_no_reversal(between):
+def test_a_pause_or_a_new_hole_adds_no_path_and_no_reversal(between):
     found = metrics_of(phase("drilling"), *samples([0.0, 1.0]), between, *samples([0.0, 0.5], 9.0))
     assert found["drill_path_mm"] == pytest.approx(1.5)
     assert found["drill_reversals"] == 0

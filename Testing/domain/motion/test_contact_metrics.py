@@ -101,7 +101,7 @@ def fifteen(depths_mm, further=()):
         pytest.param([0.0] * 15, 0.0, id="gentle"),
     ],
 )
-def test_pressing_depth_is_the_root_of_the_squares_over_fifteen(depths_mm, expected_mm):
+def test_pressing_depth_is_the_root_mean_square_over_all_fifteen_fiducials(depths_mm, expected_mm):
     assert pressing_depth(fifteen(depths_mm)) == pytest.approx(expected_mm)
 
 
@@ -110,7 +110,7 @@ def test_light_contacts_do_not_dilute_the_pressing_depth():
     assert pressing_depth(fifteen([2.0] * 15, light)) == pytest.approx(2.0)
 
 
-def test_the_pressing_depth_is_divided_by_the_known_fiducials():
+def test_the_pressing_depth_is_averaged_over_the_known_fiducials():
     known = {str(i + 1): np.zeros(3) for i in range(15)}
     pressed = straight(BOTH_ENDS, [Interval(0, 1, greatest_depth_mm=2.0)], fiducials_mm=known)
     assert pressing_depth(pressed) == pytest.approx(np.sqrt(4 / 15))

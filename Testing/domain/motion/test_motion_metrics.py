@@ -30,12 +30,12 @@ TAPS = """
 from x = 540.2 to 227.8 and back."""
 
 
-def test_sparc_of_its_authors_own_example():
+def test_sparc_matches_its_authors_own_example():
     """Balasubramanian et al. 2015, their program's example: fc 10 Hz, threshold 0.05, padding 4."""
     assert sparc(BELL, RATE_HZ) == pytest.approx(-1.41403, abs=5e-6)
 
 
-def test_log_dimensionless_jerk_of_its_authors_own_example():
+def test_log_dimensionless_jerk_matches_its_authors_own_example():
     """Balasubramanian et al. 2015, their program's examples, with and without the logarithm."""
     assert log_dimensionless_jerk(BELL, RATE_HZ) == pytest.approx(-5.81636, abs=5e-6)
     assert np.exp(-log_dimensionless_jerk(BELL, RATE_HZ)) == pytest.approx(335.74684, abs=5e-6)
@@ -127,7 +127,7 @@ def test_throughput_follows_iso_9241_411_along_the_task_axis_about_the_targets()
     assert result.bits_per_s == pytest.approx(np.mean(difficulties / [2.0, 1.0, 2.0]))
 
 
-def test_throughput_of_mackenzies_own_example():
+def test_throughput_matches_mackenzies_own_example():
     """MacKenzie, class Throughput: We 106.06, Ae 327.06, IDe 2.030 bits, MT 252.3 ms, 8.044 bits/s.
 
     He takes the deviation from the mean end point, with n − 1, and divides the mean difficulty by

@@ -56,7 +56,7 @@ def test_path_speed_and_rest_of_minimum_jerk_reaches(trajectory):
     assert motion["sparc"] == pytest.approx(-1.5, abs=0.2)
 
 
-def test_waiting_for_the_result_after_the_last_touch_is_no_idle_time(trajectory):
+def test_waiting_for_the_result_after_the_last_touch_is_not_idle_time(trajectory):
     waiting = np.arange(1, 60 * 50) / 50.0
     waited = replace(
         trajectory,
@@ -214,6 +214,6 @@ def test_touches_that_could_not_be_written_do_not_count():
     ],
     ids=["missing", "words", "two coordinates", "huge"],
 )
-def test_a_malformed_entry_raises_one_sentence(malformed):
+def test_a_malformed_entry_raises_a_one_sentence_error(malformed):
     with pytest.raises(InputError, match="A journal entry is malformed"):
         Recording.of([malformed])

@@ -66,11 +66,11 @@ def test_each_line_is_named_with_its_error():
     ],
     ids=["target", "above", "below", "long", "angle", "hit", "near"],
 )
-def test_a_line_that_cannot_be_used_has_one_sentence(line, sentence):
+def test_an_unusable_line_is_reported_in_one_sentence(line, sentence):
     assert wrong(line) == [f"Two leads: Left {sentence}"]
 
 
-def test_a_line_that_leaves_the_head_says_how_far_before_its_target():
+def test_a_line_that_leaves_the_head_is_reported_with_the_distance_before_its_target():
     left, right = (ball_head(40.0).vertices + np.array([x, 0.0, 0.0]) for x in (-50.0, 50.0))
     triangles = ball_head(40.0).triangles
     two = HeadMesh(
@@ -82,7 +82,7 @@ def test_a_line_that_leaves_the_head_says_how_far_before_its_target():
     ]
 
 
-def test_a_line_that_goes_past_the_skull_has_nothing_to_drill():
+def test_a_line_that_misses_the_skull_has_nothing_to_drill():
     above = HeadMesh(shell().vertices * [1.0, 1.0, 0.1] - [0.0, 0.0, 60.0], shell().triangles)
     meshes = ProcedureMeshes(above, {})
     assert wrong(trajectory(), meshes=meshes) == [
@@ -90,13 +90,13 @@ def test_a_line_that_goes_past_the_skull_has_nothing_to_drill():
     ]
 
 
-def test_a_skull_without_an_inner_table_is_named_as_that():
+def test_a_skull_without_an_inner_table_is_reported_as_such():
     meshes = ProcedureMeshes(ball_head(83.0), {})
     (sentence,) = wrong(trajectory(), meshes=meshes)
     assert "Left meets a skull without an inner table; make the skull again" in sentence
 
 
-def test_instruments_that_come_too_near_each_other_are_both_named():
+def test_instruments_that_come_too_close_to_each_other_are_both_named():
     one = trajectory("One", (0, 0, 90), (0, 0, 20))
     other = trajectory("Other", (40, 0, 80.6), (2.5, 0, 20))
     assert wrong(one, other) == [
@@ -115,19 +115,19 @@ def test_a_checkpoint_off_the_skin_is_named():
     ]
 
 
-def test_the_distance_to_a_structure_is_that_of_the_surfaces():
+def test_the_distance_to_a_structure_is_measured_between_the_surfaces():
     line = trajectory(entry=(10, 0, 89.4), target=(10, 0, -20), diameter=3.0)
     distances = distances_to_no_go(line, made_up_meshes())
     assert distances == pytest.approx({"Vessel": 20.0 - VESSEL_MM - 1.5}, abs=0.05)
 
 
 @pytest.mark.parametrize("height", [97.0, 90.0, 80.0])
-def test_planned_bone_is_measured_from_the_entry_wherever_that_is(height):
+def test_planned_bone_is_measured_from_the_entry_wherever_it_lies(height):
     bone = planned_bone(trajectory(entry=(0, 0, height)), shell())
     assert bone == pytest.approx((height - 83.0, height - 76.0))
 
 
-def test_the_measures_of_a_line_are_length_angle_and_the_nearest_of_everything():
+def test_a_line_is_measured_by_length_angle_and_its_nearest_structure_and_line():
     one = trajectory("One", (0, 0, 90), (0, 0, 20), diameter=2.0)
     other = trajectory("Other", (40, 0, 80.6), (2.5, 0, 20), diameter=3.0)
     outside = trajectory("Outside", (0, 0, 200), (0, 0, 150))

@@ -52,7 +52,7 @@ def test_steady_hands_and_an_exact_registration_make_no_error():
     assert errors.tip == pytest.approx(DOWN.target, abs=1e-9)
 
 
-def test_a_registration_that_is_off_to_the_side_misses_by_as_much_and_the_hand_by_nothing():
+def test_a_sideways_registration_error_is_attributed_to_the_registration_and_not_to_the_hand():
     errors = only(analyzed(shifted(x=2.0)))
     assert errors.target.by_registration == pytest.approx([2.0, 0.0, 0.0], abs=1e-9)
     assert errors.target.by_hand == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
@@ -60,14 +60,14 @@ def test_a_registration_that_is_off_to_the_side_misses_by_as_much_and_the_hand_b
     assert errors.depth == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
 
 
-def test_a_registration_that_is_off_along_the_line_changes_the_depth_and_not_the_entry():
+def test_a_registration_error_along_the_line_changes_the_depth_and_not_the_entry():
     errors = only(analyzed(shifted(z=-1.5)))
     assert errors.depth == pytest.approx((1.5, 1.5, 0.0), abs=1e-9)
     assert errors.entry.length_mm == pytest.approx(0.0, abs=1e-9)
     assert errors.entry.hand_mm == pytest.approx(0.0, abs=1e-9)
 
 
-def test_an_instrument_that_is_not_far_enough_in_has_a_depth_error_below_0():
+def test_an_instrument_not_inserted_far_enough_has_a_negative_depth_error():
     deep = only(analyzed()).instrument.instrument_depth_mm
     errors = only(analyzed(instrument_depth_mm=deep - 3.0))
     assert errors.depth == pytest.approx((-3.0, 0.0, -3.0), abs=1e-9)
@@ -75,7 +75,7 @@ def test_an_instrument_that_is_not_far_enough_in_has_a_depth_error_below_0():
     assert errors.radial.length_mm == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_guide_that_is_turned_has_an_angular_deviation_of_the_hand():
+def test_a_rotated_guide_has_an_angular_deviation_caused_by_the_hand():
     exact = only(analyzed()).instrument
     turn = np.radians(2.0)
     turned = TRUTH[:3, :3] @ np.array([np.sin(turn), 0.0, -np.cos(turn)])
@@ -90,7 +90,7 @@ def test_a_guide_that_is_turned_has_an_angular_deviation_of_the_hand():
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_what_registration_and_hand_cause_adds_up_exactly(seed):
+def test_the_shares_of_registration_and_hand_add_up_exactly(seed):
     random = np.random.default_rng(seed)
     off = transforms.rigid(rotation(random, 4.0), random.normal(0.0, 2.0, 3))
     tip = np.array(only(analyzed(TRUTH @ off)).instrument.guide_tip_mm)
@@ -124,7 +124,7 @@ def test_plunging_is_measured_from_the_inner_table_of_the_true_skull():
     assert shallower.plunge_mm == pytest.approx(4.5)
 
 
-def test_an_axis_beside_the_skull_has_no_plunge_and_is_named():
+def test_an_axis_that_misses_the_skull_has_no_plunge_and_is_named():
     beside = tuple(transforms.apply(TRUTH, np.array([0.0, 95.0, 120.0])))
     analysis = analyzed(guide_tip_mm=beside)
     assert only(analysis).plunge_mm is None
@@ -135,7 +135,7 @@ def test_an_axis_beside_the_skull_has_no_plunge_and_is_named():
     ("x", "kept", "hits"),
     [(0.0, 24.0, ()), (-22.0, 2.0, ()), (-24.5, -0.5, ("Vessel",)), (-30.0, -1.0, ("Vessel",))],
 )
-def test_the_distance_kept_to_a_structure_is_that_of_the_true_instrument(x, kept, hits):
+def test_the_distance_kept_from_a_structure_is_that_of_the_true_instrument(x, kept, hits):
     """The plan passes the vessel (at 30 mm) in the midline; the registration moves it there."""
     line = trajectory(target=(0, 0, -20))
     errors = only(analyzed(shifted(x=-x), lines=(line,)))
@@ -152,14 +152,14 @@ def test_a_drill_that_goes_deeper_than_the_instrument_counts_for_the_distance():
     assert plunged.hits == ("Vessel",)
 
 
-def test_a_procedure_without_structures_keeps_its_distance():
+def test_a_procedure_without_structures_has_no_intrusion():
     procedure = made_up_procedure(DOWN, no_go=())
     meshes = replace(MESHES, no_go={})
     analysis = analyze_procedure(recorded(procedure, TRUTH), procedure, meshes, TRUTH)
     assert (only(analysis).intrusion_mm, analysis.hits) == (0.0, ())
 
 
-def test_a_procedure_is_summed_up_by_root_mean_squares():
+def test_a_procedure_is_summarized_by_root_mean_squares():
     right = trajectory("Right", (-60.0, 0.0, 67.08), (-15.0, 10.0, 0.0))
     analysis = analyzed(shifted(x=2.0), lines=(DOWN, right))
     lengths = [each.target.length_mm for each in analysis.trajectories]

@@ -34,7 +34,7 @@ def slabs(*heights):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_line_crosses_a_ball_twice_where_it_must(seed):
+def test_a_line_crosses_a_sphere_at_the_two_expected_points(seed):
     random = np.random.default_rng(seed)
     ball, start = ball_head(90.0), 150.0 * unit(random.normal(size=3))
     direction = unit(random.normal(0.0, 25.0, 3) - start)
@@ -57,7 +57,7 @@ def test_a_line_through_the_edge_of_two_triangles_crosses_once(x, y):
     assert [crossing.distance_mm for crossing in crossings] == pytest.approx([20.0, 30.0])
 
 
-def test_a_line_ends_where_it_ends():
+def test_a_line_crosses_nothing_beyond_its_end():
     assert len(mesh_crossings(slabs((0.0, 10.0)), np.array([1.0, 2.0, 30.0]), -Z, 25.0)) == 1
 
 
@@ -78,11 +78,11 @@ def test_solid_bone_has_no_inner_table_within_reach():
     assert bone.inner_mm is None
 
 
-def test_a_line_beside_the_skull_meets_no_bone():
+def test_a_line_that_misses_the_skull_meets_no_bone():
     assert bone_ahead(shell(), np.array([0.0, 100.0, 120.0]), -Z, 300.0) is None
 
 
-def test_inside_is_what_the_surface_encloses():
+def test_only_points_enclosed_by_the_surface_are_inside():
     for distance, expected in ((60.0, False), (80.0, True), (86.0, False)):
         for seed in range(10):
             out = unit(np.random.default_rng(seed).normal(size=3))
@@ -122,13 +122,13 @@ def test_the_distance_of_segments_is_that_of_their_nearest_points(seed):
     assert found == pytest.approx(sampled, abs=0.05)
 
 
-def test_crossing_segments_have_no_distance():
+def test_crossing_segments_are_at_zero_distance():
     x = np.array([[-5.0, 0.0, 0.0]])
     assert segment_distances_mm(5.0 * Z, -5.0 * Z, x, -x)[0] == 0.0
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_the_distance_of_an_axis_from_a_body_is_the_least_of_its_points(seed):
+def test_the_distance_of_an_axis_from_a_body_is_that_of_its_nearest_point(seed):
     random = np.random.default_rng(seed)
     ball = ball_head(30.0)
     start, end = random.normal(0.0, 45.0, (2, 3))
@@ -149,6 +149,6 @@ def test_the_distance_of_an_axis_from_a_body_is_the_least_of_its_points(seed):
     ],
     ids=["outside", "into", "within", "a point"],
 )
-def test_an_axis_that_meets_a_body_or_lies_in_it_has_no_distance(start, end, expected):
+def test_an_axis_that_meets_a_body_or_lies_in_it_is_at_zero_distance(start, end, expected):
     start, end = np.array(start, dtype=float), np.array(end, dtype=float)
     assert axis_distance_mm(ball_head(90.0), start, end) == pytest.approx(expected, abs=1e-9)

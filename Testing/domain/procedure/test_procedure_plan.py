@@ -147,7 +147,7 @@ LINE = (0, "trajectories", 0)
         (set_in(0, "checkpoints", 0, "positionRas", None), "positionRas must be a list of 3"),
     ],
 )
-def test_an_invalid_procedure_is_refused_with_one_sentence(folder, change, sentence):
+def test_an_invalid_procedure_is_refused_in_one_sentence(folder, change, sentence):
     changed(folder, change)
     with pytest.raises(InputError, match=sentence) as caught:
         load_scenario(folder)
@@ -213,7 +213,7 @@ def test_the_hash_of_a_procedure_is_the_same_after_moving_its_folder(folder, tmp
     assert hash_of(shutil.move(folder, tmp_path / "elsewhere")) == before
 
 
-def test_coordinates_are_those_of_the_file_to_a_ten_thousandth(tmp_path):
+def test_coordinates_are_read_from_the_file_to_a_ten_thousandth(tmp_path):
     third = trajectory(entry=(1 / 3, 0.0, 89.99))
     folder = write_planned(tmp_path / "third", made_up_procedure(third))
     assert load_scenario(folder).procedures[0].trajectories[0].entry[0] == 0.3333

@@ -49,7 +49,7 @@ def test_the_record_of_a_trial_holds_that_of_its_procedure(record):
     assert TrialRecord.from_json(written(trial)) == trial
 
 
-def test_the_record_of_a_trial_of_touches_alone_is_as_before():
+def test_the_record_of_a_trial_with_touches_only_is_unchanged():
     trial = TrialRecord.from_json(make_record())
     assert trial.procedure is None
     assert "procedure" not in trial.to_json()
@@ -92,7 +92,7 @@ PLACED = ("instruments", 0)
         (set_in("attempts", 1, "checkpoints", [7]), "must be a JSON object"),
     ],
 )
-def test_an_invalid_record_is_refused_with_one_sentence(record, change, sentence):
+def test_an_invalid_record_is_refused_in_one_sentence(record, change, sentence):
     value = written(record)
     change(value)
     with pytest.raises(InputError, match=sentence) as caught:
@@ -100,7 +100,7 @@ def test_an_invalid_record_is_refused_with_one_sentence(record, change, sentence
     assert "\n" not in str(caught.value)
 
 
-def test_a_record_without_a_key_names_it(record):
+def test_a_key_missing_from_a_record_is_named(record):
     value = written(record)
     del value["instruments"][0]["drillDepthMm"]
     with pytest.raises(InputError, match='needs the key "drillDepthMm"'):

@@ -139,7 +139,7 @@ def test_scores_of_version_1_do_not_change():
 
 @pytest.mark.parametrize("field", [field.name for field in fields(ProcedureMeasures)])
 @pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
-def test_a_measure_that_is_no_number_of_a_procedure_is_refused(field, value):
+def test_a_measure_that_is_not_a_valid_number_is_refused(field, value):
     with pytest.raises(InputError, match=rf"The procedure's {field} must be"):
         score_procedure(replace(PERFECT, **{field: value}), 100.0)
 
@@ -189,7 +189,7 @@ def test_the_worst_of_several_instruments_decides_whether_it_is_acceptable():
     assert not score_procedure(measures, 600.0).acceptable
 
 
-def test_a_skull_that_is_missed_is_never_acceptable():
+def test_missing_the_skull_is_never_acceptable():
     found = score_procedure(replace(PERFECT, missed_bone=1), 100.0)
     assert not found.acceptable
 

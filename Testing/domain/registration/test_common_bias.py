@@ -80,7 +80,7 @@ def test_a_perfect_fit_still_expects_the_common_offset():
 @pytest.mark.parametrize("sets", [40, pytest.param(300, marks=pytest.mark.soak)])
 @pytest.mark.parametrize("offset_sd", [0.0, 0.1, COMMON_BIAS_SD_MM], ids=["none", "small", "all"])
 @pytest.mark.parametrize(("kind", "count"), [("rigid", 15), ("rigid", 4), ("affine", 8)])
-def test_95_of_100_true_errors_lie_inside_for_every_offset_up_to_the_assumed_one(
+def test_95_of_100_true_errors_lie_within_the_limits_for_every_offset_up_to_the_assumed_one(
     kind, count, offset_sd, sets
 ):
     rng = np.random.default_rng(4)
@@ -97,7 +97,7 @@ def test_95_of_100_true_errors_lie_inside_for_every_offset_up_to_the_assumed_one
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_an_offset_far_beyond_the_assumed_one_is_not_seen(kind):
+def test_an_offset_far_beyond_the_assumed_one_is_not_noticed(kind):
     seen = [
         target_error(fit, TARGET).interval_mm[1] >= true_tre(fit)
         for fit in (touched(seed, [0.0, 4.0, 0.0], kind=kind) for seed in range(20))

@@ -52,7 +52,7 @@ def bisected(probability_up_to, probability, guess, tolerance):
 
 @pytest.mark.parametrize("probability", [0.001, 0.025, 0.5, 0.975, 0.999])
 @pytest.mark.parametrize("dof", [1, 3, 39])
-def test_a_quantile_is_to_the_bit_that_of_plain_bisection_in_fewer_steps(probability, dof):
+def test_a_quantile_equals_that_of_plain_bisection_bit_for_bit_in_fewer_steps(probability, dof):
     taken = []
 
     def probability_up_to(value):

@@ -71,7 +71,7 @@ def test_meters_instead_of_millimeters_are_reported_for_the_right_list(touched_h
     assert "fixed points seem to be in meters" in register(moving, fixed / 1e3).warnings[0].message
 
 
-def test_two_exchanged_labels_are_reported(touched_head, seeds):
+def test_two_swapped_labels_are_reported(touched_head, seeds):
     for seed in seeds:
         moving, fixed, rng = touched_head(seed)
         a, b = rng.choice(15, 2, replace=False)

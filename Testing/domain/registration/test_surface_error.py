@@ -71,7 +71,7 @@ def coverage(head, trials, common_bias_sd_mm, first_seed=0):
     return inside / trials, *rms
 
 
-def test_intervals_contain_the_true_error_and_its_size_is_foretold(head):
+def test_intervals_contain_the_true_error_and_its_size_is_predicted(head):
     share, true, expected = coverage(head, 12, 0.0)
     assert share >= 0.8
     assert expected == pytest.approx(true, rel=0.35)
@@ -86,7 +86,7 @@ def test_of_2000_matches_93_to_97_percent_of_the_intervals_contain_the_error(hea
 
 @pytest.mark.soak
 @pytest.mark.parametrize("make_head", [deformed, small])
-def test_with_the_assumed_offset_they_do_so_on_other_heads_with_other_seeds(make_head):
+def test_with_the_assumed_offset_intervals_hold_on_other_heads_with_other_seeds(make_head):
     share, true, expected = coverage(make_head(), 1000, COMMON_BIAS_SD_MM, first_seed=5000)
     assert 0.93 <= share <= 0.97
     assert expected == pytest.approx(true, rel=0.05)
@@ -147,7 +147,7 @@ def test_the_next_centimeter_gains_most_at_the_next_place(head):
         next_best_place(knowledge, head, head.middle + ASIDE, np.zeros_like(allowed))
 
 
-def test_before_the_first_point_the_pose_is_as_open_as_landmarks_leave_it(head):
+def test_before_the_first_point_the_pose_is_as_uncertain_as_the_landmarks_leave_it(head):
     knowledge = knowledge_so_far(np.zeros((0, 3)), np.zeros((0, 3)), head)
     (tre,) = expected_mm(knowledge, head.middle[None])
     assert tre == pytest.approx(10.0 * np.sqrt(3.0))
@@ -168,7 +168,7 @@ def around(place, count, away_mm=2.0):
     return place + np.linspace(-away_mm, away_mm, count)[:, None] * np.ones(3) / np.sqrt(3.0)
 
 
-def test_places_are_where_a_trainee_sees_and_reaches_the_skin_and_off_the_ears(head):
+def test_suggested_places_are_visible_reachable_skin_away_from_the_ears(head):
     rows = guided_vertices(head, EYE)
     places, normals = head.vertices[rows], head.vertex_normals[rows]
     assert len(rows) > 300
@@ -180,7 +180,7 @@ def test_places_are_where_a_trainee_sees_and_reaches_the_skin_and_off_the_ears(h
     assert not ears.any()
 
 
-def test_a_place_stays_until_a_centimeter_is_drawn_there(guide, nothing):
+def test_a_suggested_place_stays_until_a_centimeter_is_traced_there(guide, nothing):
     first = guide.next_place(nothing, is_drawing=False)
     begun = around(first.position, DAB - 1)
     assert guide.next_place(begun, is_drawing=True) is first
@@ -190,7 +190,7 @@ def test_a_place_stays_until_a_centimeter_is_drawn_there(guide, nothing):
     assert np.linalg.norm(then.position - first.position) > COVERED_MM
 
 
-def test_a_stroke_elsewhere_moves_the_place_only_when_it_ends(guide, nothing):
+def test_a_stroke_elsewhere_moves_the_suggested_place_only_when_it_ends(guide, nothing):
     first = guide.next_place(nothing, is_drawing=False)
     elsewhere = around(np.array([0.0, 46.0, 80.0]), 40, 20.0)
     assert guide.next_place(elsewhere, is_drawing=True) is first
@@ -199,19 +199,19 @@ def test_a_stroke_elsewhere_moves_the_place_only_when_it_ends(guide, nothing):
     assert np.linalg.norm(then.position - elsewhere, axis=1).min() > COVERED_MM
 
 
-def test_after_an_undone_stroke_the_place_is_as_before_it(guide, nothing):
+def test_undoing_a_stroke_restores_the_suggested_place(guide, nothing):
     first = guide.next_place(nothing, is_drawing=False)
     guide.next_place(around(first.position, 3 * DAB), is_drawing=False)
     again = guide.next_place(nothing, is_drawing=False)
     assert np.array_equal(again.position, first.position)
 
 
-def test_a_full_trace_has_no_next_place(guide, head):
+def test_a_complete_trace_has_no_next_place(guide, head):
     full = head.vertices[guided_vertices(head, EYE)][np.arange(MAX_TRACE_POINTS) % 300]
     assert guide.next_place(full, is_drawing=False) is None
 
 
-def test_the_distance_to_the_trace_is_the_same_point_by_point(head):
+def test_the_distance_to_the_trace_is_the_same_when_updated_point_by_point(head):
     trace, vertices = head.vertices[[100, 5000, 9000]], head.vertices[::7]
     away = np.linalg.norm(vertices[:, None] - trace, axis=2).min(axis=1)
     known = nearest_traced_mm(vertices, trace[:1])
@@ -220,7 +220,7 @@ def test_the_distance_to_the_trace_is_the_same_point_by_point(head):
 
 
 @pytest.mark.parametrize("hands", [1, pytest.param(4, marks=pytest.mark.soak)])
-def test_guidance_more_than_halves_the_expected_error_of_drawing_at_random(head, guide, hands):
+def test_guidance_more_than_halves_the_expected_error_of_random_tracing(head, guide, hands):
     front, count = (head.vertices[:, 1] > 0.0) & (head.vertices[:, 2] > -60.0), 100
     walks = [random_walk(head, front, np.random.default_rng(seed), count) for seed in range(4)]
     at_random = [expected_after(head, head.vertices[walk]) for walk in walks]

@@ -82,13 +82,13 @@ def test_points_far_off_do_not_count_and_are_named(head, face):
     assert set(map(str, range(1, 201, 10))) == set(warning.points)
 
 
-def test_a_trace_half_in_the_air_is_named(head, face):
+def test_a_trace_with_half_of_its_points_in_the_air_is_reported(head, face):
     trace, start, _ = face(7)
     trace[:70] += np.random.default_rng(7).uniform(8.0, 20.0, (70, 3))
     assert "few-inliers" in codes(match_surface(trace, head, start))
 
 
-def test_a_trace_on_the_crown_alone_slides_however_small_its_residual(head, face):
+def test_a_trace_on_the_crown_alone_is_reported_as_sliding_however_small_its_residual(head, face):
     trace, start, _ = face(8, 0.1, "crown")
     match = match_surface(trace, head, start)
     (warning,) = [one for one in match.warnings if one.code == "slides"]
@@ -100,7 +100,7 @@ def test_a_trace_on_the_crown_alone_slides_however_small_its_residual(head, face
 
 
 @pytest.mark.parametrize("count", [30, 500])
-def test_a_trace_slides_or_not_however_many_points_it_has(head, count):
+def test_whether_a_trace_slides_does_not_depend_on_its_number_of_points(head, count):
     random = np.random.default_rng(count)
     pose = head_pose(random)
     for where, slides in (("crown", True), ("face", False)):
@@ -120,14 +120,14 @@ def test_a_few_points_far_from_a_dense_trace_do_not_hide_that_it_slides(head):
     assert "slides" in codes(match)
 
 
-def test_another_head_is_named(head, face):
+def test_a_trace_of_another_head_is_reported(head, face):
     trace, start, _ = face(9)
     shape = (head.vertices - head.middle) * [0.85, 1.12, 0.95] + head.middle
     other = HeadMesh(shape, head.triangles)
     assert "poor-fit" in codes(match_surface(trace, other, start, starts=1))
 
 
-def test_of_a_long_trace_every_point_has_its_residual(head, face):
+def test_every_point_of_a_long_trace_has_a_residual(head, face):
     trace, start, _ = face(10)
     match = match_surface(np.repeat(trace, 4, axis=0), head, start)
     assert match.residuals_mm.shape == (800,)
@@ -153,7 +153,7 @@ def test_vtk_finds_the_same_minimum_and_none_better(head, face):
 
 
 @pytest.mark.parametrize("seed", [1, 3, 5, 28])
-def test_of_the_minima_that_lie_close_together_the_lowest_is_taken(head, seed):
+def test_the_lowest_of_several_close_minima_is_taken(head, seed):
     """Each of these had a lower one a few hundredths of a millimeter away, when it was followed."""
     random = np.random.default_rng([seed, 7])
     pose = head_pose(random)
@@ -167,7 +167,7 @@ def test_of_the_minima_that_lie_close_together_the_lowest_is_taken(head, seed):
     assert np.sum(match.residuals_mm**2) <= lowest + 1e-3
 
 
-def test_a_point_at_the_gate_does_not_keep_a_match_from_settling(head, face):
+def test_a_point_at_the_outlier_gate_does_not_keep_a_match_from_converging(head, face):
     trace, start, _ = face(42)
     match = match_surface(trace, head, start, seed=42)
     assert match.converged
@@ -187,13 +187,13 @@ def test_a_point_at_the_gate_does_not_keep_a_match_from_settling(head, face):
     ],
     ids=["few", "many", "one place", "not finite", "flat", "words", "far off"],
 )
-def test_an_unfit_trace_gets_a_sentence(head, face, spoil, sentence):
+def test_an_unusable_trace_is_refused_with_a_message(head, face, spoil, sentence):
     trace, start, pose = face(13)
     with pytest.raises(InputError, match=sentence):
         match_surface(spoil(trace, pose), head, start)
 
 
-def test_an_open_surface_and_one_in_meters_get_a_sentence(head, face):
+def test_an_open_surface_and_one_in_meters_are_refused_with_a_message(head, face):
     trace, start, _ = face(14)
     with pytest.raises(InputError, match="holes"):
         match_surface(trace, HeadMesh(head.vertices, head.triangles[1:]), start)
@@ -201,7 +201,7 @@ def test_an_open_surface_and_one_in_meters_get_a_sentence(head, face):
         match_surface(trace, HeadMesh(head.vertices / 1000.0, head.triangles), start)
 
 
-def test_a_start_that_is_not_rigid_gets_a_sentence(head, face):
+def test_a_start_pose_that_is_not_rigid_is_refused_with_a_message(head, face):
     trace, start, _ = face(15)
     with pytest.raises(InputError, match="rigid 4×4"):
         match_surface(trace, head, 2.0 * start)

@@ -24,7 +24,7 @@ def along_skin(errors, normals):
 
 
 @given(seeds)
-def test_a_bias_is_recovered_whatever_part_of_it_leads_off_the_skin(seed):
+def test_a_bias_is_recovered_whatever_part_of_it_points_away_from_the_skin(seed):
     rng = np.random.default_rng(seed)
     normals, bias = skin(rng), rng.normal(0.0, 2.0, 3)
     depth = normals * rng.normal(0.0, 3.0, (15, 1))
@@ -35,7 +35,7 @@ def test_a_bias_is_recovered_whatever_part_of_it_leads_off_the_skin(seed):
 
 
 @given(seeds)
-def test_it_is_the_least_squares_solution_and_turns_with_the_head(seed):
+def test_the_bias_is_the_least_squares_solution_and_rotates_with_the_head(seed):
     rng = np.random.default_rng(seed)
     normals, errors = skin(rng), rng.normal(0.0, 1.0, (15, 3))
     found = common_bias(errors, normals)
@@ -48,7 +48,7 @@ def test_it_is_the_least_squares_solution_and_turns_with_the_head(seed):
     assert turned.p == pytest.approx(found.p, abs=1e-9)
 
 
-def test_the_p_value_of_unbiased_errors_is_uniform_and_a_bias_of_a_millimeter_is_shown():
+def test_p_values_of_unbiased_errors_are_uniform_and_a_bias_of_a_millimeter_is_detected():
     rng = np.random.default_rng(3)
     normals = skin(rng)
     noise = along_skin(rng.normal(0.0, 0.7, (2000, 15, 3)), normals)
@@ -69,7 +69,7 @@ def test_its_variance_is_that_of_least_squares():
     assert np.cov(found.T) == pytest.approx(expected, abs=0.012)
 
 
-def test_where_the_skin_is_flat_a_bias_off_it_is_not_estimated():
+def test_on_flat_skin_the_bias_perpendicular_to_it_is_not_estimated():
     rng = np.random.default_rng(5)
     normals = np.array([0.0, 0.0, 1.0]) + rng.normal(0.0, 0.05, (15, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -80,14 +80,14 @@ def test_where_the_skin_is_flat_a_bias_off_it_is_not_estimated():
 
 
 @pytest.mark.parametrize(("bias", "p"), [((0.0, 0.0, 0.0), 1.0), ((3.0, 0.0, 4.0), 0.0)])
-def test_errors_without_scatter_show_any_bias_and_no_errors_show_none(bias, p):
+def test_errors_without_scatter_show_any_bias_and_zero_errors_show_none(bias, p):
     normals = skin(np.random.default_rng(6))
     found = common_bias(along_skin(np.tile(bias, (15, 1)), normals), normals)
     assert found.p == pytest.approx(p, abs=1e-9)
     assert found.length_mm == pytest.approx(np.linalg.norm(bias), abs=1e-9)
 
 
-def test_true_errors_are_those_in_the_head():
+def test_true_errors_are_expressed_in_the_head_frame():
     rng = np.random.default_rng(7)
     fiducials, errors = head_points(rng), rng.normal(0.0, 1.0, (15, 3))
     pose = transforms.rigid(random_rotation(rng), rng.uniform(-500.0, 500.0, 3))
@@ -95,7 +95,7 @@ def test_true_errors_are_those_in_the_head():
     assert true_touch_errors(touches, pose, fiducials) == pytest.approx(errors, abs=1e-9)
 
 
-def test_a_pose_that_is_none_gets_a_sentence():
+def test_an_invalid_pose_is_refused_with_a_message():
     with pytest.raises(InputError, match="must be a rigid transform"):
         true_touch_errors(np.zeros((3, 3)), np.zeros((4, 4)), np.zeros((3, 3)))
 

@@ -270,7 +270,7 @@ def test_a_file_that_does_not_match_the_points_is_refused_with_a_message(files, 
     assert told in out.err
 
 
-def test_weights_are_refused_for_other_kinds_than_rigid(files, capsys):
+def test_weights_are_refused_for_nonrigid_fits(files, capsys):
     moving, fixed, *_ = files
     status, out = run(capsys, moving, fixed, "--fle", moving, "--type", "similarity")
     assert status != 0

@@ -126,7 +126,7 @@ def test_an_aborted_trial_is_a_statement_that_it_was_terminated(path):
     assert [statement["result"].get("success") for statement in told] == [None, False, False]
 
 
-def test_the_commands_count_them(path, tmp_path, capsys):
+def test_the_commands_count_aborted_trials(path, tmp_path, capsys):
     assert main(["report", str(path), "-o", str(tmp_path / "report")]) == 0
     assert "3 aborted ones" in capsys.readouterr().out
     assert main(["export", str(path), "-o", str(tmp_path / "export")]) == 0

@@ -53,7 +53,7 @@ def pair_of(data, first, second, outcome):
     return next(one for one in found if (one.first, one.second, one.outcome.name) == key)
 
 
-def test_a_study_by_one_method_has_no_such_section():
+def test_a_study_with_one_method_has_no_such_section():
     assert method_comparison(cohort(5)) == ""
     assert "Methods of registration" not in report_html(cohort(5), "today")
 
@@ -123,7 +123,7 @@ def test_where_nobody_played_two_methods_nothing_is_tested():
     assert "No trainee played two methods in one mode: nothing is tested." in words
 
 
-def test_without_true_errors_nothing_is_tested_but_what_is_known_is_told():
+def test_without_true_errors_nothing_is_tested_but_what_is_known_is_reported():
     data = played()
     unknown = tuple(
         replace(t, values={k: v for k, v in t.values.items() if k != "true_tre_mm"})
@@ -134,14 +134,14 @@ def test_without_true_errors_nothing_is_tested_but_what_is_known_is_told():
     assert "Residual, mm Fiducials Landmarks 12" in words
 
 
-def test_the_report_has_the_section_and_is_about_the_trials_by_fiducials_else():
+def test_the_report_has_the_section_and_otherwise_covers_the_fiducial_trials():
     words = words_of(report_html(played(), "today"))
     assert "leaves out 12 trials by landmarks and 12 trials by surface" in words
     assert "Differences between methods" in words
     assert "1 task" in words or "tasks" in words
 
 
-def test_the_decision_whose_error_rates_are_told_is_that_of_the_report():
+def test_the_published_error_rates_apply_to_the_decision_of_the_report():
     random = np.random.default_rng(1)
     for factors in ((1.0, 1.0, 1.0), (1.0, 2.2, 1.0)):
         errors, places = drawn_errors(factors, 10, 5, random)

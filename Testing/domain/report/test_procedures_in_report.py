@@ -16,7 +16,7 @@ def words():
     return " ".join(text.replace("\N{NO-BREAK SPACE}", " ").split())
 
 
-def test_the_split_is_told_over_all_kinds_and_for_each(words):
+def test_the_split_is_reported_over_all_kinds_and_for_each(words):
     assert "24 of 24 trials continued with a procedure: 48 lines in all, by 4 trainees." in words
     assert f"that of the hands {TOO_DEEP_MM:.2f} mm" in words
     # Shifts of 0.5, 1.0, 1.5 and 2.0 mm in turn: RMS 1.37 mm.
@@ -25,7 +25,7 @@ def test_the_split_is_told_over_all_kinds_and_for_each(words):
         assert kind in words
 
 
-def test_whether_registration_or_hands_caused_more_is_said_with_its_interval(words):
+def test_whether_registration_or_hands_caused_more_is_stated_with_its_interval(words):
     assert re.search(r"registration minus hands, as RMS of each trainee, was −?\d\.\d\d mm", words)
     assert re.search(r"\[95 %: −?\d\.\d\d, −?\d\.\d\d\]", words)
 
@@ -44,6 +44,6 @@ def test_published_figures_are_for_orientation_with_their_sources(words):
     assert "They are no pass marks" in words
 
 
-def test_a_study_of_touches_alone_has_no_such_section():
+def test_a_study_with_touches_only_has_no_such_section():
     assert procedures(cohort(2)) == ""
     assert "from the registration to the target" not in report_html(cohort(2), "today")

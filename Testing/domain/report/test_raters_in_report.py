@@ -69,12 +69,12 @@ def test_totals_have_both_coefficients_and_each_domain_a_kappa_with_intervals(da
         assert f"{domain.title} 24 R1, R2 {shown(kappa)}" in words
 
 
-def test_what_a_replay_cannot_show_is_said_to_be_left_out(words):
+def test_what_a_replay_cannot_show_is_listed_as_left_out(words):
     assert "Totals of 4 domains, 4 to 20. Left out: bimanual dexterity (the trainee drives" in words
     assert "use of assistants (there are none)" in words
 
 
-def test_the_meaning_is_told_in_words_with_n(words):
+def test_the_meaning_is_explained_in_words_with_n(words):
     assert re.search(r"Of 24 replays, the total of a single rater is (good|excellent)", words)
     assert "the mean of 2 raters is excellent as a measure" in words
     assert re.search(r"Trials with higher marks have higher computed scores \(r = 0\.9\d", words)
@@ -83,7 +83,7 @@ def test_the_meaning_is_told_in_words_with_n(words):
     )
 
 
-def test_marks_of_chance_show_no_connection():
+def test_random_marks_show_no_association():
     data = rated(trainees=3, noise=0.5)
     random = np.random.default_rng(8)
     values = [{**trial.values, "score": random.uniform(0, 100)} for trial in data.trials]
@@ -92,7 +92,7 @@ def test_marks_of_chance_show_no_connection():
     assert "A connection of marks and computed score is not shown" in words
 
 
-def test_one_rater_or_two_replays_are_no_agreement_and_said_so():
+def test_a_single_rater_or_two_replays_are_reported_as_too_few_for_agreement():
     words = words_of(raters(rated(names=("R1",))))
     assert "R1 has rated 24 replays: agreement needs two raters and 3 replays" in words
     data = rated()
@@ -103,7 +103,7 @@ def test_one_rater_or_two_replays_are_no_agreement_and_said_so():
     assert "cannot be seen from 2 scored replays" in words
 
 
-def test_raters_who_agree_everywhere_have_no_interval():
+def test_raters_who_agree_on_everything_have_no_interval():
     data = rated()
     same = [replace(rating, rater="R2") for rating in data.ratings if rating.rater == "R1"]
     ratings = (*(r for r in data.ratings if r.rater == "R1"), *same)
@@ -112,7 +112,7 @@ def test_raters_who_agree_everywhere_have_no_interval():
     assert "no interval" in words
 
 
-def test_equal_marks_throughout_are_a_sentence_and_break_nothing():
+def test_identical_marks_throughout_are_reported_in_a_sentence_and_break_nothing():
     data = rated()
     ratings = tuple(replace(r, marks=dict.fromkeys(r.marks, 3)) for r in data.ratings)
     words = words_of(raters(replace(data, ratings=ratings)))

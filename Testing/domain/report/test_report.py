@@ -313,7 +313,7 @@ def test_the_command_writes_the_page_and_the_numbers(tmp_path, capsys):
         ([str(STUDIES / "README.md")], "is not a study database"),
     ],
 )
-def test_an_unreadable_study_raises_one_sentence(words, sentence, tmp_path, capsys):
+def test_an_unreadable_study_raises_a_one_sentence_error(words, sentence, tmp_path, capsys):
     assert main(["report", *words, "-o", str(tmp_path)]) == 2
     printed = capsys.readouterr().err
     assert sentence in printed
@@ -333,7 +333,7 @@ def test_a_large_cohort_gets_tables_curves_and_a_methods_paragraph():
     assert len(page) < 2_000_000
 
 
-def test_one_mode_alone_is_described_and_not_tested():
+def test_a_single_mode_is_described_and_not_tested():
     one = StudyData("One", tuple(t for t in cohort(3).trials if t.mode == "hmd"))
     words = words_of(report_html(one))
     assert "nothing is tested" in words

@@ -106,7 +106,7 @@ def is_count(title):
     return title in ("n", "trials", "started (n)") or title.startswith("n, ")
 
 
-def test_every_table_has_a_column_of_n_or_its_heading_says_it(tables):
+def test_every_table_has_a_column_of_n_or_states_it_in_its_heading(tables):
     for heading, header, rows in tables:
         columns = [index for index, title in enumerate(header) if is_count(title)]
         if tuple(header) in WORDS:
@@ -121,6 +121,6 @@ def test_every_table_has_a_column_of_n_or_its_heading_says_it(tables):
                 assert any(re.search(r"\d", row[column]) for column in columns), row
 
 
-def test_the_reports_above_have_every_kind_of_table(tables):
+def test_the_reports_above_cover_every_kind_of_table(tables):
     found = {header[0] for _heading, header, _rows in tables if tuple(header) not in WORDS}
     assert found == FIRST_CELLS

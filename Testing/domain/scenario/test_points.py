@@ -126,7 +126,7 @@ def load(tmp_path):
     return lambda landmarks: load_scenario(write_landmarked(next(folders), landmarks))
 
 
-def test_each_method_has_its_own_points_touched(load):
+def test_each_method_has_its_own_points_to_touch(load):
     scenario = load(PLACES)
     labels = {
         method: task_by_method(scenario, "task-1", method).labels
@@ -141,7 +141,7 @@ def test_each_method_has_its_own_points_touched(load):
     np.testing.assert_array_equal(touched.fiducials, [p["positionRas"] for p in PLACES[:3]])
 
 
-def test_the_journals_of_fiducials_stay_valid_where_landmarks_are_placed_later(load):
+def test_journals_of_fiducial_trials_stay_valid_when_landmarks_are_placed_later(load):
     one, other = load([]), load(PLACES)
     assert scenario_sha256(one) == scenario_sha256(other)
     assert landmarks_sha256(one) != landmarks_sha256(other)
@@ -155,7 +155,7 @@ def test_the_journals_of_fiducials_stay_valid_where_landmarks_are_placed_later(l
         pytest.param(PLACES * 4, "list of 0 to 15", id="too many"),
     ],
 )
-def test_landmarks_that_are_unusable_are_named(load, landmarks, said):
+def test_unusable_landmarks_are_named(load, landmarks, said):
     with pytest.raises(InputError, match=said):
         load(landmarks)
 
@@ -177,14 +177,14 @@ def placed(scenario, **moved):
     return [Landmark(name, place) for name, place in places.items()]
 
 
-def test_the_landmarks_of_the_default_head_can_be_used(scenario, mesh):
+def test_the_landmarks_of_the_default_head_are_usable(scenario, mesh):
     assert check_landmarks(mesh, scenario.landmarks) == []
     assert [each.name for each in scenario.landmarks[:3]] == [
         each.name for each in spread_first(scenario.landmarks)[:3]
     ]
 
 
-def test_too_few_and_too_many_are_named(scenario, mesh):
+def test_too_few_and_too_many_landmarks_are_reported(scenario, mesh):
     for count, landmarks in ((2, scenario.landmarks[:2]), (16, scenario.landmarks[:1] * 16)):
         (sentence,) = check_landmarks(mesh, landmarks)
         assert sentence == f"The head has {count} landmarks; place 3 to 15 of them."
@@ -220,7 +220,7 @@ def test_swapped_sides_are_named_once_for_both(scenario, mesh):
     )
 
 
-def test_landmarks_at_one_place_twice_or_in_a_line_are_named(scenario, mesh):
+def test_coincident_duplicate_or_collinear_landmarks_are_named(scenario, mesh):
     own = {each.name: each.position for each in scenario.landmarks}
     close = placed(scenario, Brow=own["Nasion"] + [0.0, 0.0, 4.0])
     assert any("are 4.0 mm apart" in sentence for sentence in check_landmarks(mesh, close))

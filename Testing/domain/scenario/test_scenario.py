@@ -192,7 +192,7 @@ def test_a_link_out_of_the_folder_is_not_followed(folder, tmp_path):
         pytest.param(bytes(2**20 + 1), id="too large"),
     ],
 )
-def test_an_invalid_scenario_file_is_refused_with_one_sentence(folder, content):
+def test_an_invalid_scenario_file_is_refused_in_one_sentence(folder, content):
     (folder / "scenario.json").write_bytes(content)
     with pytest.raises(InputError) as caught:
         load_scenario(folder)

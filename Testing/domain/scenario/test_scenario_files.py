@@ -167,7 +167,7 @@ def test_a_title_becomes_a_name_or_is_refused():
         scenario_name("頭")
 
 
-def test_moving_the_robot_base_moves_everything_else_oppositely():
+def test_moving_the_robot_base_moves_everything_else_the_opposite_way():
     usual, moved = SetUp(), SetUp(robot_base=(100.0, -50.0))
     shift = [-100, 50, 0]
     middle = np.zeros(3)

@@ -55,7 +55,7 @@ def test_two_raters_have_the_coefficients_of_the_python_package_pingouin():
     assert found.average.interval == pytest.approx((0.74, 0.98), abs=0.005)
 
 
-def test_a_rater_who_is_always_milder_agrees_less_and_leaves_no_limits():
+def test_a_rater_who_is_always_more_lenient_agrees_less_and_has_no_interval():
     quality = np.arange(6.0)
     found = intraclass_correlations(np.column_stack([quality, quality + 2.0]))
     assert found.single.value == pytest.approx(3.5 / (3.5 + 2.0))
@@ -71,7 +71,7 @@ def test_a_rater_who_is_always_milder_agrees_less_and_leaves_no_limits():
         ([[1, 2], [1, 2], [1, 2]], "all objects were rated the same"),
     ],
 )
-def test_too_few_or_equal_ratings_are_refused_with_a_sentence(ratings, sentence):
+def test_too_few_or_equal_ratings_are_refused_with_a_message(ratings, sentence):
     with pytest.raises(InputError, match=sentence):
         intraclass_correlations(np.array(ratings))
 
@@ -99,7 +99,7 @@ def test_a_quadratic_kappa_is_that_of_the_python_package_statsmodels():
     assert not found.holds(0.5)
 
 
-def test_kappa_does_not_depend_on_who_is_first_nor_on_the_ends_of_the_scale_mirrored():
+def test_kappa_does_not_depend_on_the_order_of_raters_or_the_direction_of_the_scale():
     found = quadratic_kappa(FIRST, SECOND, 1, 5)
     assert quadratic_kappa(SECOND, FIRST, 1, 5).interval == pytest.approx(found.interval)
     mirrored = quadratic_kappa(6 - np.array(FIRST), 6 - np.array(SECOND), 1, 5)
@@ -107,13 +107,13 @@ def test_kappa_does_not_depend_on_who_is_first_nor_on_the_ends_of_the_scale_mirr
 
 
 @pytest.mark.parametrize("second", [FIRST, [FIRST[0] + 1, *FIRST[1:]]])
-def test_who_agrees_everywhere_or_but_once_leaves_no_limits(second):
+def test_raters_who_disagree_at_most_once_have_no_interval(second):
     found = quadratic_kappa(FIRST, second, 1, 5)
     assert found.value > 0.9
     assert found.interval is None
 
 
-def test_one_and_the_same_mark_throughout_tells_nothing():
+def test_identical_marks_throughout_are_refused():
     with pytest.raises(InputError, match="every object the same mark"):
         quadratic_kappa([4, 4, 4, 4], [4, 4, 4, 4], 1, 5)
     with pytest.raises(InputError, match="three objects"):

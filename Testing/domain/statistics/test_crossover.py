@@ -72,7 +72,7 @@ def test_difference_and_period_are_statsmodels_model_of_subject_mode_and_period(
     np.testing.assert_allclose(found.sequences.later_interval, limits, rtol=1e-9)
 
 
-def test_orders_in_which_modes_take_turns_are_regressed_the_same_way():
+def test_orders_in_which_modes_alternate_are_regressed_the_same_way():
     order = np.array([1.0, -1.0, 0.0, 2.0, -2.0, 1.0, 0.0])
     differences = rng.normal(3, 1, (5, 7))
     found = fit_differences(differences, order)

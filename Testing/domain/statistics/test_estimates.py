@@ -27,7 +27,7 @@ def test_the_interval_of_a_variance_has_2_5_percent_on_each_side():
 
 
 @pytest.mark.parametrize(("dof", "other_dof"), [(3, 8), (11, 11), (11, 90), (40, 4)])
-def test_the_interval_of_a_difference_begins_or_ends_at_0_where_the_f_test_decides(dof, other_dof):
+def test_the_interval_of_a_difference_has_a_bound_at_0_at_the_limit_of_the_f_test(dof, other_dof):
     ratio = scipy.stats.f.isf(0.025, dof, other_dof)
     low, _ = difference(MeanSquare(ratio, dof), MeanSquare(1.0, other_dof)).interval
     assert low == pytest.approx(0.0, abs=1e-9)

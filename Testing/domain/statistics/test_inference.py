@@ -79,7 +79,7 @@ def test_two_subjects_have_no_effect_size_but_a_test():
     assert small_sample_factor(1) is None
 
 
-def test_the_interval_of_the_effect_size_is_the_populations_own_and_holds_the_estimate():
+def test_the_interval_of_the_effect_size_is_the_populations_and_contains_the_estimate():
     comparison = compare_paired(np.zeros(8), SAMPLES[3])
     low, high = noncentrality_interval(comparison.t, 7)
     np.testing.assert_allclose(comparison.gz_interval, np.array([low, high]) / np.sqrt(8))
@@ -148,7 +148,7 @@ def test_incomparable_values_are_refused(first, second, words):
         compare_paired(np.array(first), np.array(second))
 
 
-def test_differences_of_zero_alone_are_refused():
+def test_differences_that_are_all_zero_are_refused():
     with pytest.raises(InputError, match="differences that are not 0"):
         signed_rank_test(np.zeros(5))
 

@@ -130,7 +130,7 @@ def test_fewer_than_eleven_trials_cannot_show_competence_at_the_accepted_risk():
     assert chances[0] > FALSE_DISCOVERY > chances[1]
 
 
-def test_the_pass_mark_of_equal_spreads_is_midway():
+def test_the_pass_mark_of_groups_with_equal_spreads_is_midway():
     rng = np.random.default_rng(0)
     spread = rng.normal(0, 1, 40)
     spread = (spread - spread.mean()) / spread.std(ddof=1)

@@ -164,7 +164,7 @@ def test_trainees_without_all_modes_are_left_out():
     assert found.time.learning == expected.time.learning
 
 
-def test_of_three_trainees_nothing_is_estimated():
+def test_nothing_is_estimated_from_three_trainees():
     assert variation(drawn(trainees=3)) == ""
 
 
@@ -199,7 +199,7 @@ def test_the_expected_outcomes_are_the_means_of_very_many_trainees():
         assert values.mean(axis=0) == pytest.approx(expected, rel=0.005)
 
 
-def test_a_bias_of_the_view_moves_the_target_and_leaves_the_residuals():
+def test_a_bias_of_the_view_moves_the_target_and_leaves_the_residuals_unchanged():
     plain, biased = (drawn(mode_bias_mm=bias) for bias in ({}, {"desktop": 2.0, "hmd": 2.0}))
     for one, other in zip(plain.trials, biased.trials, strict=True):
         assert other.values["rmse_mm"] == one.values["rmse_mm"]

@@ -18,7 +18,7 @@ from rastrainer.study.database.database import (
     LockWait,
     PostgresAddress,
     StudyUnreachableError,
-    beside_study,
+    path_beside_study,
     study_place,
 )
 from rastrainer.study.database.postgres_connecting import postgres_error
@@ -54,7 +54,7 @@ def test_an_address_is_read_and_written(text, address):
     assert study_place(address) is address
 
 
-def test_what_is_no_address_is_a_path():
+def test_anything_that_is_not_an_address_is_a_path():
     assert study_place("study.db") == Path("study.db")
     assert study_place(Path("a", "study.db")) == Path("a", "study.db")
 
@@ -82,19 +82,19 @@ def test_what_is_no_address_is_a_path():
         ("postgresql://localhost.evil.org/study?sslmode=prefer", "over TLS"),
     ],
 )
-def test_an_unusable_address_is_refused_and_not_repeated(text, words):
+def test_an_unusable_address_is_refused_without_being_repeated(text, words):
     with pytest.raises(InputError, match=words) as caught:
         study_place(text)
     assert SECRET not in str(caught.value)
     assert text not in str(caught.value)
 
 
-def test_another_computer_is_reached_over_tls_with_a_certificate_that_is_checked():
-    assert study_place("postgresql://db.lab/study").connection_words["sslmode"] == "verify-full"
-    assert "sslmode" not in study_place("postgresql://localhost/study").connection_words
+def test_another_computer_is_reached_over_tls_with_a_verified_certificate():
+    assert study_place("postgresql://db.lab/study").connection_options["sslmode"] == "verify-full"
+    assert "sslmode" not in study_place("postgresql://localhost/study").connection_options
 
 
-def test_a_command_with_a_password_in_its_address_shows_it_nowhere(capsys):
+def test_a_command_never_shows_the_password_in_its_address(capsys):
     with pytest.raises(SystemExit):
         main(["report", f"postgresql://seat:{SECRET}@host/study", "-o", "out"])
     told = "".join(capsys.readouterr())
@@ -102,7 +102,7 @@ def test_a_command_with_a_password_in_its_address_shows_it_nowhere(capsys):
     assert SECRET not in told
 
 
-def test_a_study_at_an_address_says_what_is_missing_where_the_driver_is(monkeypatch):
+def test_opening_a_study_by_address_without_the_driver_says_what_is_missing(monkeypatch):
     def missing(name):
         raise ImportError(name)
 
@@ -111,7 +111,7 @@ def test_a_study_at_an_address_says_what_is_missing_where_the_driver_is(monkeypa
         Study.open("postgresql://localhost/study")
 
 
-def test_the_driver_is_found_in_the_simulators_folder_and_nothing_else_of_it(tmp_path, monkeypatch):
+def test_only_the_driver_is_imported_from_the_simulators_folder(tmp_path, monkeypatch):
     folder = tmp_path / "simulator"
     folder.mkdir()
     (folder / "psycopg.py").write_text("ORIGIN = 'simulator'")
@@ -121,7 +121,7 @@ def test_the_driver_is_found_in_the_simulators_folder_and_nothing_else_of_it(tmp
         monkeypatch.delitem(postgres_connecting.sys.modules, name)
     elsewhere = [entry for entry in postgres_connecting.sys.path if "site-packages" not in entry]
     monkeypatch.setattr(postgres_connecting.sys, "path", elsewhere)
-    postgres_connecting.search_driver_in(folder)
+    postgres_connecting.find_driver_in(folder)
     assert postgres_connecting.postgres_driver().ORIGIN == "simulator"
     assert postgres_connecting.sys.path == elsewhere
     with pytest.raises(ImportError):
@@ -129,16 +129,16 @@ def test_the_driver_is_found_in_the_simulators_folder_and_nothing_else_of_it(tmp
     del postgres_connecting.sys.modules["psycopg"]
 
 
-def test_what_goes_with_a_study_is_beside_its_file_or_private_by_its_address(tmp_path, monkeypatch):
+def test_a_studys_files_lie_beside_it_or_in_a_private_folder_for_its_address(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "home", lambda: tmp_path)
-    assert beside_study(tmp_path / "study.db") == tmp_path / "study.db"
+    assert path_beside_study(tmp_path / "study.db") == tmp_path / "study.db"
     assert not (tmp_path / "RASTrainer").exists()
     one, same, other = (
-        beside_study(PostgresAddress("host", name)) for name in ("study", "study", "other")
+        path_beside_study(PostgresAddress("host", name)) for name in ("study", "study", "other")
     )
     assert one == same != other
     options = {"sslmode": "verify-ca"}
-    assert beside_study(PostgresAddress("host", "study", "seat", 5432, options)) == one
+    assert path_beside_study(PostgresAddress("host", "study", "seat", 5432, options)) == one
     assert one.parent == tmp_path / "RASTrainer" / "studies"
     if os.name == "posix":
         assert one.parent.stat().st_mode & 0o077 == 0
@@ -151,7 +151,7 @@ def silent_server():
         yield server
 
 
-def test_a_window_does_not_wait_for_a_server_that_is_silent_and_rests_after_it(
+def test_a_window_does_not_wait_for_a_silent_server_and_pauses_before_retrying(
     silent_server, monkeypatch
 ):
     monkeypatch.setattr(postgres_database, "INTERACTIVE_PATIENCE_S", 0.01)
@@ -165,7 +165,7 @@ def test_a_window_does_not_wait_for_a_server_that_is_silent_and_rests_after_it(
         Study.open(address, lock_wait)
 
 
-def test_a_connection_that_comes_late_is_there_for_the_next_attempt(monkeypatch):
+def test_a_late_connection_is_used_by_the_next_attempt(monkeypatch):
     is_there, address = threading.Event(), PostgresAddress("late", "study")
 
     def slowly(_address, *_limits):
@@ -211,11 +211,11 @@ class OperationalError(RefusalError):
         (OperationalError("connection refused"), "cannot be reached now"),
     ],
 )
-def test_what_the_server_reports_becomes_a_sentence(error, words):
+def test_errors_reported_by_the_server_become_one_sentence(error, words):
     assert words in str(postgres_error(error, PostgresAddress("host", "study")))
 
 
-def test_a_mistake_of_ours_is_no_sentence():
+def test_a_programming_error_is_not_turned_into_a_sentence():
     assert postgres_error(RefusalError("syntax error", "42601"), PostgresAddress("h", "s")) is None
     assert (
         postgres_error(RefusalError("the query has 1 placeholder"), PostgresAddress("h", "s"))

@@ -73,7 +73,7 @@ def file_with(**changes):
     ],
     ids=["version", "unknown key", "name", "empty", "long title"],
 )
-def test_a_wrong_file_is_refused_with_the_field_and_what_would_be_right(changes, said):
+def test_an_invalid_file_is_refused_with_the_field_and_what_would_be_right(changes, said):
     with pytest.raises(InputError, match=said):
         curriculum_from_json(file_with(**changes))
 
@@ -107,7 +107,7 @@ def test_a_wrong_file_is_refused_with_the_field_and_what_would_be_right(changes,
         *("itself", "later", "unknown key"),
     ],
 )
-def test_a_wrong_assignment_is_refused_with_the_field(changes, said):
+def test_an_invalid_assignment_is_refused_with_the_field(changes, said):
     first = file_with()["assignments"][0]
     with pytest.raises(InputError, match=said):
         curriculum_from_json(file_with(assignments=[{**first, **changes}]))
@@ -115,7 +115,7 @@ def test_a_wrong_assignment_is_refused_with_the_field(changes, said):
         curriculum_from_json(file_with(assignments=[first, first]))
 
 
-def test_a_goal_by_score_is_reached_by_trials_in_a_row_and_stays_reached():
+def test_a_score_goal_is_reached_by_consecutive_trials_and_stays_reached():
     assert states([]) == [OPEN, LOCKED]
     assert states([PASSED, FAILED, PASSED]) == [OPEN, LOCKED]
     one = stand([PASSED, FAILED, PASSED]).standings[0]
@@ -130,7 +130,7 @@ def test_trials_of_a_locked_assignment_count_once_its_gate_is_open():
     assert states([second, PASSED, PASSED]) == [REACHED, REACHED]
 
 
-def test_only_trials_as_the_assignment_asks_count():
+def test_only_trials_that_match_the_assignment_count():
     in_headset = replace(ONE, mode="hmd", trials=1)
     by_surface = replace(ONE, method="surface", trials=1)
     biopsy = replace(ONE, procedure="biopsy", trials=1)
@@ -161,14 +161,14 @@ def test_a_bad_trial_cannot_be_undone_by_aborting_it():
     assert states([PASSED, in_procedure, PASSED]) == [REACHED, OPEN]
 
 
-def test_scores_of_two_versions_reach_no_goal_together_but_a_reached_one_stays():
+def test_scores_of_two_versions_reach_no_goal_together_but_a_reached_goal_stays():
     old = replace(PASSED, version="2")
     assert states([old, PASSED]) == [OPEN, LOCKED]
     assert states([old, old, FAILED]) == [REACHED, OPEN]
     assert states([old, replace(ABORTED), old]) == [OPEN, LOCKED]
 
 
-def test_a_goal_without_a_mark_is_that_of_the_study_and_never_reached_where_there_is_none():
+def test_a_goal_without_a_mark_uses_that_of_the_study_and_is_never_reached_without_one():
     curriculum = Curriculum("c", "C", (replace(ONE, trials=1),))
     found = standing_in(curriculum, [PASSED], lambda _version: None)
     assert (found.standings[0].state, found.standings[0].mark) == (OPEN, None)
@@ -190,7 +190,7 @@ def test_an_assignment_that_the_mark_of_the_study_could_never_reach_is_refused(s
     assert [each.mark for each in store.standing("A").standings] == [80.0, 60.0]
 
 
-def test_a_goal_by_lc_cusum_is_reached_at_competence_and_says_how_far_it_is():
+def test_an_lc_cusum_goal_is_reached_at_competence_and_reports_its_progress():
     competent = replace(ONE, goal=GoalKind.COMPETENT, trials=0)
     shares = [stand([PASSED] * count, competent).standings[0].done for count in range(30)]
     assert shares == sorted(shares)
@@ -214,7 +214,7 @@ def test_the_weakest_open_assignment_comes_next_and_an_unplayed_one_before_it():
     assert stand(trials[::2], marked[0], marked[2]).next_best.assignment.name == "1"
 
 
-def test_the_part_of_the_score_that_cost_most_is_named():
+def test_the_part_of_the_score_that_cost_the_most_is_named():
     def trial(**parts):
         return replace(PASSED, parts=parts)
 
@@ -264,7 +264,7 @@ def study(study_place):
         yield opened
 
 
-def test_what_was_chosen_last_counts_for_one_and_for_everybody(study):
+def test_the_latest_choice_counts_whether_for_one_trainee_or_for_everybody(study):
     store = CurriculumStore(study)
     first, second = (Curriculum(name, name, (ONE,)) for name in ("first", "second"))
     assert store.standing("A") is None
@@ -325,7 +325,7 @@ def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(s
     assert store.standing("B").reached == 0
 
 
-def test_a_failed_trial_that_is_stored_late_breaks_the_row_in_which_it_was_played(study):
+def test_a_failed_trial_stored_late_breaks_the_streak_in_which_it_was_played(study):
     store = CurriculumStore(study)
     store.choose(Curriculum("c", "C", (ONE, TWO)))
     for number in (1, 3):
@@ -351,7 +351,7 @@ def told_of(trials, *assignments):
     return check_arguments(CommandName.CURRICULUM, json.loads(json.dumps(arguments)))
 
 
-def test_what_slicer_tells_the_simulator_arrives_as_it_was_and_fits_into_a_message():
+def test_what_slicer_sends_to_the_simulator_arrives_unchanged_and_fits_into_a_message():
     checked = told_of([PASSED])
     assert CurriculumMessage.from_arguments(checked) == CurriculumMessage.of("A", stand([PASSED]))
     none = check_arguments(CommandName.CURRICULUM, CurriculumMessage("A").arguments())
@@ -397,12 +397,12 @@ def test_a_hostile_message_is_refused(told):
 
 
 @pytest.mark.parametrize("assignments", [{}, "x", [1], [[]], [{}], [None] * 99], ids=str)
-def test_what_is_no_list_of_assignments_is_refused(assignments):
+def test_anything_that_is_not_a_list_of_assignments_is_refused(assignments):
     with pytest.raises(InputError):
         check_arguments(CommandName.CURRICULUM, {"trainee": "A", "assignments": assignments})
 
 
-def test_an_assignment_says_when_it_was_reached_and_never_before_its_gate():
+def test_an_assignment_records_when_it_was_reached_and_never_before_its_gate_opened():
     def on(day: int, **changes) -> CountedTrial:
         return replace(PASSED, started_utc=f"2026-05-{day:02}T09:00:00Z", **changes)
 

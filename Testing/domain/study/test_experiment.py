@@ -67,7 +67,7 @@ def test_a_williams_design_is_balanced_for_position_and_predecessor(count):
     assert len(set(pairs.values())) == 1
 
 
-def test_the_design_of_four_is_williams_own():
+def test_the_design_for_four_is_williams_own():
     """Williams 1949: the first row runs 1, 2, n, 3, … (here from 0)."""
     assert williams_design(4) == ((0, 1, 3, 2), (1, 2, 0, 3), (2, 3, 1, 0), (3, 0, 2, 1))
 
@@ -287,7 +287,7 @@ def test_a_questionnaire_is_done_only_with_all_answers(study):
             progress.finish("T001", "hmd/before/ssq", details)
 
 
-def test_a_trial_run_or_a_break_ends_too_early_only_with_a_reason(study):
+def test_a_trial_run_or_a_break_ends_early_only_with_a_reason(study):
     progress = StudyProgress(study)
     progress.set_protocol(protocol(questionnaires=[]))
     progress.enroll("T001")
@@ -383,7 +383,7 @@ def test_the_place_of_a_deleted_trainee_is_reused(study):
         ({"taskorder": "fixed"}, "taskorder must be left out"),
     ],
 )
-def test_an_invalid_protocol_is_refused_with_one_sentence_that_names_the_field(
+def test_an_invalid_protocol_is_refused_in_one_sentence_that_names_the_field(
     change, words, tmp_path
 ):
     path = tmp_path / "protocol.json"
@@ -393,7 +393,7 @@ def test_an_invalid_protocol_is_refused_with_one_sentence_that_names_the_field(
     assert "\n" not in str(caught.value)
 
 
-def test_a_protocol_may_say_by_what_the_trials_of_a_task_are_registered():
+def test_a_protocol_may_set_how_the_trials_of_a_task_are_registered():
     silent = protocol()
     assert "methods" not in silent.to_json()
     assert {step.method for step in steps_for(silent, 0)} == {"fiducials"}
@@ -419,7 +419,7 @@ def test_a_protocol_may_say_by_what_the_trials_of_a_task_are_registered():
         protocol(methods={"task-1": "scan"})
 
 
-def test_a_protocol_may_say_how_the_skin_shifts_in_the_trials_of_a_task_and_tells_no_trainee():
+def test_a_protocol_may_set_how_the_skin_shifts_in_the_trials_of_a_task_without_telling_trainees():
     silent = protocol()
     assert "skin" not in silent.to_json()
     own = protocol(skin={"task-2": {"shiftMm": 2, "indentationMm": 0.5}, "task-3": {}})
@@ -455,6 +455,6 @@ def test_a_protocol_may_say_how_the_skin_shifts_in_the_trials_of_a_task_and_tell
         ),
     ],
 )
-def test_a_protocol_whose_skin_cannot_be_is_refused_with_a_sentence(skin, said):
+def test_a_protocol_with_an_impossible_skin_shift_is_refused_with_a_message(skin, said):
     with pytest.raises(InputError, match=said):
         protocol(skin=skin)

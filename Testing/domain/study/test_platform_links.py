@@ -22,7 +22,7 @@ def links(tmp_path):
     return PlatformLinks(tmp_path / "study.db")
 
 
-def test_new_terms_of_a_link_keep_what_was_sent(links):
+def test_changed_settings_of_a_link_keep_what_was_sent(links):
     links.link(ISSUER, "u1", "T001")
     links.put(TASK)
     links.note_sent(TASK, 70.5, "2026-01-01T11:00:00Z")
@@ -32,7 +32,7 @@ def test_new_terms_of_a_link_keep_what_was_sent(links):
     assert links.assignments() == [("T001", sent)]
 
 
-def test_who_is_forgotten_leaves_nothing(links):
+def test_forgetting_a_trainee_leaves_nothing_of_their_link(links):
     links.link(ISSUER, "u1", "T001")
     links.link(ISSUER, "u2", "T002")
     links.put(TASK)
@@ -42,7 +42,7 @@ def test_who_is_forgotten_leaves_nothing(links):
     assert links.users("T002") == [{"issuer": ISSUER, "subject": "u2"}]
 
 
-def test_where_nobody_is_linked_no_file_is_made(links):
+def test_no_file_is_made_where_nobody_is_linked(links):
     links.forget("T001")
     assert links.users("T001") == []
     assert not links.path.exists()

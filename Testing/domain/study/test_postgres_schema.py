@@ -14,7 +14,7 @@ from rastrainer.study.database.study import Study
 STATEMENTS = [statement for step in MIGRATIONS for statement in step]
 
 
-def test_the_tables_and_columns_are_those_that_sqlite_makes_of_the_schema(tmp_path):
+def test_the_tables_and_columns_match_those_that_sqlite_makes_from_the_schema(tmp_path):
     path = tmp_path / "study.db"
     Study.open(path).close()
     connection = sqlite3.connect(path)
@@ -33,7 +33,7 @@ def test_the_tables_and_columns_are_those_that_sqlite_makes_of_the_schema(tmp_pa
 
 
 @pytest.mark.parametrize("statement", STATEMENTS, ids=lambda text: " ".join(text.split())[:40])
-def test_nothing_of_sqlite_alone_is_left(statement):
+def test_nothing_specific_to_sqlite_is_left(statement):
     translated = in_postgres(statement)
     assert not re.search(r"\b(INTEGER|REAL|AUTOINCREMENT|ROWID)\b", translated)
     assert "sqlite_sequence WHERE" not in statement or "FROM trainees" in translated
@@ -57,7 +57,7 @@ def test_numbers_keep_every_bit_and_texts_sort_by_their_bytes():
     )
 
 
-def test_a_statement_gets_marks_of_parameters_and_a_way_into_json():
+def test_a_statement_gets_postgresqls_placeholders_and_json_path_syntax():
     assert portable_to_postgres("SELECT 7 % 2, json_extract(a, '$.b.c') FROM t WHERE x = ?") == (
         "SELECT 7 %% 2, (a::json #>> '{b,c}') FROM t WHERE x = %s"
     )

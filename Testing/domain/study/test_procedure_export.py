@@ -29,7 +29,7 @@ def test_every_trajectory_is_a_row_with_its_trial(data):
     assert {row["procedure_score_version"] for row in rows} == {"procedure-1"}
 
 
-def test_both_parts_of_an_error_are_told_and_depth_errors_add_up(data):
+def test_both_parts_of_an_error_are_exported_and_depth_errors_add_up(data):
     for row in rows_of(data.trials):
         parts = float(row["depth_by_registration_mm"]), float(row["depth_by_hand_mm"])
         assert sum(parts) == pytest.approx(float(row["depth_mm"]))

@@ -91,7 +91,7 @@ def test_each_symptom_counts_on_its_own_scales(item, expected):
 
 
 @pytest.mark.parametrize("questionnaire", QUESTIONNAIRES.values(), ids=lambda q: q.name)
-def test_scores_stay_in_their_range_and_answers_may_come_by_name(questionnaire):
+def test_scores_stay_in_range_and_answers_may_be_given_by_name(questionnaire):
     for answer in (questionnaire.lowest, questionnaire.highest):
         answers = {item.name: answer for item in questionnaire.items}
         scores = questionnaire.score(answers)

@@ -34,7 +34,7 @@ def rows(study, table="rating_marks"):
         return connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0]
 
 
-def test_all_raters_get_the_same_trials_each_in_an_order_of_their_own(store):
+def test_all_raters_get_the_same_trials_each_in_their_own_order(store):
     orders = [store.assign(rater, TRIALS, 6, random.Random(rater)) for rater in ("R1", "R2")]
     assert len(set(orders[0])) == 6
     assert sorted(orders[0]) == sorted(orders[1])
@@ -42,7 +42,7 @@ def test_all_raters_get_the_same_trials_each_in_an_order_of_their_own(store):
     assert list(orders[0]) != sorted(orders[0])
 
 
-def test_who_has_replays_keeps_their_places_and_more_are_added_behind_them(store):
+def test_replays_already_assigned_keep_their_places_and_further_ones_are_appended(store):
     first = store.assign("R1", TRIALS, 3, random.Random(1))
     assert store.assign("R1", TRIALS, 3, random.Random(2)) == first
     more = store.assign("R1", TRIALS, 5, random.Random(3))
@@ -51,7 +51,7 @@ def test_who_has_replays_keeps_their_places_and_more_are_added_behind_them(store
     assert len(store.assign("R1", TRIALS, 100, random.Random(5))) == len(TRIALS)
 
 
-def test_a_mark_is_stored_once_and_another_one_under_its_uuid_is_refused(study, store):
+def test_a_mark_is_stored_once_and_a_different_one_under_its_uuid_is_refused(study, store):
     (trial_id, *_) = store.assign("R1", TRIALS, 2, random.Random(1))
     mark = (str(uuid.uuid4()), "R1", trial_id, GEARS, "gears_depth")
     assert store.give(*mark, 4)
@@ -80,21 +80,21 @@ def test_a_correction_is_a_new_row_and_the_latest_counts(study, store):
         ("R2", "gears_depth", 3, "was not given this replay"),
     ],
 )
-def test_what_is_no_mark_is_refused_with_a_sentence(study, store, rater, domain, mark, sentence):
+def test_an_invalid_mark_is_refused_with_a_message(study, store, rater, domain, mark, sentence):
     (trial_id, *_) = store.assign("R1", TRIALS, 2, random.Random(1))
     with pytest.raises(InputError, match=sentence):
         store.give(str(uuid.uuid4()), rater, trial_id, GEARS, domain, mark)
     assert rows(study) == 0
 
 
-def test_a_name_that_is_no_pseudonym_and_an_unknown_form_are_refused(store):
+def test_an_invalid_pseudonym_and_an_unknown_form_are_refused(store):
     with pytest.raises(InputError, match="The name of a rater must be"):
         store.assign("", TRIALS, 2, random.Random(1))
     with pytest.raises(InputError, match="there are gears, osats"):
         find_form("o-score")
 
 
-def test_work_is_taken_up_where_it_was_left_and_undone_mark_by_mark(store):
+def test_rating_resumes_where_it_stopped_and_is_undone_mark_by_mark(store):
     trial_ids = store.assign("R1", TRIALS, 2, random.Random(1))
 
     def taken_up():
@@ -124,7 +124,7 @@ def test_work_is_taken_up_where_it_was_left_and_undone_mark_by_mark(store):
     assert again.rated == 0
 
 
-def test_when_all_is_rated_there_is_nothing_to_go_on_with(store):
+def test_once_everything_is_rated_there_is_nothing_left_to_do(store):
     trial_ids = store.assign("R1", TRIALS, 3, random.Random(1))
     work = RatingWork(store, "R1", trial_ids, (GEARS,))
     places = []
@@ -137,7 +137,7 @@ def test_when_all_is_rated_there_is_nothing_to_go_on_with(store):
     assert {(rating.form, rating.total) for rating in store.ratings()} == {("gears", 13)}
 
 
-def test_only_whole_forms_are_ratings(store):
+def test_only_completed_forms_are_ratings(store):
     trial_ids = store.assign("R1", TRIALS, 2, random.Random(1))
     work = RatingWork(store, "R1", trial_ids, (GEARS, OSATS))
     for _ in range(7):
@@ -145,7 +145,7 @@ def test_only_whole_forms_are_ratings(store):
     assert [rating.form for rating in store.ratings()] == ["gears"]
 
 
-def test_ratings_go_with_their_trainee(study, store):
+def test_ratings_are_deleted_with_their_trainee(study, store):
     trial_ids = store.assign("R1", TRIALS, 8, random.Random(1))
     work = RatingWork(store, "R1", trial_ids, (GEARS,))
     while work.go_to_next():
@@ -165,7 +165,7 @@ def test_a_study_of_an_earlier_format_gets_the_tables(tmp_path):
         assert RatingStore(study).assign("R1", TRIALS[:1], 1, random.Random(1)) == (TRIALS[0],)
 
 
-def test_the_totals_and_the_domains_that_are_left_out_are_told():
+def test_totals_and_left_out_domains_are_stated():
     for form in FORMS.values():
         assert (form.lowest_total, form.highest_total) == (4, 20)
         assert not set(form.left_out) & {domain.title for domain in form.domains}

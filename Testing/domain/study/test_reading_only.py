@@ -70,7 +70,7 @@ GROUPS = ("--novices", *(f"N{i}" for i in range(5)), "--experts", *(f"E{i}" for 
         pytest.param(("pass-mark", "STUDY", *GROUPS), id="pass-mark"),
     ],
 )
-def test_a_study_in_mid_protocol_keeps_every_byte_and_its_time(path, tmp_path, words, capsys):
+def test_a_study_in_mid_protocol_keeps_its_bytes_and_its_mtime(path, tmp_path, words, capsys):
     before = seen(path)
     known = {"STUDY": path, "OUT": tmp_path / "out"}
     assert run(*(known.get(word, word) for word in words)) == 0
@@ -111,7 +111,7 @@ def test_reading_a_study_of_an_earlier_format_does_not_migrate_it(tmp_path):
     assert seen(path) == before
 
 
-def test_a_file_without_write_permission_in_such_a_folder_can_be_read(path):
+def test_a_write_protected_file_in_a_write_protected_folder_can_be_read(path):
     path.chmod(0o400)
     path.parent.chmod(0o500)
     try:
@@ -140,7 +140,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills by a signal")
-def test_a_study_of_a_killed_writer_is_read_as_before_its_change(path):
+def test_a_study_whose_writer_was_killed_is_read_as_before_its_change(path):
     with Study.open(path) as study:
         names = [trainee.pseudonym for trainee in study.trainees()]
     killed = subprocess.run([sys.executable, "-c", KILLED, path], check=False)

@@ -158,7 +158,7 @@ def by_landmarks(tmp_path):
     return study
 
 
-def test_a_trial_counts_only_by_the_method_that_the_study_asks_for(tmp_path):
+def test_a_trial_counts_only_with_the_method_that_the_study_asks_for(tmp_path):
     with by_landmarks(tmp_path) as study:
         progress = StudyProgress(study)
         play(study, 1, 1)
@@ -187,6 +187,6 @@ def test_a_trial_counts_only_by_the_method_that_the_study_asks_for(tmp_path):
     ],
     ids=["fiducials", "landmarks", "trace"],
 )
-def test_what_was_done_before_it_was_aborted_depends_on_the_method(study, changes, sentence):
+def test_what_counts_as_done_before_an_abort_depends_on_the_method(study, changes, sentence):
     abort(study, 900, 1, **changes)
     assert sentence in StudyProgress(study).progress("A").repeat_sentence

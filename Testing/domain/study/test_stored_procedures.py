@@ -53,7 +53,7 @@ def test_an_outcome_is_stored_beside_the_score_of_the_touches(study):
     assert StoredProcedure.from_json(stored.procedure.to_json()) == stored.procedure
 
 
-def test_the_outcome_goes_with_its_trainee(study):
+def test_the_outcome_is_deleted_with_its_trainee(study):
     trial = record(1, DBS.analysis.record)
     study.add_trial(trial)
     study.add_results(trial.trial_id, procedure=DBS)

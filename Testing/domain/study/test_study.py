@@ -229,7 +229,7 @@ def test_the_history_is_in_the_order_of_starting(study):
     assert [t.record.started_utc[8:10] for t in study.history("T-001")] == ["17", "18", "19"]
 
 
-def test_the_cohort_is_every_registered_trial_but_the_trial_runs(study, results):
+def test_the_cohort_is_every_registered_trial_except_trial_runs(study, results):
     registrations, errors, score = results
     study.add_trial(record(1), registrations, errors, score)
     study.add_trial(record(2, task="trial-run"), registrations)

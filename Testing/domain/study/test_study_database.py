@@ -73,7 +73,7 @@ def test_killed_writers_lose_and_duplicate_nothing(study_place, wanted):
         (b"\0" * 5000, "is not a study database"),
     ],
 )
-def test_a_file_that_is_no_database_is_refused_and_left_unchanged(content, words, tmp_path):
+def test_a_file_that_is_not_a_database_is_refused_and_left_unchanged(content, words, tmp_path):
     path = tmp_path / "file"
     path.write_bytes(content)
     with pytest.raises(InputError, match=words):
@@ -171,7 +171,7 @@ def test_an_unusable_path_is_reported(name, words, tmp_path):
         Study.open(f"{tmp_path}/{name}")
 
 
-def use_without_rights(path):
+def use_without_permission(path):
     if os.getuid() == 0:
         os.setuid(65534)
     try:
@@ -190,7 +190,7 @@ def test_a_read_only_study_can_be_read_and_reports_failed_writes():
             study.add_trial(make_record())
         path.chmod(0o444)
         Path(folder).chmod(0o555)
-        trials, sentence = in_child(use_without_rights, path)
+        trials, sentence = in_child(use_without_permission, path)
         Path(folder).chmod(0o755)
     assert trials == 1
     assert sentence == f"The study {path} is read-only; allow writing to it and its folder."

@@ -128,7 +128,7 @@ def test_a_trials_statement_has_success_and_completion_time(data):
     assert context[f"{HOME_PAGE}/xapi/pass-mark"] == 80.0
 
 
-def test_a_statement_has_no_success_without_a_mark_for_the_version_of_its_score(data):
+def test_a_statement_has_no_success_without_a_pass_mark_for_its_score_version(data):
     earlier = replace(data.protocol, pass_mark=80.0, score_version="2")
     old = tuple(replace(trial, score_version="2") for trial in data.trials[:1])
     trials = (*old, *data.trials)

@@ -28,7 +28,7 @@ from Testing.domain.study.played_study import STUDIES, study_with_trials
 from Testing.domain.study.study_content import rows_of, written_files
 from Testing.domain.study.writers import stored_numbers, writer
 from Testing.domain.trial.trial_records import make_aborted, make_record
-from Testing.postgres_server import PostgresServer, opened_when_there
+from Testing.postgres_server import PostgresServer, opened_when_available
 
 pytestmark = pytest.mark.soak
 
@@ -45,7 +45,7 @@ def own_server():
         yield server
 
 
-def test_seats_that_begin_a_study_at_once_make_it_once(place):
+def test_seats_that_begin_a_study_at_the_same_time_create_it_once(place):
     writers = [writer(place, number, number + 1) for number in range(4)]
     for process in writers:
         process.communicate(timeout=600)
@@ -53,19 +53,19 @@ def test_seats_that_begin_a_study_at_once_make_it_once(place):
     assert stored_numbers(place) == [0, 1, 2, 3]
 
 
-def test_a_server_killed_while_trials_are_stored_loses_none_that_was_acknowledged(own_server):
+def test_a_server_killed_while_trials_are_stored_loses_none_that_were_acknowledged(own_server):
     place, rng = own_server.new_study(), random.Random(6)
     acknowledged, away, number = [], 0, 0
-    study, is_over = opened_when_there(place), threading.Event()
+    study, is_over = opened_when_available(place), threading.Event()
 
-    def kill_now_and_then():
+    def kill_occasionally():
         for _ in range(10):
             time.sleep(rng.uniform(0.1, 0.4))
             own_server.kill()
             own_server.start()
         is_over.set()
 
-    killer = threading.Thread(target=kill_now_and_then)
+    killer = threading.Thread(target=kill_occasionally)
     killer.start()
     while not is_over.is_set() or number < 10:
         record = make_record(trialId=f"00000000-0000-0000-0000-{number:012d}")
@@ -82,7 +82,7 @@ def test_a_server_killed_while_trials_are_stored_loses_none_that_was_acknowledge
     assert stored_numbers(place) == acknowledged
 
 
-class LosesTheAnswer:
+class LostAnswer:
     """Commits what a seat has changed, and loses the connection before the seat hears of it."""
 
     def __init__(self, study):
@@ -105,7 +105,7 @@ class LosesTheAnswer:
         pass
 
 
-def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_tried_again(place):
+def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_retried(place):
     trial, matrix = make_record()["trialId"], [float(n) for n in range(16)]
     with Study.open(place) as study:
         study.create_trainee("A")
@@ -122,7 +122,7 @@ def test_a_change_whose_answer_was_lost_is_stored_once_when_it_is_tried_again(pl
             "mark": lambda: ratings.give(mark_id, "R1", trial, form, domain, 4),
         }
         for change in changes.values():
-            with LosesTheAnswer(study), pytest.raises(StudyUnreachableError):
+            with LostAnswer(study), pytest.raises(StudyUnreachableError):
                 change()
             with study.database.reading() as connection:
                 before = counts_of(connection)
@@ -140,7 +140,7 @@ def counts_of(connection):
     ]
 
 
-def test_a_connection_is_made_anew_after_the_server_was_away(own_server):
+def test_a_connection_is_reestablished_after_the_server_was_away(own_server):
     place = own_server.new_study()
     with Study.open(place) as study:
         study.create_trainee("a")
@@ -168,7 +168,7 @@ def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place, 
             study.create_trainee("a")
 
 
-def test_who_reads_slowly_is_not_cut_off_and_who_holds_the_lock_is(place, monkeypatch):
+def test_a_slow_reader_is_not_cut_off_but_a_slow_holder_of_the_lock_is(place, monkeypatch):
     Study.open(place).close()
     hasty = postgres_connecting._SESSION.replace("'20s'", "'10ms'")
     monkeypatch.setattr(postgres_connecting, "_SESSION", hasty)
@@ -199,12 +199,10 @@ class HastyClock:
 
 
 @pytest.mark.parametrize("lock_wait", [LockWait(), LockWait.interactive()], ids=["work", "window"])
-def test_a_server_that_hangs_is_given_up_by_windows_and_by_those_who_wait(
-    lock_wait, place, monkeypatch
-):
+def test_windows_and_waiting_commands_give_up_on_a_server_that_hangs(lock_wait, place, monkeypatch):
     clock = HastyClock()
     monkeypatch.setattr(postgres_connecting, "time", clock)
-    with opened_when_there(place, lock_wait) as study:
+    with opened_when_available(place, lock_wait) as study:
         process = study.database._connection.info.backend_pid
         os.kill(process, signal.SIGSTOP)
         clock.step_s = 20.0
@@ -233,7 +231,7 @@ with study.database.writing() as connection:
 """
 
 
-def test_a_seat_that_has_stopped_in_a_change_blocks_nobody_for_ever(place):
+def test_a_seat_that_hangs_during_a_change_does_not_block_others_forever(place):
     Study.open(place).close()
     command = [sys.executable, "-c", STOPPED, str(place)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as stopped:
@@ -243,7 +241,7 @@ def test_a_seat_that_has_stopped_in_a_change_blocks_nobody_for_ever(place):
         stopped.kill()
 
 
-def test_a_reader_sees_one_state_and_a_writer_the_latest(place):
+def test_a_reader_sees_one_consistent_state_and_a_writer_the_latest(place):
     with Study.open(place) as seat, Study.open(place) as other:
         seat.create_trainee("a")
         with other.database.reading() as connection:
@@ -272,7 +270,7 @@ def test_a_study_that_is_only_read_is_never_changed(place, postgres_server):
             study.create_trainee("C")
 
 
-def test_a_role_that_may_only_read_reads_and_its_writing_is_refused(place, postgres_server):
+def test_a_read_only_role_can_read_and_its_writes_are_refused(place, postgres_server):
     study_with_trials(place)
     postgres_server.execute(
         "CREATE ROLE reader LOGIN; GRANT SELECT ON ALL TABLES IN SCHEMA public TO reader",
@@ -319,7 +317,7 @@ def test_another_programs_database_is_refused_and_left_as_it_is(sql, words, plac
     ],
     ids=["rule", "policy", "trigger", "newer"],
 )  # fmt: skip
-def test_a_study_that_somebody_has_changed_is_refused(sql, words, place, postgres_server):
+def test_a_study_whose_tables_somebody_has_changed_is_refused(sql, words, place, postgres_server):
     Study.open(place).close()
     postgres_server.execute(sql, place.database)
     with pytest.raises(InputError, match=words):
@@ -396,7 +394,7 @@ def test_every_command_that_takes_a_study_takes_an_address(
     assert told in "".join(capsys.readouterr())
 
 
-def test_a_study_is_copied_into_an_empty_one_only(place, tmp_path, capsys):
+def test_a_study_is_copied_only_into_an_empty_one(place, tmp_path, capsys):
     file = tmp_path / "study.db"
     study_with_trials(file)
     study_with_trials(place)
@@ -406,7 +404,7 @@ def test_a_study_is_copied_into_an_empty_one_only(place, tmp_path, capsys):
     assert rows_of(place) == before
 
 
-def test_a_copy_that_is_broken_off_leaves_nothing(place, tmp_path, monkeypatch):
+def test_a_copy_that_is_interrupted_leaves_nothing(place, tmp_path, monkeypatch):
     file = tmp_path / "study.db"
     study_with_trials(file)
     with Study.open_for_reading(file) as source, Study.open(place) as target:
@@ -453,7 +451,7 @@ def test_a_password_is_found_in_its_file_and_shown_nowhere(own_server, tmp_path)
     assert "each compared with its original" in told()
 
 
-def test_another_computer_is_reached_over_tls_alone(own_server, tmp_path):
+def test_another_computer_is_reached_only_over_tls(own_server, tmp_path):
     place = own_server.new_study()
     # To libpq, a number of the loop that is not in our list is another computer.
     far = f"postgresql://tester@127.0.0.2:{own_server.port}/{place.database}"
@@ -469,7 +467,7 @@ def test_another_computer_is_reached_over_tls_alone(own_server, tmp_path):
         Study.open(f"{far}?sslrootcert={certificate}")
 
 
-def test_a_backup_by_postgresqls_own_programs_is_restored(own_server, tmp_path):
+def test_a_backup_made_by_postgresqls_own_programs_can_be_restored(own_server, tmp_path):
     place, empty = own_server.new_study(), own_server.new_study()
     study_with_trials(place)
     backup = tmp_path / "study.dump"
@@ -485,7 +483,7 @@ def test_a_backup_by_postgresqls_own_programs_is_restored(own_server, tmp_path):
         assert study.add_trial(make_record())
 
 
-def test_the_same_numbers_come_back_bit_by_bit(place):
+def test_numbers_are_read_back_bit_for_bit(place):
     values = [0.1, 1e-300, 5e-324, 1.7976931348623157e308, -0.0, 2 / 3]
     rng = random.Random(7)
     values += [rng.uniform(-1, 1) * 10.0 ** rng.randrange(-12, 12) for _ in range(500)]

@@ -42,7 +42,7 @@ def test_the_interval_of_a_proportion_is_wilsons(count, total):
     assert proportion(count, total).interval == pytest.approx((middle - half, middle + half))
 
 
-def test_few_trials_are_drawn_with_a_note():
+def test_a_chart_of_few_trials_is_drawn_with_a_note():
     told = TreCalibration.of([point(0.3), point(0.4)], without_truth=3).sentences()
     assert "2 of 2 true errors" in told[0]
     assert told[1:] == [

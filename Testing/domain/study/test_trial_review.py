@@ -80,7 +80,7 @@ def test_a_pass_mark_for_an_earlier_version_of_the_score_passes_and_fails_nobody
     assert progress.sentences[1].startswith("Neither passed nor failed")
 
 
-def test_a_delivered_trial_is_checked_once_and_stored_with_unknown_keys(study, monkeypatch):
+def test_a_delivered_trial_is_checked_once_and_stored_with_its_unknown_keys(study, monkeypatch):
     checks = []
     read = TrialRecord.from_json
     monkeypatch.setattr(TrialRecord, "from_json", lambda value: checks.append(value) or read(value))

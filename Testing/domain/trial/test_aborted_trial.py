@@ -188,7 +188,7 @@ def test_aborting_bad_trials_does_not_help_to_show_competence(study):
     assert progress_of(attempts, last, 10.0).competence.competent_at is None
 
 
-def test_an_aborted_trial_keeps_its_method_and_older_records_are_of_fiducials():
+def test_an_aborted_trial_keeps_its_method_and_older_records_default_to_fiducials():
     assert not {"method", "traced"} & AbortedTrial.from_json(make_aborted()).to_json().keys()
     given = make_aborted(touches=3, method="surface", traced=41)
     record = AbortedTrial.from_json(given)

@@ -77,7 +77,7 @@ def test_hurry_and_tremor_are_found_in_the_recording():
     assert findings[4].dwell_s < 0.15 < findings[7].dwell_s
 
 
-def test_without_recording_and_skin_only_residuals_are_reported():
+def test_without_a_recording_or_skin_only_residuals_are_reported():
     findings = touch_findings(registered(np.zeros((15, 3))))
     assert all(f.depth_mm is None and f.replay_s is None for f in findings)
     feedback = trial_feedback(gentle_score(100.0, 0.4), registered(np.zeros((15, 3))))
@@ -128,7 +128,7 @@ BIASES = {
 
 
 @pytest.mark.parametrize("words", BIASES)
-def test_the_direction_of_a_common_bias_is_told(words):
+def test_the_direction_of_a_common_bias_is_reported(words):
     bias = CommonBias(BIASES[words], p=0.001)
     score = gentle_score(110.0, 0.5, common_bias_mm=bias.length_mm)
     advice = advise(score, EVEN, {"idle_time_s": 80.0}, bias)
@@ -137,7 +137,7 @@ def test_the_direction_of_a_common_bias_is_told(words):
     assert f"On average, the touches are {length} too far {words}, which" in advice[0].sentence
 
 
-def test_a_common_bias_beyond_its_limit_comes_after_safety_and_before_all_else():
+def test_a_common_bias_beyond_its_limit_comes_right_after_safety():
     bias = CommonBias((0.0, 1.6, 0.0), p=0.3)
     score = gentle_score(400.0, 3.0, common_bias_mm=bias.length_mm)
     motion = {"idle_time_s": 300.0, "unintended_contacts": 1}
@@ -145,7 +145,7 @@ def test_a_common_bias_beyond_its_limit_comes_after_safety_and_before_all_else()
     assert topics[:2] == ["contacts", "common bias"]
 
 
-def test_a_bias_that_scatter_explains_is_not_told():
+def test_a_bias_explained_by_scatter_is_not_reported():
     score = gentle_score(110.0, 0.5, common_bias_mm=0.8)
     by_chance = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.2))
     assert "common bias" not in [one.topic for one in by_chance]
@@ -154,7 +154,7 @@ def test_a_bias_that_scatter_explains_is_not_told():
     assert told.gain == pytest.approx(gentle_score(110.0, 0.5).score - score.score)
 
 
-def test_the_score_sentences_tell_the_common_bias_and_its_limit():
+def test_the_score_sentences_state_the_common_bias_and_its_limit():
     def accuracy(score):
         return trial_feedback(score, registered(np.zeros((15, 3)))).score_sentences[2]
 
@@ -213,7 +213,7 @@ def test_a_trial_is_not_compared_with_scores_of_another_version():
     assert twice.sentences[0].startswith("1 points more than in your last trial")
 
 
-def test_without_a_mark_for_its_version_a_trial_neither_passes_nor_fails():
+def test_without_a_pass_mark_for_its_version_a_trial_neither_passes_nor_fails():
     history = [past(1, 50.0), past(2, 99.0)]
     progress = progress_of(history, history[1].trial_id, None)
     assert (progress.pass_mark, progress.competence, len(progress.sentences)) == (None, None, 2)

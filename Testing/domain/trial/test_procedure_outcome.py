@@ -58,7 +58,7 @@ def test_a_procedure_is_analyzed_and_scored_once_the_truth_is_known(record):
     assert found.score.reference_s > 400.0
 
 
-def test_the_score_of_the_registration_is_that_of_a_trial_of_touches_alone(record):
+def test_the_score_of_the_registration_equals_that_of_a_trial_with_touches_only(record):
     alone = replace(record, procedure=None)
     scored = analyze_trial(alone, SCENARIO, truth=REVEALED)
     assert scored.procedure is None
@@ -87,7 +87,7 @@ def test_a_trial_with_another_version_of_the_plan_is_not_analyzed(record):
         analyze_trial(replace(record, procedure=done), SCENARIO, truth=REVEALED)
 
 
-def test_a_procedure_that_the_scenario_lacks_is_named(record):
+def test_a_procedure_missing_from_the_scenario_is_named(record):
     done = replace(record.procedure, procedure="tumor")
     with pytest.raises(InputError, match="has no such procedure; it has biopsy, dbs, seeg"):
         analyze_trial(replace(record, procedure=done), SCENARIO, truth=REVEALED)

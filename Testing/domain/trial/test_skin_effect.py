@@ -59,13 +59,13 @@ def scored(scenario, skin):
     return analysis.scored(scenario, truth), truth
 
 
-def test_the_error_without_the_shift_is_that_of_the_points_put_back(scenario):
+def test_the_error_without_the_shift_is_computed_from_the_points_moved_back(scenario):
     record, pose = touched(scenario, SKIN)
     assert unshifted_tre_mm(record, scenario, pose, SKIN) < 0.02
     assert unshifted_tre_mm(record, scenario, pose, UNMOVED) is None
 
 
-def test_one_sentence_tells_what_it_was_and_what_it_did(scenario):
+def test_one_sentence_tells_what_the_shift_was_and_what_it_did(scenario):
     analysis, truth = scored(scenario, SKIN)
     assert truth.true_tre_mm > 0.5
     (told,) = analysis.feedback.skin_sentences
@@ -79,14 +79,14 @@ def test_one_sentence_tells_what_it_was_and_what_it_did(scenario):
     assert told in analysis.feedback.sentences
 
 
-def test_skin_as_in_the_images_leaves_score_and_record_as_they_were(scenario):
+def test_unshifted_skin_leaves_score_and_record_unchanged(scenario):
     analysis, _truth = scored(scenario, UNMOVED)
     assert analysis.feedback.skin_sentences == ()
     assert "unshifted_tre_mm" not in analysis.score.to_json()
     assert "skin" not in analysis.record.to_json()
 
 
-def test_a_study_keeps_it_and_its_tables_and_report_have_it(scenario, tmp_path):
+def test_a_study_stores_the_skin_shift_and_shows_it_in_tables_and_report(scenario, tmp_path):
     analysis, truth = scored(scenario, SKIN)
     record = analysis.record
     with Study.open(tmp_path / "study.db") as study:
@@ -111,7 +111,7 @@ def test_a_study_keeps_it_and_its_tables_and_report_have_it(scenario, tmp_path):
     assert shifted_skin(StudyData("Skin", (plain,))) == ""
 
 
-def test_a_truth_whose_skin_cannot_be_is_refused():
+def test_a_truth_with_an_impossible_skin_shift_is_refused():
     answer = {"headToWorld": np.eye(4).ravel().tolist(), "trueTreMm": 1.0}
     assert RevealedTruth.from_json(answer).skin == UNMOVED
     with pytest.raises(InputError, match="and skin"):

@@ -28,7 +28,7 @@ def test_touches_are_arrays_in_their_order():
     np.testing.assert_allclose(record.touch_times_s[[0, 14]], [5.0, 110.0])
 
 
-def test_a_record_without_touch_rule_has_the_papers_rule():
+def test_a_record_without_a_touch_rule_has_the_papers_rule():
     record = make_record()
     assert "touchRule" not in record
     assert TrialRecord.from_json(record).touch_rule == "within radius"
@@ -76,7 +76,7 @@ def test_keys_of_a_newer_simulator_are_ignored():
         (changed_point(3, simTime=0.5), "4 was touched before 3"),
     ],
 )
-def test_other_records_are_refused_with_one_sentence(record, words):
+def test_other_records_are_refused_in_one_sentence(record, words):
     with pytest.raises(InputError, match=words) as caught:
         TrialRecord.from_json(record)
     assert "\n" not in str(caught.value)

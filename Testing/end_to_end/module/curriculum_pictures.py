@@ -63,7 +63,7 @@ def keep_panel(folder: Path) -> CurriculumMessage:
     host.choose("traineeComboBox", "T001")
     for name in ("trainees", "simulator", "setup", "scenario"):
         host.find(f"{name}CollapsibleButton").collapsed = True
-    host.let_pass(1.0)
+    host.idle_for(1.0)
     picture = FOLDER / "curriculum-in-slicer.png"
     host.find("curriculumCollapsibleButton").grab().save(str(picture))
     reduce_colors(picture)

@@ -32,7 +32,7 @@ if __name__ == "__main__":
 """
 
 
-def brought_along(folder: Path, pid_file: Path, options: Sequence[str]) -> SimulatorPackage:
+def bundled_package(folder: Path, pid_file: Path, options: Sequence[str]) -> SimulatorPackage:
     """Return what a module brings along to set up the simulator of this checkout.
 
     Args:

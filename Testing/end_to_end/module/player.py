@@ -14,7 +14,7 @@ from rastrainer.errors import RASTrainerError
 from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.virtual.scripted_trial import say_hello
+from rastrainer_simulator.virtual.scripted_trial import send_hello
 from Testing.end_to_end.onto_skin import lower_onto_skin
 
 SPEED_MM_S = 400
@@ -53,7 +53,7 @@ class Player:
         def run() -> None:
             try:
                 with Client(port=self._port) as client:
-                    say_hello(client, "player")
+                    send_hello(client, "player")
                     play(client)
             except (RASTrainerError, AssertionError) as error:
                 self._error = error

@@ -58,7 +58,7 @@ def save(picture: Path) -> None:
         host = Host(Path(temporary))
         host.open()
         host.press("showScenarioButton")
-        host.let_pass(3.0)
+        host.idle_for(3.0)
         host.widget.logic.session.procedure.showOutcome(outcome)
         first = outcome.analysis.trajectories[0]
         AlongInstrument(host.scene).show(first.tip, first.axis_direction)
@@ -67,7 +67,7 @@ def save(picture: Path) -> None:
             host.find(f"{name}CollapsibleButton").collapsed = True
         host.find(SECTION).collapsed = False
         host.look_from(120.0, 20.0, 1.2)
-        host.let_pass(1.0)
+        host.idle_for(1.0)
         host.window_screenshot(picture)
         host.close()
     reduce_colors(picture)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.slicer.link.connection import CONNECTOR_NAME
-from Testing.end_to_end.module.installed_simulator import brought_along, write_program
+from Testing.end_to_end.module.installed_simulator import bundled_package, write_program
 from Testing.end_to_end.module.player import Player
 from Testing.free_port import free_port
 from Testing.running_process import runs
@@ -36,7 +36,7 @@ class Story:
     def set_up(self) -> None:
         host = self.host
         setup = host.open().logic.session.simulator.setup
-        setup.package = brought_along(self.folder / "module", self._pid_file, self._options)
+        setup.package = bundled_package(self.folder / "module", self._pid_file, self._options)
         host.press("setupButton")
         host.wait_until(lambda: "is set up in" in host.text("setupText"), "it is set up")
 

@@ -54,7 +54,7 @@ class Tutorial:
         host.choose("taskComboBox", "Task 1")
         host.press("showScenarioButton")
         host.check("robotCheckBox")
-        host.let_pass(2.0)
+        host.idle_for(2.0)
         host.look_from(AZIMUTH, ELEVATION, ZOOM)
         self._only("scenario")
         self._take("03-head-and-task")
@@ -116,7 +116,7 @@ class Tutorial:
 
     def _plan_procedure(self) -> None:
         host = self._host
-        self._begin_anew()
+        self._reset_scene()
         self._only("procedurePlan")
         host.choose("procedurePlanComboBox", PROCEDURE)
         host.press("editProcedureButton")
@@ -127,16 +127,16 @@ class Tutorial:
         jumpTo(host.scene, line.target)
         host.look_at(HEAD, FROM_THE_RIGHT, ELEVATION, DISTANCE_MM)
 
-    def _begin_anew(self) -> None:
+    def _reset_scene(self) -> None:
         """Close the scene, which is full, and show the head again."""
         self._host.clear_scene()
         self._host.press("showScenarioButton")
-        self._host.let_pass(2.0)
+        self._host.idle_for(2.0)
 
     def _carry_out_procedure(self) -> None:
         """Start the task with the procedure, and lead it until the instrument is at its target."""
         host = self._host
-        self._begin_anew()
+        self._reset_scene()
         host.check("robotCheckBox")
         self._only("training")
         host.choose("procedureComboBox", PROCEDURE)
@@ -194,7 +194,7 @@ class Tutorial:
 
     def _take(self, name: str) -> None:
         """Save a picture."""
-        self._host.let_pass(0.5)
+        self._host.idle_for(0.5)
         path = self._pictures / f"tutorial-{name}.png"
         self._host.window_screenshot(path)
         reduce_colors(path)

@@ -65,7 +65,7 @@ def test_the_head_has_a_flat_base():
     assert (heights[~base] > heights.min() + 0.01).all()
 
 
-def test_the_head_is_smooth_without_the_steps_of_its_voxels():
+def test_the_head_is_smooth_without_voxel_steps():
     """Nine of ten edges bend by less than 10 degrees; marching cubes alone would leave 20 to 45."""
     corners = MESH.vertices[MESH.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -102,14 +102,14 @@ def test_every_fiducial_is_on_the_skin_away_from_base_and_neighbors(name):
     assert fiducials[:, 2].min() - MESH.vertices[:, 2].min() > 25
 
 
-def test_complexity_rises_from_task_to_task_and_is_what_the_files_say(computed):
+def test_complexity_rises_from_task_to_task_and_matches_the_files(computed):
     indices = [parts.index for parts in computed]
     assert all(harder > 1.05 * easier for easier, harder in pairwise(indices))
     assert [task.complexity for task in SCENARIO.tasks] == pytest.approx(indices, abs=0.01)
 
 
 @pytest.mark.parametrize("name", ["trial-run", "task-5"])
-def test_the_shortest_path_is_what_the_files_say(name):
+def test_the_shortest_path_matches_the_files(name):
     task = SCENARIO.task(name)
     shortest = shortest_path_mm(task.fiducials, MESH, GRAPH)
     assert task.shortest_path_mm == pytest.approx(shortest, abs=0.051)

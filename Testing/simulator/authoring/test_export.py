@@ -55,7 +55,7 @@ def folder(tmp_path):
     return written(tmp_path / "egg", np.argsort(-egg().vertices[:, 2])[:300:20])
 
 
-def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(
+def test_by_default_the_face_is_removed_from_mesh_and_picture_and_the_skull_is_left_out(
     folder, tmp_path, capsys
 ):
     assert main(["scenario", "pack", str(folder), str(tmp_path / "out.zip")]) == 0
@@ -78,7 +78,7 @@ def test_by_default_the_face_is_off_in_mesh_and_picture_and_the_skull_is_out(
     assert max(away) < 0.05
 
 
-def test_face_and_names_are_kept_where_that_is_wanted(folder, tmp_path, capsys):
+def test_face_and_names_are_kept_where_requested(folder, tmp_path, capsys):
     words = ["scenario", "pack", str(folder), str(tmp_path / "out.zip"), "--keep-face"]
     assert main([*words, "--keep-names"]) == 0
     assert "Nothing was removed." in capsys.readouterr().out
@@ -92,7 +92,7 @@ def test_face_and_names_are_kept_where_that_is_wanted(folder, tmp_path, capsys):
     assert given.provenance == before.provenance
 
 
-def test_by_default_nothing_in_the_file_reports_the_title_or_the_source(tmp_path):
+def test_by_default_nothing_in_the_file_reveals_the_title_or_the_source(tmp_path):
     folder = written(tmp_path / "egg", np.argsort(-egg().vertices[:, 2])[:300:20])
     path = folder / "scenario.json"
     content = json.loads(path.read_text())
@@ -140,7 +140,7 @@ def images_of(head, axes):
     return HeadVolume(np.where(inside, 100, 0).astype(np.uint8), matrix, 100.0, 50.0)
 
 
-def to_skin_found_in(images, places):
+def distances_to_skin_in(images, places):
     """Return how far places (n, 3), RAS mm, are outside of the head that is found in images.
 
     It is exact up to `REACH_MM`; farther places are at least so far away.
@@ -162,22 +162,22 @@ def middle_of_face(head):
 
 
 @pytest.mark.soak
-def test_the_skin_that_is_found_in_the_images_afterwards_has_nothing_of_the_face(colin27):
+def test_skin_extracted_afterwards_from_the_images_shows_nothing_of_the_face(colin27):
     head, before, after = colin27
     face = middle_of_face(head)
-    assert np.median(np.abs(to_skin_found_in(before, face))) <= 1.0
-    assert to_skin_found_in(after, face).min() > 4.0
+    assert np.median(np.abs(distances_to_skin_in(before, face))) <= 1.0
+    assert distances_to_skin_in(after, face).min() > 4.0
 
 
 @pytest.mark.soak
-def test_the_skin_that_is_found_afterwards_in_the_images_of_a_ball_has_nothing_of_its_face():
+def test_skin_extracted_afterwards_from_the_images_of_a_ball_shows_nothing_of_its_face():
     head = ball_with_a_face()
     after = without_face_in(images_of(head, np.eye(3) * 2.0), head)
-    assert to_skin_found_in(after, middle_of_face(head)).min() > 4.0
+    assert distances_to_skin_in(after, middle_of_face(head)).min() > 4.0
 
 
 @pytest.mark.soak
-def test_the_brain_stays_but_for_what_is_close_behind_the_face(colin27):
+def test_the_brain_is_kept_except_close_behind_the_face(colin27):
     head, before, after = colin27
     grid = Grid(before.values.shape, before.ijk_to_ras)
     inside = grid.inside(head)
@@ -194,7 +194,7 @@ def test_the_brain_stays_but_for_what_is_close_behind_the_face(colin27):
         pytest.param(OBLIQUE, id="oblique"),
     ],
 )
-def test_two_people_who_differ_in_the_face_alone_have_the_same_images_without_it(axes):
+def test_the_images_of_two_people_who_differ_only_in_the_face_are_identical_without_it(axes):
     one, other = ball_with_a_face(brow_mm=4.0), ball_with_a_face(brow_mm=-3.0)
     first, second = images_of(one, axes), images_of(other, axes)
     assert np.count_nonzero(first.values != second.values) > 500
@@ -212,7 +212,7 @@ def written_in():
     return head, images, without_face_in(images, head)
 
 
-def test_nothing_of_the_images_is_left_outside_of_the_shield(written_in):
+def test_nothing_is_left_in_the_images_outside_the_shield(written_in):
     head, images, left = written_in
     grid = Grid(images.values.shape, images.ijk_to_ras)
     around = np.linalg.norm(grid.places() - nose_tip(head), axis=-1) < RADIUS_MM
@@ -221,7 +221,7 @@ def test_nothing_of_the_images_is_left_outside_of_the_shield(written_in):
     assert not (left.values > 0)[outside].any()
 
 
-def test_what_is_written_into_the_air_around_the_head_goes_too(written_in):
+def test_anything_written_into_the_air_around_the_head_is_removed_too(written_in):
     head, images, left = written_in
     grid = Grid(images.values.shape, images.ijk_to_ras)
     far = grid.distances(grid.inside(head)) > KEPT_MM
@@ -229,7 +229,7 @@ def test_what_is_written_into_the_air_around_the_head_goes_too(written_in):
     assert not left.values[far].any()
 
 
-def test_images_whose_air_is_not_zero_get_air_in_the_place_of_the_face():
+def test_images_with_nonzero_air_get_air_in_place_of_the_face():
     head = ball_with_a_face()
     images = images_of(head, np.eye(3) * 4.0)
     units = np.where(images.values > 0, 40, -1000).astype(np.int16)
@@ -267,7 +267,7 @@ def test_by_default_landmarks_are_left_out_with_the_face_and_procedures_with_the
     assert not (given.folder / "no-go").exists()
 
 
-def test_with_the_face_procedures_are_kept_and_their_sources_are_not(folder, tmp_path):
+def test_procedures_are_kept_with_the_face_but_their_sources_are_not(folder, tmp_path):
     package = tmp_path / "out.zip"
     words = ["scenario", "pack", str(with_procedure(folder)), str(package), "--keep-face"]
     assert main(words) == 0

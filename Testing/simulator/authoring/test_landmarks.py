@@ -61,7 +61,7 @@ def test_landmarks_are_proposed_where_another_head_has_them(seed):
 
 
 @pytest.mark.soak
-def test_only_landmarks_within_the_robots_reach_are_proposed_and_the_rest_is_named(
+def test_only_landmarks_within_the_robots_reach_are_proposed_and_the_others_are_named(
     tmp_path, capsys
 ):
     path = tmp_path / "proposed.mrk.json"

@@ -31,7 +31,7 @@ CLEARANCE_M, AT_PLACE_M = 0.005, 1e-4
 
 @pytest.mark.soak
 @pytest.mark.parametrize("name", HEADS)
-def test_a_hundred_sets_keep_what_is_promised(name):
+def test_a_hundred_task_sets_keep_all_promises(name):
     head = HEADS[name]()
     planning = PlanningSetup(
         without_tasks(HeadDraft(head, "test"), ScenarioOptions(name, "test", "none")), head

@@ -59,7 +59,7 @@ def test_clicks_within_five_millimeters_of_the_skin_are_moved_onto_it_and_that_i
     assert np.linalg.norm(task.fiducials - on_skin, axis=1).max() < 2.0
 
 
-def test_clicks_farther_away_are_named_with_how_far_they_are(planning, on_skin, tmp_path):
+def test_clicks_farther_away_are_named_with_their_distance(planning, on_skin, tmp_path):
     points = on_skin.copy()
     points[2] *= 1.1
     points[11] *= 0.9
@@ -70,7 +70,7 @@ def test_clicks_farther_away_are_named_with_how_far_they_are(planning, on_skin, 
     assert "12 (" in sentence
 
 
-def test_numbers_in_the_labels_are_the_order_to_touch(planning, on_skin, tmp_path):
+def test_numbers_in_the_labels_give_the_touch_order(planning, on_skin, tmp_path):
     backward = [f"F-{number}" for number in range(15, 0, -1)]
     (task,), _, _ = read(planning, tmp_path, on_skin, backward)
     assert np.allclose(task.fiducials, on_skin[::-1], atol=0.01)

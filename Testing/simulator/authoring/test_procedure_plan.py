@@ -58,7 +58,7 @@ def with_line(folder, entry, target):
     return write(folder, values)
 
 
-def test_the_default_head_has_one_procedure_of_each_kind_that_can_be_carried_out(planning):
+def test_the_default_head_has_one_feasible_procedure_of_each_kind(planning):
     assert [procedure.kind for procedure in SCENARIO.procedures] == list(ProcedureKind)
     assert [len(procedure.trajectories) for procedure in SCENARIO.procedures] == [1, 2, 5]
     assert check_procedures(planning) == []
@@ -74,7 +74,7 @@ def test_the_targets_of_the_default_head_are_the_cited_ones():
         assert "doi:10." in SCENARIO.procedure(name).source
 
 
-def test_every_structure_of_the_default_head_is_called_schematic_and_kept_away_from():
+def test_every_structure_of_the_default_head_is_called_schematic_and_kept_clear_of():
     for procedure in SCENARIO.procedures:
         assert all(each.name.endswith("(schematic)") for each in procedure.no_go)
         meshes = read_procedure_meshes(procedure, SCENARIO.skull_mesh)
@@ -99,7 +99,7 @@ def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_named(copy, capsys):
         require_usable_procedures(load_setup(copy))
 
 
-def test_a_target_outside_of_the_head_is_refused_in_a_package_and_when_loaded(copy):
+def test_a_target_outside_the_head_is_refused_when_packed_and_when_loaded(copy):
     with_line(copy, [41.35, 35.39, 70.05], [41.35, 35.39, 120.0])
     sentence = r"Right subthalamic nucleus has its target \d+ mm outside of the head\."
     with pytest.raises(InputError, match=sentence):
@@ -140,13 +140,13 @@ def own_procedure(copy, tmp_path):
     return path
 
 
-def plan_words(copy, made, path):
+def plan_arguments(copy, made, path):
     return ["scenario", "plan", str(copy), "-o", str(made), "--procedure", str(path)]
 
 
 @pytest.mark.usefixtures("unrendered")
 def test_a_procedure_from_a_file_is_added_with_its_meshes(copy, own_procedure, tmp_path):
-    assert main(plan_words(copy, tmp_path / "made", own_procedure)) == 0
+    assert main(plan_arguments(copy, tmp_path / "made", own_procedure)) == 0
     made = load_scenario(tmp_path / "made")
     assert [each.name for each in made.procedures] == ["dbs", "own"]
     before = read_procedure_meshes(load_scenario(copy).procedure("dbs"), copy / "skull.ply")
@@ -165,12 +165,12 @@ def test_a_procedure_of_the_same_name_is_replaced(copy, own_procedure):
     assert list(meshes) == [changed.no_go[0].mesh.name]
 
 
-def test_a_procedure_that_cannot_be_carried_out_is_not_saved(copy, own_procedure, tmp_path, capsys):
+def test_an_infeasible_procedure_is_not_saved(copy, own_procedure, tmp_path, capsys):
     values = json.loads(own_procedure.read_text(encoding="utf-8"))
     values["trajectories"][0]["targetRas"] = [0.0, 0.0, 150.0]
     own_procedure.write_text(json.dumps(values), encoding="utf-8")
     before = sorted(tmp_path.rglob("*"))
-    assert main(plan_words(copy, tmp_path / "made", own_procedure)) == 2
+    assert main(plan_arguments(copy, tmp_path / "made", own_procedure)) == 2
     said = capsys.readouterr().err
     assert "Left subthalamic nucleus has its target" in said
     assert "outside of the head." in said
@@ -178,11 +178,11 @@ def test_a_procedure_that_cannot_be_carried_out_is_not_saved(copy, own_procedure
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_a_scenario_without_a_skull_takes_no_procedure(copy, own_procedure, tmp_path, capsys):
+def test_a_scenario_without_a_skull_accepts_no_procedure(copy, own_procedure, tmp_path, capsys):
     values = json.loads((copy / "scenario.json").read_text(encoding="utf-8"))
     del values["skull"], values["procedures"]
     write(copy, values)
-    assert main(plan_words(copy, tmp_path / "made", own_procedure)) == 2
+    assert main(plan_arguments(copy, tmp_path / "made", own_procedure)) == 2
     assert "has no skull, which a procedure needs for drilling" in capsys.readouterr().err
     assert not (tmp_path / "made").exists()
 

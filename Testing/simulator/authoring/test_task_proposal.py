@@ -45,7 +45,7 @@ def proposer(mesh, places):
     return TaskProposer(mesh, places, EYE, TARGET)
 
 
-def test_each_task_asks_more_than_the_one_before(proposer):
+def test_each_task_demands_more_than_the_one_before(proposer):
     proposals = proposer.propose_rising(PLANS, seed=1)
     assert [proposal.plan.name for proposal in proposals] == [plan.name for plan in PLANS]
     indices = np.array([proposal.complexity.index for proposal in proposals])
@@ -57,7 +57,7 @@ def test_each_task_asks_more_than_the_one_before(proposer):
         assert len(proposal.fiducials) == 15
 
 
-def test_where_it_is_wanted_the_first_task_is_the_easiest_of_many(proposer):
+def test_the_first_task_is_the_easiest_of_many_on_request(proposer):
     usual, easy = (
         proposer.propose_rising(PLANS[1:2], seed=1, begins_easy=begins_easy)[0]
         for begins_easy in (False, True)
@@ -95,7 +95,7 @@ def test_a_task_changes_sides_as_often_as_planned(proposer):
     assert np.count_nonzero(np.diff(by_side)) == 6
 
 
-def test_a_head_without_room_is_answered_with_a_sentence(mesh, places):
+def test_a_head_without_room_for_a_task_is_refused_with_a_message(mesh, places):
     few = type(places)(*(values[:10] for values in vars(places).values()))
     with pytest.raises(InputError, match="no room for the fiducials of Task 1"):
         TaskProposer(mesh, few, EYE, TARGET).propose(PLANS[1], 1)
@@ -110,7 +110,7 @@ def test_places_are_spread_evenly_and_cover_the_skin(mesh):
     assert among.min() >= 30.0
 
 
-def test_near_an_edge_is_no_place_for_a_fiducial():
+def test_no_fiducial_is_placed_near_an_edge():
     drum = trimesh.creation.cylinder(radius=80.0, height=120.0, sections=96).subdivide_to_size(6.0)
     mesh = HeadMesh(np.array(drum.vertices), np.array(drum.faces))
 
@@ -129,7 +129,7 @@ def ways_of(points):
     return transitions_between(points, normals, lengths)
 
 
-def test_points_in_a_row_are_touched_in_a_row():
+def test_points_in_a_line_are_touched_in_sequence():
     places = np.array([3, 0, 5, 1, 4, 2])
     points = np.stack([40.0 * places, np.zeros(6), np.zeros(6)], axis=1)
     order = places[easiest_order(ways_of(points), list(range(6)))].tolist()
@@ -137,7 +137,7 @@ def test_points_in_a_row_are_touched_in_a_row():
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_no_order_of_a_few_points_is_easier(seed):
+def test_a_few_points_are_ordered_nearly_as_easily_as_possible(seed):
     transitions = ways_of(np.random.default_rng(seed).uniform(-80, 80, (7, 3)) * [1, 1, 0])
     best, _ = transitions.easiest([list(order) for order in permutations(range(7))])
     assert transitions.costs([easiest_order(transitions, list(range(7)))])[0] <= 1.05 * best

@@ -54,12 +54,12 @@ def test_there_are_six_tasks_of_rising_complexity_on_the_skin_off_the_face(plann
     assert np.linalg.norm(fiducials[:, None] - face[None], axis=2).min() > 5.0
 
 
-def test_the_check_of_manually_placed_fiducials_finds_nothing_wrong_with_them(planning, tasks):
+def test_the_check_of_manually_placed_fiducials_accepts_them(planning, tasks):
     assert check_tasks(planning, tasks[::3], first_seed=70_000) == []
 
 
 @pytest.mark.soak
-def test_everything_that_is_promised_of_a_set_is_kept(planning, tasks):
+def test_every_promise_about_a_task_set_is_kept(planning, tasks):
     assert broken_promises(planning, tasks) == []
 
 
@@ -68,7 +68,7 @@ def test_the_first_planned_target_is_the_one_whose_error_is_reported(planning):
     assert check_plan(planning) == []
 
 
-def test_a_target_outside_of_the_head_is_reported(planning):
+def test_a_target_outside_the_head_is_reported(planning):
     outside = replace(planning.scenario, target_position=np.array([0.0, -100.0, 95.0]))
     told = check_plan(PlanningSetup(outside, planning.mesh))
     assert any("Tumor is" in sentence and "outside of the head" in sentence for sentence in told)
@@ -80,7 +80,7 @@ def moved(task, index, point):
     return replace(task, fiducials=fiducials)
 
 
-def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(planning, tasks, monkeypatch):
+def test_each_problem_of_a_task_is_reported_in_its_own_sentence(planning, tasks, monkeypatch):
     monkeypatch.setattr("rastrainer_simulator.authoring.scenario_check.POSES_TRIED", 1)
     run, first = tasks[:2]
     lifted = moved(run, 2, run.fiducials[2] * 1.1)
@@ -98,7 +98,7 @@ def test_each_thing_that_is_wrong_with_a_task_has_its_sentence(planning, tasks, 
     assert "shortestPathMm says 5.0 mm" in check_tasks(planning, [wrong])[0]
 
 
-def test_a_plan_outside_of_the_head_or_reach_has_its_sentence(planning):
+def test_a_plan_outside_the_head_or_out_of_reach_is_reported(planning):
     outside = (PlannedTarget("Elsewhere", np.array([300.0, 0.0, 0.0])),)
     scenario = replace(planning.scenario, targets=outside)
     assert "Elsewhere is" in check_plan(PlanningSetup(scenario, planning.mesh))[0]
@@ -107,7 +107,7 @@ def test_a_plan_outside_of_the_head_or_reach_has_its_sentence(planning):
     assert "From below" in check_plan(PlanningSetup(scenario, planning.mesh))[0]
 
 
-def test_a_first_target_too_deep_to_start_above_stays_a_further_one_and_that_is_reported():
+def test_a_first_target_too_deep_to_start_above_becomes_an_additional_one_and_that_is_reported():
     deep = PlannedTarget("Brainstem", np.array([0.0, -10.0, -60.0]))
     warnings = []
     wishes = replace(WISHES, targets=(deep, *WISHES.targets))
@@ -152,7 +152,7 @@ def placed(tmp_path, tasks):
     return replace(WISHES, task_files=(path,))
 
 
-def test_fiducials_placed_by_hand_become_tasks_and_a_skull_that_is_made_meanwhile_goes_in(
+def test_hand_placed_fiducials_become_tasks_and_a_skull_made_meanwhile_is_included(
     tmp_path, tasks, placed
 ):
     skull = HeadMesh(0.9 * egg().vertices, egg().triangles)

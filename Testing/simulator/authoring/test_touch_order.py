@@ -18,7 +18,7 @@ def graph():
 
 
 @pytest.mark.parametrize("degrees", [20, 60, 90, 150])
-def test_the_path_over_a_sphere_is_its_great_circle_within_a_tenth(graph, degrees):
+def test_the_path_over_a_sphere_is_within_a_tenth_of_its_great_circle(graph, degrees):
     exact = np.radians(degrees) * RADIUS_MM
     for longitude in range(0, 360, 40):
         way = graph.distance(on_sphere(longitude, 10), on_sphere(longitude, 10 + degrees))
@@ -58,7 +58,7 @@ def test_each_part_is_counted_in_its_unit():
     assert Complexity(300, 90, 4, 180).index == pytest.approx(3 + 1 + 4 + 2)
 
 
-def test_a_great_circle_has_no_turn_and_reorients_the_tool_by_its_angle():
+def test_a_great_circle_has_no_turns_and_reorients_the_tool_by_its_angle():
     found = of((90, -40), (90, -10), (90, 20), (90, 50))
     assert found.path_length_mm == pytest.approx(np.radians(90) * RADIUS_MM, rel=0.08)
     assert found.turning_deg == pytest.approx(0, abs=1.0)
@@ -66,7 +66,7 @@ def test_a_great_circle_has_no_turn_and_reorients_the_tool_by_its_angle():
     assert found.hidden_points == 0
 
 
-def test_each_reversal_turns_by_half_a_circle():
+def test_each_reversal_turns_by_180_degrees():
     assert of((80, 0), (100, 0), (80, 0), (100, 0)).turning_deg == pytest.approx(360, abs=2)
 
 
@@ -88,7 +88,7 @@ def test_a_point_is_hidden_if_the_default_view_cannot_show_its_number(longitude,
     assert of((90, 0), (longitude, 0)).hidden_points == hidden
 
 
-def test_a_point_behind_something_is_hidden_though_it_faces_the_view():
+def test_an_occluded_point_is_hidden_even_if_it_faces_the_view():
     mesh = sphere_mesh(3)
     screen = np.array([[-50.0, 300, -50], [50, 300, -50], [0, 300, 80]])
     with_screen = type(mesh)(

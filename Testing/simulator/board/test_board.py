@@ -10,9 +10,9 @@ import pytest
 
 from rastrainer_simulator.board.seats import SEATS_FILE
 from rastrainer_simulator.board.watched_seat import checked_seat
-from rastrainer_simulator.net.views.gate import BOARDS_FILE
-from rastrainer_simulator.net.views.presenter import Seat
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.net.views.access_control import BOARDS_FILE
+from rastrainer_simulator.presentation.presenter import Seat
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.board.conftest import PIN, WatchedSimulator
 from Testing.simulator.net.views.served import HELLO, request
 
@@ -28,7 +28,7 @@ def link_is(link: str):
     return lambda tiles: [tile["link"] for tile in tiles] == [link]
 
 
-def test_without_the_board_s_code_nothing_is_answered(board, simulator):
+def test_no_request_is_answered_without_the_boards_key(board, simulator):
     seat = board.add(simulator)
     for path in ("/tiles", "/paired", f"/seat/{seat}/", f"/seat/{seat}/role"):
         assert board.ask(path, key="x" * 40)[0] == 401
@@ -36,21 +36,21 @@ def test_without_the_board_s_code_nothing_is_answered(board, simulator):
     assert board.ask(f"/seat/{seat}", "DELETE", key="x" * 40)[0] == 401
 
 
-def test_a_seat_s_fingerprint_is_told_before_anything_is_sent_to_it(board, simulator):
+def test_a_seats_fingerprint_is_shown_before_anything_is_sent_to_it(board, simulator):
     values = {"name": "Door", "address": simulator.address, "code": "no code"}
     assert board.ask("/seats", "POST", **values) == (200, {"fingerprint": simulator.fingerprint})
     assert board.tiles_until(lambda _tiles: True) == []
 
 
-def test_what_a_seat_says_is_shown_and_what_it_says_next(board, simulator):
-    simulator.served.presenter.told_of_seat = AT_WORK
+def test_a_seats_state_is_shown_and_updated(board, simulator):
+    simulator.served.presenter.reported_seat = AT_WORK
     seat = board.add(simulator)
     (tile,) = board.tiles_until(is_watching)
     assert (tile["id"], tile["name"], tile["address"]) == (seat, "Window 3", simulator.address)
     shown = tile["seat"]
     assert (shown["trainee"], shown["task"], shown["count"]) == ("P07", "Task 2", 15)
     assert (shown["score"], shown["holder"], shown["phase"]) == (71.5, "gamepad", "idle")
-    simulator.served.presenter.told_of_seat = Seat("P08")
+    simulator.served.presenter.reported_seat = Seat("P08")
     board.tiles_until(lambda tiles: is_watching(tiles) and tiles[0]["seat"]["trainee"] == "P08")
 
 
@@ -67,9 +67,7 @@ def restarted(simulator, serve, certificates):
     return restart
 
 
-def test_seats_are_there_again_after_board_and_simulator_were_restarted(
-    open_board, simulator, restarted
-):
+def test_seats_are_back_after_board_and_simulator_have_restarted(open_board, simulator, restarted):
     first = open_board()
     first.add(simulator)
     first.tiles_until(is_watching)
@@ -81,7 +79,7 @@ def test_seats_are_there_again_after_board_and_simulator_were_restarted(
     assert tile["name"] == "Window 3"
 
 
-def test_keys_are_kept_where_only_their_owner_reads_them_and_a_seat_keeps_hashes(board, simulator):
+def test_keys_are_readable_only_by_their_owner_and_a_seat_stores_only_hashes(board, simulator):
     board.add(simulator)
     own, seats = board.config / SEATS_FILE, simulator.config / BOARDS_FILE
     assert [stat.S_IMODE(path.stat().st_mode) for path in (own, seats)] == [0o600, 0o600]
@@ -89,7 +87,7 @@ def test_keys_are_kept_where_only_their_owner_reads_them_and_a_seat_keeps_hashes
     assert entry["key"] not in seats.read_text(encoding="utf-8")
 
 
-def test_a_seat_with_another_certificate_is_sent_no_key_and_no_code(
+def test_a_seat_with_another_certificate_is_sent_neither_key_nor_code(
     board, simulator, restarted, tmp_path
 ):
     board.add(simulator)
@@ -106,7 +104,7 @@ def test_a_seat_with_another_certificate_is_sent_no_key_and_no_code(
     assert seen == []
 
 
-def test_a_seat_that_has_forgotten_the_board_asks_to_be_paired_again(board, simulator, restarted):
+def test_a_seat_that_has_forgotten_the_board_must_be_paired_again(board, simulator, restarted):
     board.add(simulator)
     board.tiles_until(is_watching)
     (simulator.config / BOARDS_FILE).unlink()
@@ -142,7 +140,7 @@ def test_a_removed_seat_is_forgotten_with_its_key(board, simulator):
         ({"code": None}, "The pairing code must be printable text"),
     ],
 )
-def test_what_is_wrong_with_a_new_seat_is_said_and_nothing_is_added(
+def test_a_problem_with_a_new_seat_is_reported_and_nothing_is_added(
     board, simulator, changes, sentence
 ):
     values = {
@@ -173,7 +171,7 @@ def test_an_order_needs_the_pin_once_and_is_carried_out(board, simulator):
     assert board.ask(path, "POST", order="pause") == (409, "Nothing is running.")
 
 
-def test_who_only_watches_the_board_neither_orders_nor_changes_it(board, simulator):
+def test_a_spectator_of_the_board_can_neither_give_orders_nor_change_it(board, simulator):
     seat = board.add(simulator)
     key = board.paired("spectator")
     assert len(board.tiles_until(is_watching, key)) == 1
@@ -184,7 +182,7 @@ def test_who_only_watches_the_board_neither_orders_nor_changes_it(board, simulat
     assert simulator.served.presenter.calls == []
 
 
-def test_no_page_of_another_origin_reaches_the_board(board, simulator):
+def test_no_page_from_another_origin_reaches_the_board(board, simulator):
     seat = board.add(simulator)
     headers = {"Authorization": f"Bearer {board.key}", "Origin": "https://elsewhere.example"}
     for path, method in (("/seats", "POST"), (f"/seat/{seat}", "DELETE"), ("/tiles", "GET")):
@@ -217,7 +215,7 @@ def live(board, seat, first):
     return board.thread.run(read())
 
 
-def test_a_seat_is_seen_live_and_nothing_that_its_page_sends_arrives_there(board, simulator):
+def test_a_seat_is_watched_live_and_nothing_its_page_sends_reaches_it(board, simulator):
     seat = board.add(simulator)
     kinds = live(board, seat, SPECTATOR)
     assert {"welcome", "screen", "state"} <= set(kinds)
@@ -227,7 +225,7 @@ def test_a_seat_is_seen_live_and_nothing_that_its_page_sends_arrives_there(board
     assert simulator.served.presenter.calls == []
 
 
-def test_sounds_come_from_the_seat_and_other_paths_lead_nowhere(board, simulator):
+def test_sounds_come_from_the_seat_and_other_paths_are_not_found(board, simulator):
     seat = board.add(simulator)
     headers = {"Authorization": f"Bearer {board.key}"}
     status, found, content = request(board.url, f"/seat/{seat}/sounds/touch.wav", headers=headers)
@@ -276,7 +274,7 @@ def good_seat() -> dict:
         *(("assignments", value) for value in (None, "x" * 601, "\n")),
     ],
 )
-def test_a_seat_that_says_what_no_simulator_says_is_not_shown(name, value):
+def test_a_seat_that_sends_invalid_values_is_not_shown(name, value):
     assert checked_seat(good_seat()) == good_seat()
     with pytest.raises(ValueError, match=f"The seat's {name} must be"):
         checked_seat({**good_seat(), name: value})
@@ -296,7 +294,7 @@ def test_a_seat_is_shown_in_every_language(language):
     assert checked_seat(seat) == seat
 
 
-def test_a_seat_with_too_many_warnings_shows_the_first_and_one_that_lacks_something_is_refused():
+def test_a_seat_with_too_many_warnings_shows_the_first_and_an_incomplete_one_is_refused():
     shown = checked_seat({**good_seat(), "warnings": [str(n) for n in range(1000)], "new": 1})
     assert (len(shown["warnings"]), "new" in shown) == (8, False)
     earlier = {k: v for k, v in good_seat().items() if k != "assignments"}
@@ -319,7 +317,7 @@ def test_a_damaged_list_of_seats_is_named_and_left_as_it_is(open_board, tmp_path
 
 
 def test_two_teachers_see_the_same(board, simulator):
-    simulator.served.presenter.told_of_seat = AT_WORK
+    simulator.served.presenter.reported_seat = AT_WORK
     board.add(simulator)
     other = board.paired()
     assert board.tiles_until(is_watching) == board.tiles_until(is_watching, other)

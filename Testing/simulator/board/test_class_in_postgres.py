@@ -20,7 +20,7 @@ def server():
         yield server
 
 
-def test_the_table_is_that_of_a_file_follows_changes_and_outlives_the_server(
+def test_the_table_matches_that_of_a_file_follows_changes_and_outlives_the_server(
     server, open_board, tmp_path
 ):
     place, path = server.new_study(), tmp_path / "study.db"

@@ -19,7 +19,7 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.board.class_table import ClassReader, class_table
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.domain.study.old_study import write_old_study
 from Testing.simulator.board.class_study import SHIPPED, as_in_narrow_columns, play_class
 from Testing.simulator.net.igtl.servers import PATIENCE_S
@@ -69,7 +69,7 @@ def test_the_table_is_that_of_the_report(study):
     assert shown == [[name, reached, *cells] for name, _n, reached, *cells in report]
 
 
-def test_a_cell_says_when_it_was_reached_and_how_far_an_open_one_is(reader):
+def test_a_reached_cell_shows_when_and_an_open_one_its_progress(reader):
     (table,) = class_table(reader.read(), "en")
     for row in table["trainees"]:
         assert row["reached"] == sum(cell["state"] == "reached" for cell in row["cells"])
@@ -81,7 +81,7 @@ def test_a_cell_says_when_it_was_reached_and_how_far_an_open_one_is(reader):
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_the_table_is_in_the_words_that_trainees_read(reader, language):
+def test_the_table_uses_the_words_that_trainees_read(reader, language):
     say = Texts(LANGUAGES[language]).say
     (table,) = class_table(reader.read(), language)
     words = {
@@ -113,13 +113,13 @@ def test_page_and_board_agree_on_the_message(open_board, study):
     (table,) = found["curricula"]
     row = table["trainees"][0]
     parts = (found, table, row, row["cells"][0])
-    names = ("ClassNews", "CurriculumNews", "TraineeNews", "CellNews")
+    names = ("ClassUpdate", "CurriculumUpdate", "TraineeUpdate", "CellUpdate")
     for part, name in zip(parts, names, strict=True):
         assert set(part) == members(name)
     assert set(table["assignments"][0]) == {"name", "label", "goal"}
 
 
-def test_it_is_read_again_only_when_something_is_new(reader, study):
+def test_the_study_is_read_again_only_when_something_is_new(reader, study):
     first = reader.read()
     assert reader.read() is first
     with Study.open(study) as opened:
@@ -131,7 +131,7 @@ def test_it_is_read_again_only_when_something_is_new(reader, study):
     assert reader.read().without == (*NAMES, "T099")
 
 
-def test_another_file_in_its_place_is_noticed(reader, study, tmp_path):
+def test_a_file_that_replaces_the_study_is_noticed(reader, study, tmp_path):
     reader.read()
     restored = tmp_path / "restored.db"
     play_class(restored, ["Z"], 0)
@@ -152,7 +152,7 @@ def test_a_study_of_an_earlier_format_is_followed_and_not_changed_by_reading(tmp
     reader.close()
 
 
-def test_reading_holds_up_no_seat_and_a_seat_holds_up_no_reading(reader, study):
+def test_reading_blocks_no_seat_and_no_seat_blocks_reading(reader, study):
     reader.read()
     before = study.read_bytes()
     with Study.open(study, LockWait(0.0)) as seat:
@@ -163,7 +163,7 @@ def test_reading_holds_up_no_seat_and_a_seat_holds_up_no_reading(reader, study):
     assert study.read_bytes() != before
 
 
-def test_a_locked_study_is_named_and_read_once_it_is_free(study, monkeypatch):
+def test_a_locked_study_is_reported_and_read_once_it_is_free(study, monkeypatch):
     monkeypatch.setattr("rastrainer_simulator.board.class_table.LOCK_WAIT_S", 0.01)
     reader, other = ClassReader(study), sqlite3.connect(study, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
@@ -174,7 +174,7 @@ def test_a_locked_study_is_named_and_read_once_it_is_free(study, monkeypatch):
     reader.close()
 
 
-def test_more_trainees_than_a_table_shows_are_said(reader, monkeypatch):
+def test_more_trainees_than_a_table_can_show_are_reported(reader, monkeypatch):
     monkeypatch.setattr("rastrainer_simulator.board.class_table.MOST_TRAINEES", 3)
     with pytest.raises(InputError, match="4 active trainees, and a table shows at most 3: archive"):
         reader.read()
@@ -191,7 +191,7 @@ def until(board, is_wanted):
         assert time.monotonic() < give_up, found
 
 
-def test_while_the_study_is_away_the_last_table_stays_and_the_page_is_told(
+def test_while_the_study_is_away_the_last_table_stays_and_the_page_is_informed(
     open_board, study, monkeypatch
 ):
     monkeypatch.setattr("rastrainer_simulator.board.class_table.ROUND_S", 0.05)
@@ -212,7 +212,7 @@ def test_without_a_study_the_board_says_so(board):
     assert board.ask("/class?language=xx") == (200, nothing)
 
 
-def test_the_table_is_for_who_is_paired_with_the_board_and_for_no_other_page(open_board, study):
+def test_the_table_is_served_only_to_paired_clients_and_to_no_other_page(open_board, study):
     board = open_board(study)
     assert board.ask("/class", key="x" * 40)[0] == 401
     headers = {"Authorization": f"Bearer {board.key}", "Origin": "https://elsewhere.example"}
@@ -221,7 +221,7 @@ def test_the_table_is_for_who_is_paired_with_the_board_and_for_no_other_page(ope
     assert board.ask("/class", key=board.paired("spectator"))[0] == 200
 
 
-def test_a_class_of_two_curricula_has_two_tables(study):
+def test_a_class_with_two_curricula_has_two_tables(study):
     with Study.open(study) as opened:
         own = read_curriculum(SHIPPED)
         other = type(own)("other", "Others", own.assignments[:1])
@@ -233,7 +233,7 @@ def test_a_class_of_two_curricula_has_two_tables(study):
     assert [row["trainee"] for row in tables[1]["trainees"]] == ["T002"]
 
 
-def test_the_command_names_what_is_no_study(tmp_path, capsys):
+def test_the_command_reports_a_path_that_is_not_a_study(tmp_path, capsys):
     missing = tmp_path / "none.db"
     assert main(["board", "--config", str(tmp_path), "--port", "0", "--study", str(missing)]) != 0
     assert f"There is no file {missing}." in capsys.readouterr().err

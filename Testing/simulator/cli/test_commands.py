@@ -90,7 +90,7 @@ def test_register_pairs_by_order_where_labels_are_left_out(files, tmp_path, run_
     assert result["fre_mm"] == pytest.approx(register(moving, fixed).fre_mm)
 
 
-def test_register_reports_warnings_in_json_and_in_words(files, tmp_path, run_json, capsys):
+def test_register_reports_warnings_in_json_and_as_text(files, tmp_path, run_json, capsys):
     moving, _, _, fixed_file = files
     moving[[2, 8]] = moving[[8, 2]]
     swapped = write_csv(tmp_path / "swapped.csv", moving)
@@ -143,7 +143,7 @@ def test_a_mean_time_without_a_mode_counts_for_all(run_json):
     assert own["desktop"]["mean_ct"] == pytest.approx(129.435)
 
 
-def test_what_one_trial_does_not_define_is_null(tmp_path, run_json):
+def test_statistics_undefined_for_a_single_trial_are_null(tmp_path, run_json):
     path = tmp_path / "one.csv"
     path.write_text("mode,subject,task,ct,rmse\ndesktop,a,task-1,100,1\n")
     result = run_json("score", path)["desktop"]
@@ -171,7 +171,7 @@ def test_score_prints_tables_and_the_warning(capsys):
         (["score", STUDY, "--mean-ct", "hmd=nan"], "mean completion time must be"),
     ],
 )
-def test_bad_input_is_one_sentence(words, sentence):
+def test_bad_input_is_reported_in_one_sentence(words, sentence):
     with pytest.raises(InputError, match=sentence) as caught:
         run(*words)
     assert "\n" not in str(caught.value)
@@ -188,7 +188,7 @@ def test_lists_that_do_not_pair_are_refused(files, tmp_path):
 @pytest.mark.parametrize(
     "content", [b"", b"\0" * 100, b"{", b"\xff\xfe", b"label,x,y,z\n1,nan,2,3\n"]
 )
-def test_bad_files_end_with_status_2_and_one_line(content, name, tmp_path, capsys):
+def test_bad_files_give_status_2_and_one_line(content, name, tmp_path, capsys):
     path = tmp_path / name
     path.write_bytes(content)
     for words in (["register", str(path), str(path)], ["score", str(path)]):
@@ -249,7 +249,7 @@ def means(path, names):
         return [sum(t.score for t in study.past_trials(name)[-3:]) / 3 for name in names]
 
 
-def test_the_mark_lies_between_the_groups_last_trials_without_trial_runs(study, capsys):
+def test_the_pass_mark_lies_between_the_groups_last_trials_without_trial_runs(study, capsys):
     assert main(words(study)) == 0
     output = capsys.readouterr().out
     mark = float(output.split()[2])
@@ -259,14 +259,14 @@ def test_the_mark_lies_between_the_groups_last_trials_without_trial_runs(study, 
         assert [trial.task for trial in opened.past_trials("N0")] == ["task-1"] * 4
 
 
-def test_scores_of_two_versions_give_no_mark(study, capsys):
+def test_scores_of_two_versions_give_no_pass_mark(study, capsys):
     with Study.open(study) as opened:
         add(opened, "N3", 20, 270.0, score=first_score)
     assert main(words(study)) == 2
     assert "scores of the versions 1 and 3, which cannot be compared" in capsys.readouterr().err
 
 
-def test_a_mark_of_earlier_scores_is_reported_and_is_written_into_no_protocol(
+def test_a_pass_mark_from_earlier_scores_is_reported_and_not_written_into_a_protocol(
     study, tmp_path, capsys
 ):
     with Study.open(study) as opened:
@@ -283,7 +283,7 @@ def test_a_mark_of_earlier_scores_is_reported_and_is_written_into_no_protocol(
     assert protocol.read_bytes() == SHIPPED.read_bytes()
 
 
-def test_the_mark_is_written_into_the_protocol_of_the_next_study(study, tmp_path, capsys):
+def test_the_pass_mark_is_written_into_the_protocol_of_the_next_study(study, tmp_path, capsys):
     protocol = tmp_path / "next.json"
     shutil.copy(SHIPPED, protocol)
     before = read_study_protocol(protocol)
@@ -304,7 +304,7 @@ def test_the_mark_is_written_into_the_protocol_of_the_next_study(study, tmp_path
         ({"novices": EXPERTS, "experts": NOVICES}, "experts who score higher"),
     ],
 )
-def test_groups_that_give_no_mark_are_refused_and_nothing_is_written(
+def test_groups_that_give_no_pass_mark_are_refused_and_nothing_is_written(
     study, tmp_path, capsys, more, sentence
 ):
     protocol = tmp_path / "next.json"
@@ -329,7 +329,7 @@ def test_aborted_trials_of_the_groups_are_reported_since_they_have_no_score(stud
 CURRICULUM = SHIPPED.with_name("example-curriculum.json")
 
 
-def test_a_curriculum_is_set_for_one_or_all_and_the_table_says_where_they_stand(study, capsys):
+def test_a_curriculum_is_set_for_one_or_all_and_the_table_shows_their_progress(study, capsys):
     assert main(["curriculum", str(study)]) == 0
     assert capsys.readouterr().out == "No trainee follows a curriculum.\n"
     assert main(["curriculum", str(study), "--set", str(CURRICULUM)]) == 0

@@ -83,7 +83,7 @@ def test_a_scenario_is_compared_by_every_method_with_text_csv_json_and_a_picture
     assert "they do not show which is better" in text
 
 
-def test_the_same_seed_is_the_same_trial_and_screws_do_not_move_with_the_skin(landmarked):
+def test_the_same_seed_gives_the_same_trial_and_screws_do_not_move_with_the_skin(landmarked):
     scenario = load_scenario(landmarked)
     still, moved = (MethodStudy(scenario, "task-1", shift) for shift in (0.0, 2.0))
     screws, markers = RegistrationMethod.BONE_SCREWS, RegistrationMethod.FIDUCIALS
@@ -129,7 +129,7 @@ def test_a_study_is_registered_by_every_method_that_its_trials_allow(
         (["--task", "task-9"], "has no such task"),
     ],
 )
-def test_an_option_that_cannot_be_used_gets_a_sentence(landmarked, capsys, words, said):
+def test_an_unusable_option_is_refused_with_a_message(landmarked, capsys, words, said):
     assert main(["compare-methods", "--scenario", str(landmarked), *words]) == 2
     assert said in capsys.readouterr().err
 
@@ -149,7 +149,7 @@ def test_a_traced_surface_is_registered_from_any_file(files, landmarked, traced,
     assert low < told["expected_tre"]["expected_mm"] < high
 
 
-def test_a_match_is_told_with_units_and_that_its_residual_is_not_its_error(
+def test_a_match_is_reported_with_units_and_a_note_that_its_residual_is_not_its_error(
     files, landmarked, capsys
 ):
     assert matched(files, landmarked) == 0
@@ -178,7 +178,7 @@ def in_one_place(trace):
         (in_one_place, "stays in one place"),
     ],
 )
-def test_a_trace_that_cannot_be_matched_gets_one_sentence(
+def test_a_trace_that_cannot_be_matched_is_reported_in_one_sentence(
     files, landmarked, traced, capsys, spoil, said
 ):
     write_point_cloud(files / "trace.ply", spoil(traced[2]), "World")
@@ -188,7 +188,7 @@ def test_a_trace_that_cannot_be_matched_gets_one_sentence(
     assert told.count("\n") == 1
 
 
-def test_an_open_or_foreign_mesh_gets_one_sentence(files, landmarked, capsys):
+def test_an_open_or_foreign_mesh_is_reported_in_one_sentence(files, landmarked, capsys):
     head = read_head_mesh(landmarked / "head.ply")
     write_head_mesh(files / "open.ply", HeadMesh(head.vertices, head.triangles[1:]))
     assert matched(files, landmarked, head=files / "open.ply") == 2
@@ -205,7 +205,7 @@ def test_a_surface_match_takes_no_weights_and_needs_a_head(files, landmarked, ca
     assert "--head" in capsys.readouterr().err
 
 
-def test_a_point_cloud_is_read_as_text_too_and_a_broken_one_is_refused(tmp_path):
+def test_a_point_cloud_is_also_read_as_text_and_a_broken_one_is_refused(tmp_path):
     path = tmp_path / "cloud.ply"
     head = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
     head += "property uchar red\nproperty float z\nend_header\n"

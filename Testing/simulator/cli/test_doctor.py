@@ -43,7 +43,7 @@ def held():
         yield listener.getsockname()[1]
 
 
-def test_a_free_port_is_ok_and_a_held_one_names_the_program_that_holds_it(held):
+def test_a_free_port_is_ok_and_one_in_use_is_reported_with_the_program_that_holds_it(held):
     port = free_port()
     assert verdicts(check_ports(port, port)) == [CheckStatus.OK, CheckStatus.OK]
     link, views = check_ports(held, held)
@@ -54,13 +54,13 @@ def test_a_free_port_is_ok_and_a_held_one_names_the_program_that_holds_it(held):
         assert finding.remedy
 
 
-def test_python_and_its_packages_are_there():
+def test_python_and_its_packages_are_found():
     found = list(check_python())
     assert CheckStatus.PROBLEM not in verdicts(found)
     assert "numpy" in found[-1].sentence
 
 
-def test_what_computes_the_kinematics_is_named(monkeypatch):
+def test_the_kinematics_backend_is_named(monkeypatch):
     def kinematics_result():
         (finding,) = (each for each in check_python() if each.check == "kinematics")
         return finding.verdict, finding.sentence
@@ -76,14 +76,14 @@ def test_what_computes_the_kinematics_is_named(monkeypatch):
     assert kinematics_result()[0] is CheckStatus.PROBLEM
 
 
-def test_a_missing_package_is_a_problem_with_the_command_that_mends_it(monkeypatch):
+def test_a_missing_package_is_a_problem_with_the_command_that_fixes_it(monkeypatch):
     monkeypatch.setitem(software.MODULES, "no-such-package", "no_such_module")
     (finding,) = (each for each in check_python() if each.verdict is CheckStatus.PROBLEM)
     assert "no-such-package cannot be loaded" in finding.sentence
     assert "pip install" in finding.remedy
 
 
-def test_without_a_display_the_window_is_said_to_stay_closed(monkeypatch):
+def test_without_a_display_the_window_is_reported_as_unavailable(monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
     (finding,) = check_graphics()
@@ -109,7 +109,7 @@ def test_on_a_display_the_renderer_of_opengl_is_named(monkeypatch):
         ("print('renderer')", "OpenGL does not work"),
     ],
 )
-def test_an_opengl_that_takes_its_process_down_is_reported(monkeypatch, script, words):
+def test_an_opengl_that_crashes_its_process_is_reported(monkeypatch, script, words):
     monkeypatch.setenv("DISPLAY", ":0")
     (finding,) = check_graphics((sys.executable, "-c", script))
     assert finding.verdict is CheckStatus.WARNING
@@ -118,7 +118,7 @@ def test_an_opengl_that_takes_its_process_down_is_reported(monkeypatch, script, 
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a font is always there")
-def test_a_font_for_chinese_is_named_and_none_is_a_warning_with_a_remedy(monkeypatch, tmp_path):
+def test_a_chinese_font_is_named_and_a_missing_one_reported_with_a_remedy(monkeypatch, tmp_path):
     try:
         (finding,) = check_font()
         assert (finding.verdict, finding.remedy) == (CheckStatus.OK, "")
@@ -141,7 +141,7 @@ def without_chinese(folder):
     return folder
 
 
-def test_a_gamepad_is_named_and_none_is_a_warning(tmp_path):
+def test_a_gamepad_is_named_and_a_missing_one_is_a_warning(tmp_path):
     (finding,) = check_gamepad(tmp_path)
     assert finding.verdict is CheckStatus.WARNING
     assert "No gamepad" in finding.sentence
@@ -150,7 +150,7 @@ def test_a_gamepad_is_named_and_none_is_a_warning(tmp_path):
     try:
         (finding,) = check_gamepad(tmp_path)
     finally:
-        gamepad.plug_out()
+        gamepad.unplug()
     assert finding.verdict is CheckStatus.OK
     assert "is plugged in" in finding.sentence
 
@@ -202,7 +202,7 @@ def test_real_time_priority_is_tried_without_a_lasting_effect(monkeypatch):
     assert "limits.conf" in finding.remedy
 
 
-def test_a_folder_is_judged_by_whether_it_can_be_written_to_and_by_its_room(tmp_path, monkeypatch):
+def test_a_folder_is_checked_for_write_permission_and_free_space(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("notes")
     missing, blocked = check_folders(
         {"trials": tmp_path / "a" / "b", "settings": tmp_path / "file" / "c"}
@@ -222,7 +222,7 @@ def test_a_folder_is_judged_by_whether_it_can_be_written_to_and_by_its_room(tmp_
         assert finding.verdict is verdict
 
 
-def test_a_clock_that_was_set_back_is_reported_by_the_journals(tmp_path):
+def test_a_clock_that_was_set_back_is_detected_from_the_journals(tmp_path):
     assert verdicts(check_clock(tmp_path, NOW)) == [CheckStatus.OK]
     (tmp_path / f"20260501T120000Z_x{SUFFIX}").touch()
     (finding,) = check_clock(tmp_path, NOW)
@@ -245,7 +245,7 @@ def test_settings_are_read_as_the_simulator_reads_them(tmp_path):
     assert (preferences.verdict, controls.verdict) == (CheckStatus.WARNING, CheckStatus.WARNING)
 
 
-def test_a_journal_that_cannot_be_used_is_named(tmp_path):
+def test_an_unusable_journal_is_named(tmp_path):
     (finding,) = check_journals(tmp_path)
     assert finding.verdict is CheckStatus.OK
     assert "0 trials wait" in finding.sentence
@@ -272,7 +272,7 @@ def words(folder: Path, port: int):
     ]
 
 
-def test_the_doctor_reports_a_line_a_check_and_ends_with_1_where_there_is_a_problem(
+def test_the_doctor_prints_one_line_per_check_and_exits_with_1_if_there_is_a_problem(
     tmp_path, held, capsys
 ):
     assert main(words(tmp_path, free_port())) == 0

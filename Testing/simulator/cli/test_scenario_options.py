@@ -20,7 +20,7 @@ def wished(*words):
     return options_of(parser.parse_args(["scenario", "tasks", "draft", *words]), "the volume")
 
 
-def test_what_is_not_said_is_as_usual(tmp_path):
+def test_omitted_options_have_their_defaults(tmp_path):
     wishes = wished("-o", str(tmp_path / "my-head"))
     assert (wishes.title, wishes.source, wishes.seed) == ("my-head", "the volume", 1)
     assert (wishes.targets, wishes.trajectory, wishes.task_files) == ((), None, ())
@@ -28,7 +28,7 @@ def test_what_is_not_said_is_as_usual(tmp_path):
     assert "its license is unknown" in wishes.license
 
 
-def test_everything_that_is_said_is_taken(tmp_path):
+def test_every_given_option_is_used(tmp_path):
     (tmp_path / "setup.json").write_text(
         json.dumps({"head": {"yawDeg": 20}, "perturbation": {"tiltDeg": 1}})
     )
@@ -69,7 +69,7 @@ def test_everything_that_is_said_is_taken(tmp_path):
         (["--setup", "{}/wrong.json"], "yawDeg"),
     ],
 )
-def test_what_cannot_be_used_gets_one_sentence_and_makes_nothing(tmp_path, capsys, words, sentence):
+def test_an_unusable_option_gets_one_sentence_and_makes_nothing(tmp_path, capsys, words, sentence):
     (tmp_path / "bad.json").write_text('{"haed": {}}')
     (tmp_path / "wrong.json").write_text('{"head": {"yawDeg": "much"}}')
     words = [word.replace("{}", str(tmp_path)) for word in words]
@@ -122,9 +122,7 @@ def test_a_copy_with_targets_reports_the_error_at_the_first(tmp_path):
         pytest.param(("--target", "Tumor", "0", "-100", "95"), "Tumor is", marks=pytest.mark.soak),
     ],
 )
-def test_a_plan_that_cannot_be_carried_out_is_reported_and_nothing_is_written(
-    tmp_path, capsys, words, sentence
-):
+def test_an_infeasible_plan_is_reported_and_nothing_is_written(tmp_path, capsys, words, sentence):
     assert copied(tmp_path / "copy", *words) == 2
     assert sentence in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

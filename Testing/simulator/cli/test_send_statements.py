@@ -66,7 +66,7 @@ def test_each_statement_is_sent_once_and_a_new_one_later(store, sender, tmp_path
     assert len(store.statements) == COUNT + 1
 
 
-def test_nothing_is_lost_or_doubled_while_the_store_is_away(store, tmp_path, capsys):
+def test_nothing_is_lost_or_duplicated_while_the_store_is_away(store, tmp_path, capsys):
     store.planned = [503, 429, 500]
     store.crashes = 2
     pauses = []
@@ -83,7 +83,7 @@ def test_nothing_is_lost_or_doubled_while_the_store_is_away(store, tmp_path, cap
     assert capsys.readouterr().out.count("Nothing is lost") == 5
 
 
-def test_a_store_that_nobody_runs_is_named_and_everything_is_sent_later(tmp_path):
+def test_a_store_that_is_not_running_is_named_and_everything_is_sent_later(tmp_path):
     port = free_port()
     url = f"http://127.0.0.1:{port}/xAPI"
     client = RecordStore(url, CREDENTIALS)
@@ -95,9 +95,7 @@ def test_a_store_that_nobody_runs_is_named_and_everything_is_sent_later(tmp_path
         assert len(back.statements) == COUNT
 
 
-def test_a_statement_that_the_store_has_otherwise_or_refuses_holds_up_no_other(
-    store, sender, capsys
-):
+def test_a_statement_that_conflicts_or_is_refused_does_not_block_the_others(store, sender, capsys):
     store.statements[STATEMENTS[3]["id"]] = statement(3, score=10.0)
     store.refused = {STATEMENTS[60]["id"]}
     assert sender.send() == 1
@@ -111,7 +109,7 @@ def test_a_statement_that_the_store_has_otherwise_or_refuses_holds_up_no_other(
     assert len(store.requests) == requests
 
 
-def test_a_crash_before_the_note_sends_again_what_the_store_recognizes(store, sender, tmp_path):
+def test_statements_sent_again_after_a_crash_are_recognized_by_the_store(store, sender, tmp_path):
     sender.send()
     (tmp_path / "study.db.xapi-sent.json").unlink()
     sender_of(store, tmp_path, STATEMENTS).send()
@@ -119,7 +117,7 @@ def test_a_crash_before_the_note_sends_again_what_the_store_recognizes(store, se
 
 
 @pytest.mark.parametrize(("status", "words"), [(401, "credentials"), (302, "no record store")])
-def test_wrong_credentials_and_redirections_end_it_with_a_sentence(store, sender, status, words):
+def test_wrong_credentials_and_redirects_end_it_with_a_message(store, sender, status, words):
     store.planned = [status]
     with pytest.raises(InputError, match=words):
         sender.send()
@@ -143,7 +141,7 @@ def test_an_address_that_would_reveal_something_is_refused(url, words):
 
 
 @pytest.mark.parametrize("credentials", ["", "lab", ":secret", "lab:", "lab:se\ncret"])
-def test_credentials_are_name_and_password(credentials):
+def test_credentials_consist_of_name_and_password(credentials):
     with pytest.raises(InputError, match="name:password"):
         RecordStore("https://lrs.example.org/xAPI", credentials)
 
@@ -174,7 +172,7 @@ def test_the_command_sends_a_study_and_says_what_is_missing(store, tmp_path, cap
     assert "run the command again" in capsys.readouterr().err
 
 
-def test_what_is_the_same_each_time_is_set_once(store, tmp_path, capsys):
+def test_options_that_never_change_can_be_set_in_a_file(store, tmp_path, capsys):
     stored_study = tmp_path / "study.db"
     study_with_trials(stored_study)
     words = ["send-statements", str(stored_study), "--config", str(tmp_path)]
@@ -206,13 +204,13 @@ def test_what_is_the_same_each_time_is_set_once(store, tmp_path, capsys):
     ],
     ids=str,
 )
-def test_settings_that_cannot_be_used_are_named(tmp_path, settings, words):
+def test_unusable_settings_are_named(tmp_path, settings, words):
     (tmp_path / RECORD_STORE_FILE).write_text(json.dumps(settings))
     with pytest.raises(InputError, match=words):
         read_record_store_settings(tmp_path)
 
 
-def test_a_note_of_what_was_sent_that_is_damaged_is_named(tmp_path):
+def test_a_damaged_file_of_sent_statements_is_named(tmp_path):
     (tmp_path / "study.db.xapi-sent.json").write_text('{"x": [1]}')
     with pytest.raises(InputError, match="does not hold lists of UUIDs"):
         SentStatements(tmp_path / "study.db", "https://lrs.example.org/xAPI", HOME)

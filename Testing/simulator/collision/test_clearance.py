@@ -24,7 +24,7 @@ def walk(rough):
 
 
 @pytest.mark.parametrize("rough", [False, True])
-def test_whatever_is_near_is_looked_at_in_every_tick(rough):
+def test_anything_near_is_checked_in_every_tick(rough):
     near = 0
     for distances, rows in walk(rough):
         assert set(np.flatnonzero(distances < FAR)) <= set(rows)
@@ -32,12 +32,12 @@ def test_whatever_is_near_is_looked_at_in_every_tick(rough):
     assert near > TICKS / 10
 
 
-def test_what_is_far_is_hardly_ever_looked_at():
+def test_anything_far_away_is_hardly_ever_checked():
     far = sum((distances[rows] >= FAR).sum() for distances, rows in walk(rough=False))
     assert far < 0.05 * COUNT * TICKS
 
 
-def test_all_are_due_once_something_else_has_moved():
+def test_all_distances_are_due_once_something_else_has_moved():
     bounds = DistanceBounds(3)
     for row in bounds.due(0.0):
         bounds.put_off(row, 9.0, 0.0)
@@ -46,7 +46,7 @@ def test_all_are_due_once_something_else_has_moved():
     assert bounds.due(1.0) == [0, 1, 2]
 
 
-def test_what_two_parts_may_close_in_on_is_due_after_half_the_way():
+def test_a_distance_that_two_moving_parts_close_is_due_after_half_the_way():
     bounds = DistanceBounds(1, closing=2.0)
     bounds.due(0.0)
     bounds.put_off(0, FAR + 1.0, 0.0)

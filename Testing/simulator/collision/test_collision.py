@@ -130,7 +130,7 @@ def test_the_nearest_link_and_its_clearance_are_those_of_brute_force(head, head_
     assert overlapping > 3
 
 
-def test_the_arm_against_itself_is_as_brute_force_says(collision):
+def test_the_arms_distance_to_itself_matches_brute_force(collision):
     random = np.random.default_rng(23)
     near = overlapping = 0
     folded = np.radians([170.0, 120.0, 170.0, 120.0, 170.0, 120.0, 175.0])
@@ -161,7 +161,7 @@ def test_a_folded_arm_runs_into_its_own_base(collision):
     assert collision.check(KINEMATICS.links(np.zeros(7))).self_worst == ()
 
 
-def test_the_table_is_where_the_tip_is_above_it(head, head_to_world):
+def test_the_distance_to_the_table_is_the_height_of_the_tip_above_it(head, head_to_world):
     far_away = head_to_world.copy()
     far_away[:3, 3] = (-0.5, 0.5, 0.3)
     for table_height in (0.0, -0.05):
@@ -197,7 +197,7 @@ def test_the_heads_stand_is_an_upright_column_under_its_base(head):
         assert found.table_worst == "iiwa_link_tool"
 
 
-def test_a_stand_of_no_height_is_no_obstacle(head):
+def test_a_stand_of_zero_height_is_no_obstacle(head):
     sunk = at(head[0], (0.5, 0.0, 0.05))
     collision = placed(head, sunk)
     q = posture((0.5, 0.2, 0.3), (0.0, 0.0, -1.0))
@@ -221,7 +221,7 @@ def test_head_and_arm_moved_together_keep_their_clearance(head):
     np.testing.assert_allclose(after.tip.normal, turned, rtol=0, atol=1e-6)
 
 
-def test_what_was_asked_before_changes_no_bit_of_an_answer(head, head_to_world, collision):
+def test_earlier_queries_do_not_change_an_answer_by_a_single_bit(head, head_to_world, collision):
     steps = (0.003, 0.01, 0.3)
     path = [q for step in steps for q in wander(100, seed=24, step=step)]
     poses = [KINEMATICS.links(q) for q in path]
@@ -232,7 +232,7 @@ def test_what_was_asked_before_changes_no_bit_of_an_answer(head, head_to_world, 
     assert {clearance.self_m < FAR for clearance in there} == {True, False}
 
 
-def test_the_quick_answer_whether_all_is_clear_is_that_of_the_clearances(
+def test_the_quick_clearance_check_agrees_with_the_computed_clearances(
     collision, head, head_to_world, postures
 ):
     quick = placed(head, head_to_world)
@@ -248,7 +248,7 @@ def test_the_quick_answer_whether_all_is_clear_is_that_of_the_clearances(
     assert 0.1 < np.mean(said) < 0.9
 
 
-def test_a_head_that_is_moved_is_measured_again(head, head_to_world, collision):
+def test_a_head_that_has_moved_is_measured_again(head, head_to_world, collision):
     links = KINEMATICS.links(ROBOT.home)
     before = collision.check(links)
     collision.set_head_pose(at(head[0], (0.5, 0.3, 0.2)))

@@ -158,7 +158,7 @@ def test_the_tip_slides_evenly_over_the_edges_of_triangles():
     assert np.degrees(np.arccos(turns.clip(-1, 1))).max() < 5.0
 
 
-def test_the_tip_comes_to_rest_in_a_groove_and_can_be_led_along_it():
+def test_the_tip_settles_in_a_groove_and_can_be_guided_along_it():
     surface = groove()
     driver = above(surface, (0.5, 0.0, 0.2), x=0.01, y=0.0)
     for _ in range(60):
@@ -254,7 +254,7 @@ def test_the_tip_slides_over_the_table():
     assert driver.tip[1] == pytest.approx(0.1 + 60 * 0.6 * 0.25 * TICK, rel=0.05)
 
 
-def test_a_tool_that_the_head_was_put_onto_gets_out_but_never_deeper():
+def test_a_tool_inside_a_newly_placed_head_can_move_out_but_never_deeper():
     surface = ball(0.08, 4)
     collision = collision_with(surface, (0.5, 0.0, 0.2))
     driver = Driver(collision, posture((0.5, 0.0, 0.27), DOWN))
@@ -269,7 +269,7 @@ def test_a_tool_that_the_head_was_put_onto_gets_out_but_never_deeper():
     assert driver.clearance.tip_m > 0.1
 
 
-def test_away_from_everything_the_wish_is_followed_to_the_bit():
+def test_away_from_all_obstacles_the_requested_motion_is_followed_to_the_last_bit():
     driver = above(ball(0.08, 4), (0.5, 0.0, 0.2), height=0.1)
     wishes = []
 

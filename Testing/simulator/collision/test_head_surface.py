@@ -45,7 +45,7 @@ def distances(surface, points):
     return np.array([surface.nearest_to_point(tuple(p)).distance_m for p in points.tolist()])
 
 
-def test_the_distance_of_a_point_is_that_of_brute_force(bumpy):
+def test_the_distance_of_a_point_matches_brute_force(bumpy):
     vertices, triangles = bumpy
     points = np.concatenate([around(*bumpy[:1], 100, 2), near(*bumpy, 100, 3)])
     expected = [point_to_triangles(p, vertices[triangles]).min() for p in points]
@@ -53,7 +53,7 @@ def test_the_distance_of_a_point_is_that_of_brute_force(bumpy):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
 
 
-def test_a_ball_is_as_far_as_its_radius_says():
+def test_the_distance_to_a_ball_follows_from_its_radius():
     surface = HeadSurface(*ball(0.1, 5))
     for distance in (-0.09, -0.05, -1e-3, 1e-3, 0.2):
         direction = np.array([0.48, -0.6, 0.64])
@@ -81,7 +81,7 @@ def test_the_sign_is_right_on_the_default_head(scenario):
     )
 
 
-def test_the_normal_is_where_the_clearance_grows(bumpy):
+def test_the_normal_points_where_the_clearance_grows(bumpy):
     surface = HeadSurface(*bumpy)
     for point in around(bumpy[0], 200, 8):
         here = surface.nearest_to_point(tuple(point))
@@ -97,7 +97,7 @@ def test_a_point_on_the_surface_has_the_outward_normal():
     np.testing.assert_allclose(on_top.normal, (0.0, 0.0, 1.0), atol=1e-12)
 
 
-def test_a_capsule_is_as_far_as_brute_force_says_of_its_axis():
+def test_the_distance_of_a_capsule_matches_brute_force_along_its_axis():
     vertices, triangles = bumpy_head(subdivisions=3)
     surface, random = HeadSurface(vertices, triangles), np.random.default_rng(9)
     checked = 0
@@ -116,7 +116,7 @@ def test_a_capsule_is_as_far_as_brute_force_says_of_its_axis():
     assert checked > 10
 
 
-def test_a_triangle_without_area_spoils_no_sign():
+def test_a_triangle_without_area_does_not_corrupt_the_sign():
     vertices, triangles = ball(0.1, 2)
     a, b, c = triangles[0]
     middle = len(vertices)
@@ -128,14 +128,14 @@ def test_a_triangle_without_area_spoils_no_sign():
         assert np.sign(surface.nearest_to_point(tuple(point)).distance_m) == -np.sign(inward)
 
 
-def test_vertices_given_twice_become_one():
+def test_duplicate_vertices_are_merged():
     vertices, triangles = ball(0.1, 3)
     loose = vertices[triangles].reshape(-1, 3)
     surface = HeadSurface(loose, np.arange(len(loose)).reshape(-1, 3))
     assert surface.nearest_to_point((0.0, 0.0, 0.05)).distance_m < 0.0
 
 
-def test_a_surface_that_is_inside_out_is_turned():
+def test_an_inside_out_surface_is_turned_outward():
     vertices, triangles = ball(0.1, 3)
     surface = HeadSurface(vertices, triangles[:, ::-1])
     assert surface.nearest_to_point((0.0, 0.0, 0.05)).distance_m < 0.0
@@ -162,6 +162,6 @@ def test_several_bodies_can_be_one_surface():
         (lambda v, t: (v, t.astype(float)), "whole numbers"),
     ],
 )
-def test_an_unusable_surface_is_refused_with_a_sentence(spoil, sentence):
+def test_an_unusable_surface_is_refused_with_a_message(spoil, sentence):
     with pytest.raises(InputError, match=sentence):
         HeadSurface(*spoil(*ball(0.1, 2)))

@@ -13,7 +13,7 @@ from rastrainer.protocol import CommandName, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.collision.proximity import DEEPEST, Pressing
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import HANDS_OFF, EventKind, Motion, OperatorCommand, OperatorInput
 from Testing.simulator.virtual.cheating_trainees import press
@@ -63,7 +63,7 @@ def test_without_contact_there_is_no_depth(simulation):
     assert all(result.state.depth == 0.0 for result in rest(simulation, 50))
 
 
-def test_a_move_beyond_the_skin_presses_as_deep_as_its_end_and_rests_there(simulation):
+def test_a_move_beyond_the_skin_presses_as_deep_as_its_target_and_stops_there(simulation):
     move(simulation, tip_mm(simulation) - (0.0, 0.0, 2.0))
     assert simulation.state.clearance > -1e-4
     # The top of the head is not quite level.
@@ -72,7 +72,7 @@ def test_a_move_beyond_the_skin_presses_as_deep_as_its_end_and_rests_there(simul
     assert {result.state.depth for result in rest(simulation, 50)} == {depth}
 
 
-def test_a_jog_presses_by_its_velocity_times_its_time(simulation):
+def test_a_jog_presses_by_its_velocity_times_its_duration(simulation):
     before = simulation.state.depth
     do(simulation, CommandName.JOG, velocityMmS=[0, 0, -5], durationS=0.4)
     rest(simulation, 120)
@@ -85,7 +85,7 @@ def test_a_stick_held_down_presses_to_the_limit_and_no_farther(simulation):
     assert depths[-1] == DEEPEST
 
 
-def test_lifting_takes_the_depth_back_and_the_end_of_contact_reports_the_greatest(simulation):
+def test_lifting_reduces_the_depth_and_the_end_of_contact_reports_the_maximum(simulation):
     for _ in range(40):
         simulation.step(DT, DOWN)
     rest(simulation, 1)
@@ -103,7 +103,7 @@ def test_lifting_takes_the_depth_back_and_the_end_of_contact_reports_the_greates
     assert left.data["depthMm"] == MM_PER_M * deepest
 
 
-def test_a_touch_and_a_refused_touch_report_how_deep_they_are(simulation):
+def test_accepted_and_refused_touches_report_their_depth(simulation):
     move(simulation, tip_mm(simulation) - (0.0, 0.0, 1.5))
     depth_mm = MM_PER_M * simulation.state.depth
     (event,) = do(simulation, CommandName.CAPTURE).events
@@ -111,7 +111,7 @@ def test_a_touch_and_a_refused_touch_report_how_deep_they_are(simulation):
     assert event.data["depthMm"] == depth_mm > 1.0
 
 
-def test_a_new_trial_starts_without_depth(simulation):
+def test_a_new_trial_starts_with_zero_depth(simulation):
     simulation.step(DT, DOWN)
     simulation.step(DT, DOWN)
     assert simulation.state.depth > 0.0
@@ -147,7 +147,7 @@ def written(entries, path):
     return read_journal(path)
 
 
-def test_every_touch_of_a_journal_reports_the_depth_that_the_sample_after_it_has(pressed):
+def test_every_touch_in_a_journal_reports_the_depth_of_the_sample_after_it(pressed):
     touches = [entry for entry in pressed.entries if entry["kind"] == "touch"]
     assert [touch["depthMm"] for touch in touches] == pytest.approx([2.0] * 15, abs=0.1)
     samples = {e["tick"]: e["depthMm"] for e in pressed.entries if e["kind"] == "sample"}
@@ -169,14 +169,14 @@ def begun(pressed):
 
 
 @pytest.mark.parametrize("kind", ["sample", "touch", "proximity"])
-def test_a_forged_depth_is_found_by_the_replay(setup, begun, tmp_path, kind):
+def test_a_forged_depth_is_detected_by_the_replay(setup, begun, tmp_path, kind):
     found = [entry for entry in begun if entry["kind"] == kind and "depthMm" in entry]
     found[-1]["depthMm"] += 0.5
     report = replay(written(begun, tmp_path / "forged.journal"), setup)
     assert "depthMm was" in report.difference
 
 
-def test_one_depth_left_out_is_found_by_the_replay(setup, begun, tmp_path):
+def test_a_single_missing_depth_is_detected_by_the_replay(setup, begun, tmp_path):
     del next(entry for entry in begun if entry["kind"] == "touch")["depthMm"]
     report = replay(written(begun, tmp_path / "forged.journal"), setup)
     assert "depthMm was None" in report.difference

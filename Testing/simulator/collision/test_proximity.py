@@ -34,7 +34,7 @@ def states(tips_mm, settings=ProximitySettings(), start=FREE):  # noqa: B008
     return found
 
 
-def test_the_tool_comes_near_touches_and_leaves():
+def test_the_tool_approaches_touches_and_leaves():
     way = [50.0, 20.5, 20.0, 10.0, 0.06, 0.05, 0.01, 0.2, 0.31, 20.9, 21.1, 50.0]
     assert (
         states(way) == [FREE] * 2 + [PROXIMITY] * 3 + [CONTACT] * 3 + [PROXIMITY] * 2 + [FREE] * 2
@@ -44,7 +44,7 @@ def test_the_tool_comes_near_touches_and_leaves():
 @pytest.mark.parametrize(
     ("edge_mm", "shiver_mm"), [(20.0, 0.4), (20.5, 0.4), (0.05, 0.04), (0.15, 0.1)]
 )
-def test_no_state_flickers_while_the_hand_shivers_at_its_edge(edge_mm, shiver_mm):
+def test_no_state_flickers_while_the_hand_trembles_at_its_threshold(edge_mm, shiver_mm):
     random = np.random.default_rng(31)
     found = states(edge_mm + random.uniform(-shiver_mm, shiver_mm, 1000))
     changes = sum(a is not b for a, b in pairwise(found))
@@ -65,7 +65,7 @@ def test_inside_the_head_is_contact():
     assert states([-30.0]) == [CONTACT]
 
 
-def test_the_edges_are_settings():
+def test_the_thresholds_are_settings():
     settings = ProximitySettings(near=0.01, far=0.012, touching=0.0002, released=0.001)
     assert states([15.0, 9.0, 0.5, 0.1, 0.9, 11.0, 13.0], settings) == [
         FREE,
@@ -92,7 +92,7 @@ def pressing():
     return Pressing()
 
 
-def test_what_is_commanded_into_the_skin_and_not_carried_out_adds_up(pressing):
+def test_commanded_motion_into_the_skin_that_is_not_carried_out_adds_up(pressing):
     for _ in range(4):
         pressing.move((0.0, 0.0, -0.0005), ZERO, skin())
     assert pressing.depth == pytest.approx(0.002)
@@ -100,18 +100,18 @@ def test_what_is_commanded_into_the_skin_and_not_carried_out_adds_up(pressing):
     assert pressing.depth == pytest.approx(0.0023)
 
 
-def test_motion_along_the_skin_is_no_pressing(pressing):
+def test_motion_along_the_skin_is_not_pressing(pressing):
     pressing.move((0.003, 0.001, 0.0), (0.003, 0.001, 0.0), skin())
     pressing.move((0.003, 0.001, 0.0), ZERO, skin())
     assert pressing.depth == 0.0
 
 
-def test_an_oblique_push_counts_by_its_part_into_the_skin(pressing):
+def test_an_oblique_push_counts_by_its_component_into_the_skin(pressing):
     pressing.move((0.003, 0.0, -0.0004), (0.003, 0.0, 0.0), skin())
     assert pressing.depth == pytest.approx(0.0004)
 
 
-def test_what_is_commanded_outward_takes_it_back_but_not_below_nothing(pressing):
+def test_commanded_outward_motion_reduces_the_depth_but_not_below_zero(pressing):
     pressing.move((0.0, 0.0, -0.002), ZERO, skin())
     pressing.move((0.0, 0.0, 0.0005), (0.0, 0.0, 0.0), skin())
     assert pressing.depth == pytest.approx(0.0015)
@@ -120,14 +120,14 @@ def test_what_is_commanded_outward_takes_it_back_but_not_below_nothing(pressing)
     assert pressing.deepest == pytest.approx(0.002)
 
 
-def test_a_free_displacement_is_no_pressing_even_where_the_arm_was_too_slow(pressing):
+def test_free_motion_is_not_pressing_even_if_the_arm_was_too_slow(pressing):
     pressing.move((0.0, 0.0, -0.0005), (0.0, 0.0, -0.0003), skin(REST + 0.0002))
     assert pressing.depth == pytest.approx(0.0, abs=1e-12)
     pressing.move((0.0, 0.0, -0.0005), (0.0, 0.0, -0.0002), skin(REST))
     assert pressing.depth == pytest.approx(0.0003)
 
 
-def test_the_end_of_contact_ends_it_and_the_deepest_is_kept_until_the_next(pressing):
+def test_the_end_of_contact_resets_the_depth_and_the_maximum_is_kept_until_the_next(pressing):
     pressing.move((0.0, 0.0, -0.002), ZERO, skin())
     pressing.end()
     assert (pressing.depth, pressing.deepest) == (0.0, pytest.approx(0.002))
@@ -135,13 +135,13 @@ def test_the_end_of_contact_ends_it_and_the_deepest_is_kept_until_the_next(press
     assert (pressing.depth, pressing.deepest) == (pytest.approx(0.001), pytest.approx(0.001))
 
 
-def test_ten_millimeters_are_the_most(pressing):
+def test_the_depth_is_limited_to_ten_millimeters(pressing):
     for _ in range(30):
         pressing.move((0.0, 0.0, -0.0005), ZERO, skin())
     assert pressing.depth == pressing.deepest == DEEPEST == 0.01
 
 
-def test_a_move_presses_no_farther_than_its_end(pressing):
+def test_a_move_presses_no_farther_than_its_target(pressing):
     for _ in range(100):
         pressing.move((0.0, 0.0, -0.0005), ZERO, skin(), to_goal=(0.01, 0.0, -0.002))
     assert pressing.depth == pytest.approx(0.002)
@@ -149,7 +149,7 @@ def test_a_move_presses_no_farther_than_its_end(pressing):
     assert pressing.depth == pytest.approx(0.002)
 
 
-def test_of_tip_and_shaft_the_nearer_part_counts(pressing):
+def test_the_nearer_of_tip_and_shaft_counts(pressing):
     sideways = (1.0, 0.0, 0.0)
     pressing.move((-0.001, 0.0, 0.0), ZERO, skin(0.004, (REST, sideways)))
     assert pressing.depth == pytest.approx(0.001)

@@ -64,7 +64,7 @@ def test_every_link_with_a_collision_mesh_is_covered():
     assert SHAPE.tool.name == "iiwa_link_tool"
 
 
-def test_the_tool_is_covered_but_for_its_last_three_millimetres():
+def test_the_tool_is_covered_except_for_its_last_three_millimetres():
     ((mesh, _),) = MESHES[SHAPE.tool.name]
     points = sampled(mesh, 20000) - [0.0, 0.0, 0.2]
     shaft = points[points[:, 2] < -SHAFT_START]
@@ -73,7 +73,7 @@ def test_the_tool_is_covered_but_for_its_last_three_millimetres():
 
 
 @pytest.mark.parametrize("leaning_deg", [0.0, 20.0, 40.0, 55.0, 60.0])
-def test_a_tool_that_leans_by_sixty_degrees_still_touches_a_plane_with_its_tip_first(leaning_deg):
+def test_a_tool_tilted_by_sixty_degrees_still_touches_a_plane_with_its_tip_first(leaning_deg):
     lean = np.radians(leaning_deg)
     to_plane = np.array([np.sin(lean), 0.0, -np.cos(lean)])
     for capsule in SHAPE.tool.capsules[:2]:
@@ -138,7 +138,7 @@ def test_a_robot_without_meshes_is_a_rod_from_the_tip_to_the_wrist(tmp_path):
     assert found.shaft_m == pytest.approx(found.tip_m, abs=0.02)
 
 
-def test_the_flange_is_the_tool_where_it_carries_none(tmp_path):
+def test_the_flange_is_the_tool_if_it_carries_none(tmp_path):
     text = asset_path("robots", "iiwa7", "iiwa7.urdf").read_text(encoding="utf-8")
     folder = tmp_path / "arm"
     shutil.copytree(asset_path("robots", "iiwa7"), folder)
@@ -153,7 +153,7 @@ def test_the_flange_is_the_tool_where_it_carries_none(tmp_path):
     assert len(shape.links) == 7
 
 
-def test_a_tool_of_a_millimetre_is_covered_too():
+def test_a_tool_one_millimetre_long_is_covered_too():
     stub = trimesh.creation.cylinder(0.004, 0.001)
     stub.apply_translation([0.0, 0.0, 0.0028])
     points = surface_points(stub.vertices, stub.faces, 0.0005)
@@ -162,7 +162,7 @@ def test_a_tool_of_a_millimetre_is_covered_too():
 
 
 @pytest.mark.parametrize("shift", [0.0, -0.1])
-def test_a_tool_that_lies_before_its_tip_is_refused(shift):
+def test_a_tool_that_lies_in_front_of_its_tip_is_refused(shift):
     points = np.array([[0.001, 0.0, shift], [0.0, 0.001, shift]])
     with pytest.raises(InputError, match="from its tip toward the wrist"):
         capsules_along(points, 0.003)

@@ -26,12 +26,12 @@ def random_half_spaces(random, count):
     return [half_space(n, n @ inside - random.uniform(0.0, 0.5)) for n in normals]
 
 
-def test_a_goal_inside_stays_where_it_is():
+def test_a_goal_inside_all_planes_stays_where_it_is():
     assert nearest_inside((1.0, 2.0, 3.0), [half_space((0, 0, 1), 3.0)]) == (1.0, 2.0, 3.0)
     assert nearest_inside((1.0, 2.0, 3.0), []) == (1.0, 2.0, 3.0)
 
 
-def test_one_two_and_three_planes_hold_a_goal():
+def test_one_two_and_three_planes_constrain_a_goal():
     floor, wall, front = (half_space(np.eye(3)[axis], 0.0) for axis in (2, 0, 1))
     goal = (-1.0, -2.0, -3.0)
     assert nearest_inside(goal, [floor]) == pytest.approx((-1.0, -2.0, 0.0))
@@ -39,7 +39,7 @@ def test_one_two_and_three_planes_hold_a_goal():
     assert nearest_inside(goal, [floor, wall, front]) == pytest.approx((0.0, 0.0, 0.0))
 
 
-def test_the_same_plane_twice_holds_like_one():
+def test_a_duplicate_plane_constrains_like_one():
     floor = half_space((0, 0, 1), 0.5)
     assert nearest_inside((1.0, 1.0, -1.0), [floor, floor]) == pytest.approx((1.0, 1.0, 0.5))
 
@@ -50,7 +50,7 @@ def test_planes_that_leave_no_room_have_no_point():
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 6])
-def test_the_point_is_the_one_that_scipy_finds(count):
+def test_the_point_matches_the_one_that_scipy_finds(count):
     random = np.random.default_rng(count)
     for _ in range(40):
         goal, planes = random.normal(size=3), random_half_spaces(random, count)
@@ -77,7 +77,7 @@ def nearest_on_floor(point):
 
 @pytest.mark.parametrize("height", [REST, 0.5 * REST, 0.0, -REST])
 @pytest.mark.parametrize("steps", [0.5, 2.0, 7.0])
-def test_a_tip_that_is_pressed_on_slides_all_the_way_however_near_it_was(height, steps):
+def test_a_pressed_tip_slides_the_whole_way_however_near_it_was(height, steps):
     tip, push = (0.3, 0.1, height), (steps * LONGEST_STEP, 0.0, -steps * LONGEST_STEP)
     way = slide(nearest_on_floor, tip, nearest_on_floor(tip), push, ())
     x, y, _ = add(tip, push)

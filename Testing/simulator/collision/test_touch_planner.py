@@ -36,7 +36,7 @@ def planner(robot, collision):
 
 
 @pytest.mark.parametrize("place", OUTWARD)
-def test_a_touch_has_only_the_tip_at_the_skin_and_leans_as_it_says(
+def test_in_a_touch_only_the_tip_is_at_the_skin_and_the_tool_leans_as_stated(
     robot, collision, planner, place
 ):
     normal = np.array(OUTWARD[place]) / np.linalg.norm(OUTWARD[place])
@@ -60,11 +60,11 @@ def test_a_touch_has_only_the_tip_at_the_skin_and_leans_as_it_says(
         pytest.param([1.5, 0, 0.3], id="out of reach"),
     ],
 )
-def test_what_cannot_be_touched_has_no_touch(planner, position):
+def test_an_untouchable_place_has_no_touch(planner, position):
     assert planner.touch(np.array(position), np.array([0.0, 0.0, -1.0])) is None
 
 
-def test_what_is_likely_is_tried_first_and_nothing_is_missed(planner):
+def test_the_likely_direction_is_tried_first_and_no_other_is_missed(planner):
     for normal in map(np.array, OUTWARD.values()):
         outward = normal / np.linalg.norm(normal)
         place = CENTER + RADIUS * outward
@@ -79,7 +79,7 @@ def test_what_is_likely_is_tried_first_and_nothing_is_missed(planner):
     assert planner.working_direction(below, np.array([0.0, 0.0, -1.0]), likely=7) is None
 
 
-def test_a_place_is_touchable_only_if_it_is_so_in_every_pose(planner, collision):
+def test_a_place_is_touchable_only_if_it_is_touchable_in_every_pose(planner, collision):
     positions = RADIUS * MM_PER_M * np.array([[0, 0, 1], [0.8, 0, 0.6]])
     normals = positions / (RADIUS * MM_PER_M)
     near, far = np.eye(4), np.eye(4)
@@ -90,7 +90,7 @@ def test_a_place_is_touchable_only_if_it_is_so_in_every_pose(planner, collision)
     assert in_both.tolist() == [True, False]
 
 
-def test_directions_of_the_tool_lean_from_none_to_much_on_all_sides():
+def test_tool_directions_lean_from_none_to_far_on_all_sides():
     normal = np.array([0.6, 0.0, 0.8])
     directions = list(tool_directions(normal))
     assert np.allclose(directions[0][1], -normal)

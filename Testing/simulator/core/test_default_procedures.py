@@ -37,9 +37,7 @@ def place(surgeon, trajectory):
 
 
 @pytest.mark.parametrize("name", ["biopsy", "dbs", "seeg"])
-def test_a_procedure_of_the_default_head_can_be_carried_out_and_its_error_is_the_registrations(
-    surgeon, name
-):
+def test_a_default_procedure_can_be_carried_out_and_its_error_is_the_registrations(surgeon, name):
     scenario = surgeon.simulation.setup.scenario
     plan = scenario.procedure(name)
     surgeon.to(Phase.ALIGNING, name, SHIFT_MM)

@@ -48,7 +48,7 @@ def test_the_tip_goes_exactly_to_its_target(motion, kinematics, rest):
     assert moved == pytest.approx((0.0003, -0.0002, 0.0001), abs=1e-9)
 
 
-def test_a_tip_that_does_not_move_moves_no_joint(motion, kinematics, rest):
+def test_a_stationary_tip_moves_no_joint(motion, kinematics, rest):
     away = go(motion, kinematics, rest, np.add(tip(kinematics, rest), (0.1, 0.1, 0)))
     q, _ = motion.toward(away, tip(kinematics, away), (0.0, 0.0, 0.0), None, DT)
     assert q == pytest.approx(away, abs=1e-9)
@@ -63,7 +63,7 @@ def test_the_elbow_does_not_wander_on_closed_paths(motion, kinematics, rest):
     assert np.degrees(np.abs(np.subtract(q, rest)).max()) < 8.0
 
 
-def test_where_a_joint_is_too_slow_the_tip_stays_on_its_straight_way(
+def test_where_a_joint_is_too_slow_the_tip_stays_on_its_straight_path(
     motion, kinematics, rest, setup
 ):
     start = np.array(tip(kinematics, rest))
@@ -75,7 +75,7 @@ def test_where_a_joint_is_too_slow_the_tip_stays_on_its_straight_way(
     assert (np.abs(np.subtract(q, rest)) <= setup.robot.velocity * DT * (1 + 1e-9)).all()
 
 
-def test_where_the_joint_limits_forbid_a_direction_the_tip_comes_first(motion, kinematics, rest):
+def test_where_the_joint_limits_forbid_a_direction_the_tip_takes_priority(motion, kinematics, rest):
     near_the_base = (0.36, 0.0, 0.25)
     q = go(motion, kinematics, rest, near_the_base)
     for _ in range(200):

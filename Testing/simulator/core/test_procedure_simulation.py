@@ -95,7 +95,7 @@ def surgeon(shared_procedure):
     return Surgeon(shared_procedure)
 
 
-def test_a_trial_of_touches_has_no_tool_but_the_pointer(surgeon):
+def test_a_trial_with_touches_only_has_no_tool_but_the_pointer(surgeon):
     surgeon.do(CommandName.ABORT)
     surgeon.must(CommandName.START_TASK, task="task-1", trainee="P01")
     assert surgeon.state.tool is Tool.POINTER
@@ -103,7 +103,7 @@ def test_a_trial_of_touches_has_no_tool_but_the_pointer(surgeon):
     assert surgeon.state.alignment is None
 
 
-def test_in_aligning_the_second_stick_turns_the_guide_and_the_first_keeps_its_direction(surgeon):
+def test_while_aligning_the_second_stick_turns_the_guide_and_the_first_keeps_its_direction(surgeon):
     """The setting leaves the direction free elsewhere."""
     surgeon.to(Phase.ALIGNING)
     axis = surgeon.state.guide_axis.direction
@@ -118,7 +118,7 @@ def test_in_aligning_the_second_stick_turns_the_guide_and_the_first_keeps_its_di
     np.testing.assert_allclose(surgeon.tip, tip, atol=1e-6)
 
 
-def test_in_the_other_phases_the_direction_is_as_it_is_set(surgeon):
+def test_in_the_other_phases_the_direction_follows_the_setting(surgeon):
     surgeon.to(Phase.VERIFYING)
     axis = surgeon.state.guide_axis.direction
     for _ in range(50):
@@ -130,7 +130,7 @@ def test_in_the_other_phases_the_direction_is_as_it_is_set(surgeon):
 
 
 @pytest.mark.parametrize("shift_mm", [(0.0, 0.0, 0.0), (2.0, -1.0, 1.0)])
-def test_the_robot_aligns_the_guide_on_the_plan_that_the_registration_shows(surgeon, shift_mm):
+def test_the_robot_aligns_the_guide_with_the_plan_as_registered(surgeon, shift_mm):
     surgeon.to(Phase.ALIGNING, shift_mm=shift_mm)
     assert surgeon.align(stand_off_mm=20.0) == "reached"
     shown = surgeon.state.alignment
@@ -148,7 +148,7 @@ def test_the_robot_aligns_the_guide_on_the_plan_that_the_registration_shows(surg
     np.testing.assert_allclose(MM_PER_M * aside, expected, atol=0.01)
 
 
-def test_the_robot_is_as_exact_on_many_lines_from_wherever_the_guide_is(surgeon):
+def test_the_robot_is_equally_exact_on_many_lines_from_any_guide_position(surgeon):
     random = np.random.default_rng(SEED)
     worst_mm = worst_deg = 0.0
     for number in range(MANY_LINES):
@@ -168,7 +168,7 @@ def test_the_robot_is_as_exact_on_many_lines_from_wherever_the_guide_is(surgeon)
     assert worst_deg <= 0.05
 
 
-def test_the_stick_takes_the_guide_over_from_the_robot(surgeon):
+def test_the_stick_takes_over_the_guide_from_the_robot(surgeon):
     surgeon.to(Phase.ALIGNING)
     surgeon.must(CommandName.ALIGN_GUIDE)
     for _ in range(50):
@@ -179,7 +179,7 @@ def test_the_stick_takes_the_guide_over_from_the_robot(surgeon):
     assert surgeon.state.motion is Motion.NONE
 
 
-def test_where_the_setting_forbids_it_the_robot_does_not_align_itself(planned):
+def test_the_robot_does_not_align_the_guide_where_the_setting_forbids_it(planned):
     procedure = replace(planned.settings.procedure, self_alignment=False)
     setup = replace(planned, settings=replace(planned.settings, procedure=procedure))
     surgeon = Surgeon(Simulation(setup, SEED))
@@ -189,7 +189,7 @@ def test_where_the_setting_forbids_it_the_robot_does_not_align_itself(planned):
     assert surgeon.state.motion is Motion.NONE
 
 
-def test_a_line_that_the_robot_cannot_hold_is_refused_at_once(surgeon):
+def test_a_line_on_which_the_robot_cannot_hold_the_guide_is_refused_at_once(surgeon):
     # By this registration the head is half a meter farther away.
     surgeon.to(Phase.ALIGNING, shift_mm=(500.0, 0.0, 0.0))
     answer = surgeon.do(CommandName.ALIGN_GUIDE, standOffMm=30.0)
@@ -197,7 +197,7 @@ def test_a_line_that_the_robot_cannot_hold_is_refused_at_once(surgeon):
     assert surgeon.state.motion is Motion.NONE
 
 
-def test_a_guide_that_points_beside_the_head_is_not_locked(surgeon):
+def test_a_guide_that_points_past_the_head_is_not_locked(surgeon):
     surgeon.to(Phase.ALIGNING)
     for _ in range(500):
         surgeon.step(RIGHT)
@@ -205,7 +205,7 @@ def test_a_guide_that_points_beside_the_head_is_not_locked(surgeon):
     assert surgeon.state.training.phase is Phase.ALIGNING
 
 
-def test_what_lies_ahead_is_where_the_true_surfaces_are(surgeon):
+def test_the_distances_ahead_are_those_of_the_true_surfaces(surgeon):
     surgeon.to(Phase.DRILLING, shift_mm=(1.0, 2.0, 0.0))
     scenario = surgeon.simulation.setup.scenario
     ahead = surgeon.simulation._procedure_motion.feed.ahead
@@ -227,7 +227,7 @@ def test_what_lies_ahead_is_where_the_true_surfaces_are(surgeon):
 
 
 @pytest.mark.parametrize("phase", [Phase.DRILLING, Phase.INSERTING])
-def test_a_locked_guide_does_not_move_whatever_the_sticks_and_commands_say(surgeon, phase):
+def test_a_locked_guide_does_not_move_whatever_the_sticks_and_commands_request(surgeon, phase):
     surgeon.to(phase)
     before = surgeon.state
     for _ in range(100):
@@ -243,7 +243,7 @@ def test_a_locked_guide_does_not_move_whatever_the_sticks_and_commands_say(surge
     assert surgeon.state.q == before.q
 
 
-def test_the_drill_follows_the_stick_through_skin_and_bone_and_says_what_is_felt(surgeon):
+def test_the_drill_follows_the_stick_through_skin_and_bone_and_reports_what_is_felt(surgeon):
     surgeon.to(Phase.DRILLING)
     ahead = surgeon.simulation._procedure_motion.feed.ahead
     surgeon.feed(ahead.inner + 0.001, IN)
@@ -259,7 +259,7 @@ def test_the_drill_follows_the_stick_through_skin_and_bone_and_says_what_is_felt
     assert surgeon.state.feed == depth
 
 
-def test_a_commanded_feed_goes_so_far_and_a_pause_ends_it(surgeon):
+def test_a_commanded_feed_goes_the_commanded_distance_and_a_pause_ends_it(surgeon):
     surgeon.to(Phase.DRILLING)
     surgeon.must(CommandName.FEED, velocityMmS=2.0, durationS=0.5)
     for _ in range(200):
@@ -275,7 +275,7 @@ def test_a_commanded_feed_goes_so_far_and_a_pause_ends_it(surgeon):
     assert surgeon.state.feed == depth
 
 
-def test_a_drill_in_the_scalp_can_be_taken_out_and_the_guide_aligned_again(surgeon):
+def test_a_drill_in_the_scalp_can_be_retracted_and_the_guide_aligned_again(surgeon):
     surgeon.to(Phase.DRILLING)
     surgeon.feed(surgeon.simulation._procedure_motion.feed.ahead.skin + 0.001, IN)
     surgeon.must(CommandName.RETRACT_DRILL)
@@ -286,7 +286,7 @@ def test_a_drill_in_the_scalp_can_be_taken_out_and_the_guide_aligned_again(surge
     assert "has cut bone" in surgeon.do(CommandName.RETRACT_DRILL).message
 
 
-def test_an_instrument_stops_at_the_bone_that_is_not_drilled_through(surgeon):
+def test_an_instrument_stops_where_the_bone_is_not_drilled_through(surgeon):
     surgeon.to(Phase.DRILLING)
     surgeon.feed(surgeon.through - 0.002, IN)
     drilled = surgeon.state.feed
@@ -298,7 +298,7 @@ def test_an_instrument_stops_at_the_bone_that_is_not_drilled_through(surgeon):
     assert surgeon.events[-1].data["layer"] == "blocked"
 
 
-def test_the_instrument_s_place_is_on_the_guide_s_axis_and_an_abort_leaves_nothing(surgeon):
+def test_the_instruments_place_is_on_the_guides_axis_and_an_abort_leaves_nothing(surgeon):
     surgeon.to(Phase.INSERTING)
     surgeon.feed(0.08, IN)
     surgeon.must(CommandName.RELEASE_INSTRUMENT)
@@ -311,7 +311,7 @@ def test_the_instrument_s_place_is_on_the_guide_s_axis_and_an_abort_leaves_nothi
     assert (surgeon.state.tool, surgeon.state.feed) == (Tool.POINTER, 0.0)
 
 
-def test_commands_of_two_phases_in_one_tick_are_carried_out_in_their_order(surgeon):
+def test_commands_of_two_phases_in_one_tick_are_carried_out_in_order(surgeon):
     surgeon.to(Phase.VERIFYING)
     names = (CommandName.ACCEPT_REGISTRATION, CommandName.ALIGN_GUIDE, CommandName.FEED)
     given = [{}, {}, {"velocityMmS": 1.0}]

@@ -37,7 +37,7 @@ def same(one, other) -> bool:
     return bool(np.array_equal(one, other)) and type(one) is type(other)
 
 
-def test_the_prepared_robot_is_what_its_files_say_to_the_last_bit():
+def test_the_prepared_robot_matches_its_files_to_the_last_bit():
     setup, robot = load_setup(), load_robot()
     assert same(setup.robot, robot)
     assert same(setup.shape, robot_shape(robot))
@@ -53,7 +53,7 @@ def test_a_simulator_starts_without_the_packages_that_read_meshes():
 
 
 @pytest.mark.parametrize("changed", ["iiwa7.urdf", "meshes/collision/link_3.stl"])
-def test_what_is_prepared_is_not_used_once_a_file_has_changed(copied, changed):
+def test_the_prepared_robot_is_not_used_once_a_file_has_changed(copied, changed):
     assert read_prepared(copied) is not None
     path = copied.parent / changed
     path.write_bytes(path.read_bytes() + b"\n")
@@ -61,7 +61,7 @@ def test_what_is_prepared_is_not_used_once_a_file_has_changed(copied, changed):
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", "nonsense", None])
-def test_a_robot_is_read_from_its_files_where_nothing_usable_is_prepared(copied, text):
+def test_a_robot_is_read_from_its_files_if_no_usable_prepared_one_exists(copied, text):
     prepared = copied.parent / PREPARED_NAME
     if text is None:
         prepared.unlink()

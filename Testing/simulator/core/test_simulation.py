@@ -128,7 +128,7 @@ def test_the_same_seed_and_inputs_give_the_same_states_to_the_last_bit(setup, tr
     assert {proximity for *_, proximity in first} == set(Proximity)
 
 
-def test_a_trial_is_the_same_whatever_was_done_before_it(trial):
+def test_a_trial_does_not_depend_on_what_was_done_before_it(trial):
     first = trajectory(trial, random_inputs(2, 300))
     trial.do(CommandName.ABORT)
     trajectory(trial, random_inputs(3, 300))
@@ -146,7 +146,7 @@ def test_ticks_and_time_count_every_step(trial):
     assert trial.state.elapsed == pytest.approx(11 * DT)
 
 
-def test_the_start_is_clear_of_the_head_in_every_seeded_pose(idle):
+def test_the_start_pose_is_clear_of_the_head_for_every_seed(idle):
     for seed in range(100):
         idle.start(seed=seed)
         assert idle.state.clearance > 0.05
@@ -182,7 +182,7 @@ def test_the_tip_moves_right_when_the_stick_is_pushed_right(trial, scenario):
     assert trial.state.motion is Motion.STICK
 
 
-def test_the_arm_does_not_move_to_the_last_bit_once_the_stick_is_released(trial):
+def test_the_arm_stands_bit_for_bit_still_once_the_stick_is_released(trial):
     for _ in range(50):
         trial.step(DOWN)
     stopped = trial.step().state
@@ -202,7 +202,7 @@ def test_the_tool_cannot_be_driven_into_the_head_and_slides_along_it(trial):
     assert np.linalg.norm(trial.tip - touched) > 0.005
 
 
-def test_proximity_and_contact_come_and_go_once_each_on_the_way_in_and_out(trial):
+def test_proximity_and_contact_begin_and_end_exactly_once_on_the_way_in_and_out(trial):
     trial.until(DOWN, lambda state: state.proximity is Proximity.CONTACT)
     up = OperatorInput(translation=(0.0, 0.0, 1.0))
     trial.until(up, lambda state: state.proximity is Proximity.FREE)
@@ -217,21 +217,21 @@ def test_proximity_and_contact_come_and_go_once_each_on_the_way_in_and_out(trial
     ]
 
 
-def test_a_move_reaches_its_target_and_says_so(trial):
+def test_a_move_reaches_its_target_and_reports_it(trial):
     target = MM_PER_M * trial.tip + (10.0, -30.0, 15.0)
     assert trial.move_to(target) == "reached"
     assert MM_PER_M * trial.tip == pytest.approx(target, abs=0.001)
     assert trial.state.operator == "tester"
 
 
-def test_a_move_into_the_head_stops_at_the_surface_and_says_that_it_was_blocked(trial):
+def test_a_move_into_the_head_stops_at_the_surface_and_reports_that_it_was_blocked(trial):
     center = trial.simulation.truth.in_world(trial.simulation.truth.target)
     assert trial.move_to(center) == "blocked"
     assert trial.state.clearance >= -0.0001
     assert trial.state.proximity is Proximity.CONTACT
 
 
-def test_a_move_out_of_reach_comes_as_near_as_the_arm_gets_and_says_so(trial):
+def test_a_move_out_of_reach_comes_as_near_as_the_arm_can_and_reports_it(trial):
     trial.move_to((1200.0, 0.0, 700.0))
     assert EventKind.REACH in {event.kind for event in trial.events}
 
@@ -270,7 +270,7 @@ def test_tasks_are_listed_with_their_titles(idle, scenario):
     assert [task["name"] for task in tasks] == [task.name for task in scenario.tasks]
 
 
-def test_the_camera_is_switched_and_told(trial):
+def test_the_camera_is_switched_and_an_event_reports_it(trial):
     trial.do(CommandName.SET_CAMERA, camera="far")
     assert trial.state.camera == "far"
     assert trial.events[-1].kind is EventKind.CAMERA
@@ -324,7 +324,7 @@ def test_a_planned_target_is_shown_once_the_trial_is_registered(setup):
     assert driver.state.planned_target is None
 
 
-def test_several_commands_of_one_tick_are_answered_each_in_their_order(trial):
+def test_several_commands_in_one_tick_are_each_answered_in_order(trial):
     commands = tuple(
         OperatorCommand(name, check_arguments(name, {}), ticket)
         for ticket, name in enumerate((CommandName.PAUSE, CommandName.PAUSE, CommandName.RESUME))
@@ -341,7 +341,7 @@ def test_a_simulation_continues_from_anothers_tick_time_revision_and_camera(setu
     assert state.training.revision == 7
 
 
-def test_the_robots_axes_are_followed_where_chosen(setup):
+def test_the_sticks_follow_the_robots_axes_if_so_configured(setup):
     settings = replace(setup.settings, axes=AxesChoice.ROBOT)
     driver = Driver(Simulation(replace(setup, settings=settings), 1))
     start = driver.tip
@@ -380,7 +380,7 @@ def test_a_steered_tool_turns_about_its_tip(setup):
     assert driver.tip == pytest.approx(tip, abs=1e-6)
 
 
-def test_in_pose_mode_the_tool_keeps_its_whole_rotation_where_it_is_driven(setup):
+def test_in_pose_mode_the_tool_keeps_its_full_orientation_wherever_it_is_driven(setup):
     driver = driver_with(setup, ToolDirection.POSE)
     rotation, tip = driver.state.tool_tip_to_world[:3, :3].copy(), driver.tip
     for stick in ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (-1.0, 1.0, -1.0)):
@@ -405,7 +405,7 @@ def hover(truth, label):
     return fiducial, fiducial + 70.0 * away / np.linalg.norm(away)
 
 
-def test_a_whole_trial_is_played_by_moves_and_every_touch_is_where_its_fiducial_is(trial):
+def test_a_whole_trial_is_played_by_moves_and_every_touch_is_at_its_fiducial(trial):
     truth = trial.simulation.truth
     above = truth.in_world(truth.target) + np.array([0.0, 0.0, 240.0])
     for number in range(1, 16):

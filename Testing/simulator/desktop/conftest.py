@@ -12,7 +12,7 @@ from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
-from rastrainer_simulator.net.views.screen import (
+from rastrainer_simulator.presentation.screen import (
     Hint,
     ItemKind,
     Menu,

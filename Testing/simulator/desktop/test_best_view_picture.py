@@ -12,7 +12,7 @@ from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.scene.scene_glb import scene_glb
 from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.teleoperation.steering import AxesChoice
@@ -92,7 +92,7 @@ def count_of_next(pixels):
 
 
 @pytest.mark.parametrize("label", BEHIND)
-def test_the_best_view_shows_a_fiducial_while_it_is_touched_and_the_usual_ones_did_not(
+def test_the_best_view_shows_a_fiducial_during_its_touch_where_the_default_views_did_not(
     setup, trial, views, show, label
 ):
     state, view, cameras = trial[1][label], views[label], setup.scenario.cameras

@@ -15,7 +15,7 @@ def test_a_box_covers_its_pixels_and_no_others():
     assert covered[2:8, 5:15].all()
 
 
-def test_what_is_half_transparent_mixes_with_what_is_under_it():
+def test_a_half_transparent_shape_blends_with_what_is_under_it():
     canvas = Canvas(4, 4)
     canvas.box(Box(0, 0, 4, 4), RED)
     canvas.box(Box(0, 0, 4, 4), GREEN)
@@ -28,7 +28,7 @@ def test_half_transparent_color_alone_keeps_its_hue():
     assert canvas.pixels()[0, 0].tolist() == [0, 255, 0, 128]
 
 
-def test_corners_are_round_and_the_area_is_that_of_the_shape():
+def test_corners_are_rounded_and_the_area_is_that_of_the_shape():
     canvas = Canvas(100, 60)
     canvas.box(Box(0, 0, 100, 60), RED, 20.0)
     opacity = canvas.pixels()[..., 3] / 255.0
@@ -36,7 +36,7 @@ def test_corners_are_round_and_the_area_is_that_of_the_shape():
     assert abs(opacity.sum() - (6000 - (4 - np.pi) * 400)) < 12
 
 
-def test_a_frame_is_empty_inside_and_what_is_off_the_canvas_is_left_out():
+def test_a_frame_is_empty_inside_and_anything_off_the_canvas_is_clipped():
     canvas = Canvas(30, 30)
     canvas.frame(Box(-5, -5, 30, 30), RED, 0.0, 3)
     opacity = canvas.pixels()[..., 3]
@@ -44,7 +44,7 @@ def test_a_frame_is_empty_inside_and_what_is_off_the_canvas_is_left_out():
     assert (opacity[22:25, :25] == 255).all()
 
 
-def test_text_stands_on_the_same_line_whatever_its_letters():
+def test_text_has_the_same_baseline_whatever_its_letters():
     setter = Brush(2.0)
     feet = []
     for text in ("x", "xÅ", "xg"):
@@ -63,7 +63,7 @@ def test_wrapped_lines_fit_and_lose_no_word():
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")
 
 
-def test_a_dollar_sign_is_no_formula_and_a_text_too_long_ends_in_an_ellipsis():
+def test_a_dollar_sign_does_not_start_a_formula_and_an_overlong_text_ends_in_an_ellipsis():
     setter = Brush(1.0)
     assert setter.width("$x$", BODY) > setter.width("x", BODY)
     fitted = setter.fit("A label that is much too long for its row", BODY, 120)

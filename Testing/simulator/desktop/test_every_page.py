@@ -14,7 +14,7 @@ from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
 from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
-from rastrainer_simulator.net.views.screen import ErrorArrow, Screen, Tone
+from rastrainer_simulator.presentation.screen import ErrorArrow, Screen, Tone
 from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, state_text
 from Testing.simulator.flow.conftest import loop, outside, presenter, shared  # noqa: F401
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
@@ -45,7 +45,7 @@ def show(gl_window, glb):
         gl_window.render_window.RemoveRenderer(renderer)
 
 
-def test_every_page_is_shown_the_same_when_it_is_opened_again(show, presenter):  # noqa: F811
+def test_every_page_looks_the_same_when_it_is_opened_again(show, presenter):  # noqa: F811
     screens = every_screen(presenter)
     assert names_of_pages() <= screens.keys()
     empty = show(Screen())

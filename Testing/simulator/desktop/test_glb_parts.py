@@ -17,14 +17,14 @@ def test_parts_know_their_body_their_nodes_and_their_finish(glb):
     np.testing.assert_allclose(parts["tip_marker"].finish.glow, TIP_FREE.linear_color, atol=0.003)
 
 
-def test_what_stands_still_is_in_the_robots_frame_with_z_up(glb):
+def test_static_parts_are_in_the_robots_frame_with_z_up(glb):
     room = next(part for part in read_parts(glb, BODIES) if part.nodes[0] == "room")
     np.testing.assert_allclose(room.vertices.min(axis=0), [-3, 0.5, -3], atol=1e-5)
     np.testing.assert_allclose(room.vertices.max(axis=0), [3, 0.6, 3], atol=1e-5)
 
 
 @pytest.mark.parametrize("content", [b"", b"glTF", b"\0" * 1000, b"{}"])
-def test_a_file_that_is_no_scene_is_refused_in_one_sentence(content):
+def test_a_file_that_is_not_a_scene_is_refused_in_one_sentence(content):
     with pytest.raises(InputError, match=r"^The scene .* cannot be read"):
         read_parts(content, BODIES)
 

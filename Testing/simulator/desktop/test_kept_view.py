@@ -16,7 +16,7 @@ from Testing.simulator.desktop.test_trace_picture import AHEAD, news
 BEFORE_FACE, BEHIND = (0.0, -0.2, 0.0, *HERE[3:]), (0.03, 0.2, 0.02, *HERE[3:])
 TURNED = (0.02, 0.0, 0.01, 0.0, 0.0, 0.2588190, 0.9659258)
 SIDE = {**CAMERA, "position": [0.5, -0.6, 0.2]}
-TRACE = ShownTrace().with_news(news(AHEAD))
+TRACE = ShownTrace().with_update(news(AHEAD))
 CHANGES = {
     "the tool before the head": {"poses": {"tool": BEFORE_FACE, "head": HERE}},
     "the tool behind it": {"poses": {"tool": BEHIND, "head": HERE}},
@@ -75,7 +75,7 @@ def draws_all(picture):
     return bool(picture.viewports.main.GetDraw())
 
 
-def test_whatever_changes_the_kept_picture_looks_like_one_that_is_drawn_anew(make, show):
+def test_whatever_changes_the_kept_picture_looks_like_a_newly_drawn_one(make, show):
     anew = {}
     for name, changes in CHANGES.items():
         # The first picture of all has nothing to keep.
@@ -89,7 +89,7 @@ def test_whatever_changes_the_kept_picture_looks_like_one_that_is_drawn_anew(mak
         assert np.abs(kept - anew[name]).max() <= 2, name
 
 
-def test_while_the_arm_moves_the_rest_is_kept_and_while_the_view_turns_it_is_not(make, show):
+def test_the_rest_is_kept_while_the_arm_moves_but_not_while_the_view_turns(make, show):
     picture = make()
     show(picture, times_drawn=3)
     for x in (0.01, 0.02, 0.03):

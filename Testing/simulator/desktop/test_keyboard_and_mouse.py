@@ -14,7 +14,7 @@ from rastrainer_simulator.desktop.keyboard_and_mouse import (
 )
 from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.net.views.messages import ORBIT, STICKS
+from rastrainer_simulator.net.views.incoming import ORBIT, STICKS
 
 SIZE = (1280, 720)
 HEIGHT = 720
@@ -51,11 +51,11 @@ BOTH = {
 
 
 @pytest.mark.parametrize(("scancode", "code"), BOTH.items())
-def test_a_key_is_named_by_its_place(scancode, code):
+def test_a_key_is_identified_by_its_position(scancode, code):
     assert CODES[scancode] == code
 
 
-def test_every_key_that_does_something_can_be_pressed_in_the_window():
+def test_every_key_with_a_function_can_be_pressed_in_the_window():
     bound = {code for codes in DEFAULT_BINDINGS.keyboard.values() for code in codes}
     assert bound <= set(CODES.values())
 
@@ -79,14 +79,14 @@ def key_up(scancode):
     ],
     ids=["taps", "tap in one look", "tap over two looks", "held", "two keys"],
 )
-def test_of_a_held_key_one_repeat_a_look_is_left_and_none_of_one_that_was_let_go(
+def test_a_held_key_repeats_at_most_once_per_frame_and_a_released_key_not_at_all(
     held, events, left
 ):
     kept = without_late_repeats(events, held.__contains__)
     assert [id(event) for event in kept] == [id(events[index]) for index in left]
 
 
-def test_everything_else_is_left_as_it_came():
+def test_all_other_events_are_left_unchanged():
     others = [pygame.event.Event(kind) for kind in (pygame.QUIT, pygame.MOUSEMOTION)]
     assert without_late_repeats(others, lambda _scancode: True) == others
 
@@ -126,7 +126,7 @@ def drag(sticks, kind, place, **members):
     return sticks.take(pygame.event.Event(kind, pos=place, **members), SIZE)
 
 
-def test_a_drag_on_each_stick_moves_the_tip_and_ends_with_the_button(sticks, kept):
+def test_a_drag_on_each_stick_moves_the_tip_until_the_button_is_released(sticks, kept):
     x, y = middle(0)
     assert drag(sticks, pygame.MOUSEBUTTONDOWN, (x, y - 20), button=LEFT)
     translation, rotation = kept.last
@@ -143,14 +143,14 @@ def test_a_drag_on_each_stick_moves_the_tip_and_ends_with_the_button(sticks, kep
     assert kept.last[0] == [0.0, 0.0, 0.0]
 
 
-def test_a_click_beside_the_sticks_is_not_theirs(sticks, kept):
+def test_a_click_outside_the_sticks_is_ignored_by_them(sticks, kept):
     assert not drag(sticks, pygame.MOUSEBUTTONDOWN, (640, 100), button=LEFT)
     drag(sticks, pygame.MOUSEMOTION, (700, 120))
     assert kept.messages == []
 
 
 @pytest.mark.parametrize("size", [(960, 540), (1280, 720), (1920, 1080)], ids=str)
-def test_the_sticks_lie_within_the_window_apart_from_each_other(size):
+def test_the_sticks_lie_apart_within_the_window(size):
     left, right = stick_boxes(size)
     assert left.left > 0
     assert left.top > size[1] / 3
@@ -174,7 +174,7 @@ def move(mouse, right, down):
     mouse.take(pygame.event.Event(pygame.MOUSEMOTION, rel=(right, down), pos=(0, 0)), HEIGHT)
 
 
-def test_a_drag_with_the_right_button_is_sent_once_a_picture_and_ends_with_the_button(mouse, kept):
+def test_a_drag_with_the_right_button_is_sent_once_per_frame_until_its_release(mouse, kept):
     press(mouse, RIGHT)
     move(mouse, 30, 0)
     move(mouse, 42, 36)
@@ -194,7 +194,7 @@ def test_a_drag_with_the_right_button_is_sent_once_a_picture_and_ends_with_the_b
     assert len(kept.messages) == 1
 
 
-def test_wheel_and_pinch_go_nearer_and_farther(mouse, kept):
+def test_wheel_and_pinch_zoom_in_and_out(mouse, kept):
     for event in (
         pygame.event.Event(pygame.MOUSEWHEEL, y=2),
         pygame.event.Event(pygame.MULTIGESTURE, pinched=-0.2),
@@ -205,7 +205,7 @@ def test_wheel_and_pinch_go_nearer_and_farther(mouse, kept):
     assert nearer < 1.0 < farther
 
 
-def test_what_is_done_over_a_menu_turns_nothing_later(mouse, kept):
+def test_mouse_motion_over_a_menu_turns_nothing_later(mouse, kept):
     press(mouse, RIGHT)
     move(mouse, 500, 0)
     mouse.tell(is_wanted=False)
@@ -213,7 +213,7 @@ def test_what_is_done_over_a_menu_turns_nothing_later(mouse, kept):
     assert kept.messages == []
 
 
-def test_however_wild_the_hand_the_simulator_takes_the_message(mouse, kept):
+def test_the_simulator_accepts_the_message_however_wild_the_mouse_motion(mouse, kept):
     press(mouse, RIGHT)
     move(mouse, 10_000, -10_000)
     mouse.take(pygame.event.Event(pygame.MOUSEWHEEL, y=100), HEIGHT)

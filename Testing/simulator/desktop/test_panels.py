@@ -11,7 +11,7 @@ from rastrainer_simulator.desktop.panels.item_row import Look, text_color
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.panels.tip_guides import target_arrow
-from rastrainer_simulator.net.views.screen import (
+from rastrainer_simulator.presentation.screen import (
     Fact,
     Hint,
     Menu,
@@ -47,7 +47,7 @@ def paint(menu, size, hovered=""):
 
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("menu", [MENU, LONG, WORDY], ids=lambda menu: menu.name)
-def test_no_menu_is_larger_than_its_room_and_its_focus_is_always_seen(menu, size):
+def test_no_menu_exceeds_its_space_and_its_focus_is_always_visible(menu, size):
     picture = paint(menu, size)
     height, width = picture.pixels.shape[:2]
     assert width <= size[0] - 64
@@ -71,7 +71,7 @@ def contrast(color, ground):
 
 
 @pytest.mark.parametrize("focus", ["task-2", "mode"])
-def test_a_disabled_item_is_readable_with_and_without_the_focus(focus):
+def test_a_disabled_item_is_readable_with_and_without_focus(focus):
     picture = paint(replace(MENU, focus=focus), (1920, 1080))
     row, item = picture.rows["task-2"], MENU.items[-1]
     ground = picture.pixels[row.top + row.height // 2, row.left + 8] / 255.0
@@ -101,7 +101,7 @@ def test_a_long_text_hides_no_choice(size):
 
 
 @pytest.mark.parametrize("size", SIZES[:4])
-def test_the_menu_of_the_tasks_is_whole_without_being_wider(size):
+def test_the_task_menu_is_complete_without_being_wider(size):
     items = tuple(MenuItem(f"row{n}", f"Row {n}", help="So many words. " * 8) for n in range(14))
     tasks = Menu("experiment", "Experiment", items=items, focus="row13")
     picture, few = paint(tasks, size), paint(replace(tasks, items=items[:3]), size)
@@ -109,7 +109,7 @@ def test_the_menu_of_the_tasks_is_whole_without_being_wider(size):
     assert picture.pixels.shape[1] <= few.pixels.shape[1]
 
 
-def test_a_click_finds_the_item_in_whose_row_it_is():
+def test_a_click_finds_the_item_whose_row_it_hits():
     picture = paint(MENU, (1920, 1080))
     for name, row in picture.rows.items():
         assert picture.item_at(row.left + 3, row.top + row.height / 2) == name
@@ -134,14 +134,14 @@ def test_focus_hover_and_disabled_items_look_different():
     assert brightest("task-2") < 0.75 * brightest("task-1")
 
 
-def test_the_smallest_letters_are_readable_from_a_meter():
+def test_the_smallest_letters_are_readable_from_one_meter_away():
     # 0.3 degrees of sight (ISO 9241-303) is 5 mm at 1 m: 19 pixels of a 24-inch screen of 1080.
     sizes = [getattr(theme, name).size for name in ("BODY", "SMALL", "HEADING", "TITLE")]
     assert min(sizes) >= 19
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_long_sentences_and_many_hints_stay_in_their_room(size):
+def test_long_sentences_and_many_hints_stay_within_their_space(size):
     brush = Brush(theme.scale_of(*size))
     room = size[0] // 2
     message = ScreenMessage(
@@ -157,7 +157,7 @@ def test_long_sentences_and_many_hints_stay_in_their_room(size):
     assert max(pixels.shape[1] for pixels in painted) <= room
 
 
-def test_the_window_has_an_icon_of_its_own_with_a_head_and_the_robot():
+def test_the_window_has_its_own_icon_with_a_head_and_the_robot():
     icon = window_icon()
     assert icon.shape == (ICON_SIZE, ICON_SIZE, 4)
     for color in (SKIN, ARM):
@@ -165,7 +165,7 @@ def test_the_window_has_an_icon_of_its_own_with_a_head_and_the_robot():
         assert is_that.sum() > 100
 
 
-def test_tones_are_told_by_color():
+def test_tones_are_distinguished_by_color():
     brush = Brush(1.0)
     banners = [
         strips.warning(ScreenMessage("Text", tone), brush, 900)[5, 40, :3].astype(int)
@@ -204,7 +204,7 @@ HEADS = Menu(
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_the_picture_of_the_item_in_focus_is_shown_beside_the_list(size):
+def test_the_picture_of_the_focused_item_is_shown_beside_the_list(size):
     color = np.array([40, 90, 160])
     room = (size[0] - 64, size[1] - 160)
     thumbnail = Thumbnail.from_png(png(640, 480))
@@ -225,13 +225,13 @@ def test_the_picture_of_the_item_in_focus_is_shown_beside_the_list(size):
     assert columns.max() < shown.rows["head mine"].left
 
 
-def test_what_is_no_picture_is_refused_with_a_sentence():
+def test_a_file_that_is_not_a_picture_is_refused_with_a_message():
     with pytest.raises(InputError, match="cannot be read"):
         Thumbnail.from_png(b"no picture")
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_the_trend_has_a_bar_for_each_score_as_high_as_it_is_and_hides_no_task(size):
+def test_the_trend_has_a_bar_of_matching_height_for_each_score_and_hides_no_task(size):
     scores = (20.0, 40.0, 80.0)
     menu = replace(MENU, trend=ScoreTrend("Scores: 20, 40, 80.", scores, 70.0))
     picture = paint(menu, size)

@@ -13,8 +13,8 @@ from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.desktop.performance import Quality, first_quality
 from rastrainer_simulator.desktop.picture import Pointer
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
-from rastrainer_simulator.net.views.screen import Hint, Screen
 from rastrainer_simulator.ops.chinese_font import chinese_font
+from rastrainer_simulator.presentation.screen import Hint, Screen
 from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from Testing.read_png import read_png
@@ -60,7 +60,7 @@ def main_view(pixels):
 
 
 @pytest.mark.parametrize("touch", [stage.value for stage in TouchStage])
-def test_the_tip_is_red_only_where_a_touch_goes_wrong(show, touch):
+def test_the_tip_is_red_only_while_a_touch_goes_wrong(show, touch):
     pixels = main_view(show(touch=touch, clearanceMm=0.0))
     assert (len(found(pixels, BLUE)) > 20) is (touch == "far")
     assert (len(found(pixels, RED)) > 20) is (touch in [stage.value for stage in TOUCH_ERRORS])
@@ -72,7 +72,7 @@ def ring_of(pixels, color):
     return np.ptp(places[:, 1]) if len(places) else None
 
 
-def test_a_ring_about_the_tip_closes_as_it_comes_nearer_and_is_green_on_the_skin(show):
+def test_a_ring_around_the_tip_closes_as_it_approaches_and_is_green_on_the_skin(show):
     assert ring_of(show(touch="far", clearanceMm=30.0), NEAR) is None
     wide, narrow = (
         ring_of(show(touch="near", clearanceMm=clearance), NEAR) for clearance in (15.0, 5.0)
@@ -85,7 +85,7 @@ def test_a_ring_about_the_tip_closes_as_it_comes_nearer_and_is_green_on_the_skin
     assert on_skin is not None
 
 
-def test_touched_fiducials_are_green_the_next_is_yellow_and_others_wait(show):
+def test_touched_fiducials_are_green_the_next_is_yellow_and_the_others_neutral(show):
     pixels = main_view(show())
     green, yellow = (found(pixels, color).mean(axis=0) for color in (GREEN, YELLOW))
     # Fiducial 1 is to the left of 2, as the camera sees them.
@@ -94,7 +94,7 @@ def test_touched_fiducials_are_green_the_next_is_yellow_and_others_wait(show):
     assert len(found(after, GREEN)) > 1.5 * len(found(pixels, GREEN))
 
 
-def test_the_tool_is_where_the_stream_says(show):
+def test_the_tool_is_where_the_stream_places_it(show):
     before = found(main_view(show()), BLUE).mean(axis=0)
     moved = {"tool": (0.05, -0.15, 0.05, 0, 0, 0, 1), "head": HERE}
     after = found(main_view(show(poses=moved)), BLUE).mean(axis=0)
@@ -112,7 +112,7 @@ def changed_by_ghost(before, after):
     return places, main_view(after)[tuple(places.T)].mean(axis=0)
 
 
-def test_a_ghost_is_seen_through_beside_the_tool_and_goes_when_it_ends(show):
+def test_a_transparent_ghost_is_drawn_beside_the_tool_and_disappears_when_it_ends(show):
     alone, both, after = (show(ghost=ghost, next=None) for ghost in (None, GHOST, None))
     places, (red, green, blue) = changed_by_ghost(alone, both)
     pixels_a_meter = SIZE[1] / (2 * 0.65 * np.tan(np.radians(15)))
@@ -134,7 +134,7 @@ def test_only_an_error_frames_the_whole_picture_in_red(show):
         assert calm[place][1] > 100
 
 
-def test_an_arrow_leads_to_a_target_out_of_sight_and_vanishes_when_it_is_seen(show):
+def test_an_arrow_points_to_a_target_out_of_sight_and_vanishes_when_it_is_visible(show):
     aside = {"tool": (0, -0.15, 0.05, 0, 0, 0, 1), "head": (-0.6, 0, 0, 0, 0, 0, 1)}
     arrow = found(show(poses=aside)[:, : SIZE[0] // 3], YELLOW)
     assert len(arrow) > 100
@@ -156,7 +156,7 @@ def test_the_inset_shows_the_other_camera_in_a_white_frame_and_gives_way_to_a_me
     assert len(found(without[: SIZE[1] // 3], ((250, 250, 250), (255, 255, 255)))) < 200
 
 
-def test_a_hint_that_can_be_clicked_is_found_under_the_mouse(show, picture):
+def test_a_clickable_hint_is_found_under_the_mouse(show, picture):
     hints = (Hint("Left / Right", "Turn the view"), Hint("Esc", "Result", "back"))
     show(replace(SCREEN, hints=hints))
     overlay = picture._overlay
@@ -173,7 +173,7 @@ def test_a_hint_that_can_be_clicked_is_found_under_the_mouse(show, picture):
     assert overlay.item_at((left + right) / 2, height) == ""
 
 
-def test_a_click_before_the_next_menu_is_drawn_chooses_nothing_of_the_menu_before(
+def test_a_click_before_the_next_menu_is_drawn_chooses_nothing_from_the_previous_one(
     show, picture, monkeypatch
 ):
     show(Screen(menu=MENU))
@@ -195,9 +195,7 @@ def test_a_click_before_the_next_menu_is_drawn_chooses_nothing_of_the_menu_befor
     assert not picture.draw()
 
 
-def test_the_sticks_that_a_mouse_drags_are_drawn_as_they_stand_in_the_window_that_has_control(
-    show, picture
-):
+def test_the_on_screen_sticks_are_drawn_as_deflected_in_the_window_that_has_control(show, picture):
     inbox = picture._inbox
     inbox.has_control = True
     blue = ((15, 95, 220), (60, 130, 245))
@@ -220,7 +218,7 @@ def test_the_sticks_that_a_mouse_drags_are_drawn_as_they_stand_in_the_window_tha
     assert len(found(without, blue)) < 50
 
 
-def test_a_menu_that_is_opened_again_is_shown_again(show):
+def test_a_reopened_menu_is_shown_again(show):
     focused = ((30, 115, 231), (32, 117, 233))
     first = len(found(show(Screen(menu=MENU)), focused))
     without = len(found(show(Screen()), focused))
@@ -228,7 +226,7 @@ def test_a_menu_that_is_opened_again_is_shown_again(show):
     assert again == first > 1000 > without
 
 
-def test_nothing_is_drawn_twice_while_nothing_changes(show, picture, inbox):
+def test_nothing_is_redrawn_while_nothing_changes(show, picture, inbox):
     show(next=None)
     assert not picture.is_due(1e5)
     inbox.take_state(state_text(next=None, tick=99))
@@ -248,7 +246,7 @@ def test_the_next_fiducial_pulses(show, picture, gl_window):
     assert max(shades) - min(shades) > 40
 
 
-def test_the_camera_flies_and_arrives(show, picture, inbox):
+def test_the_camera_flies_to_its_destination_and_arrives(show, picture, inbox):
     show()
     inbox.take_state(state_text(camera="far"))
     distances = []
@@ -259,7 +257,7 @@ def test_the_camera_flies_and_arrives(show, picture, inbox):
     assert not picture.viewports.is_moving(3e5 + TRANSITION_S)
 
 
-def test_a_lost_connection_is_told(show, picture, gl_window, inbox):
+def test_a_lost_connection_is_shown(show, picture, gl_window, inbox):
     before = show()
     inbox.problem = "window.lost"
     assert picture.is_due(4e5)
@@ -269,7 +267,7 @@ def test_a_lost_connection_is_told(show, picture, gl_window, inbox):
     inbox.problem = ""
 
 
-def test_a_kept_picture_shows_the_same_in_the_best_light(show, inbox, tmp_path):
+def test_a_kept_picture_looks_the_same_in_the_best_lighting(show, inbox, tmp_path):
     plain = show(ghost=GHOST)
     path = tmp_path / "pictures" / "kept.png"
     asyncio.run(save_screenshot(Screenshot.of(inbox, path, SIZE, Quality.HIGH)))
@@ -281,7 +279,7 @@ def test_a_kept_picture_shows_the_same_in_the_best_light(show, inbox, tmp_path):
     assert np.abs(ghosts[0] - ghosts[1]).max() < 8
 
 
-def test_a_picture_that_cannot_be_kept_is_told_in_one_sentence(show, inbox, tmp_path):
+def test_a_picture_that_cannot_be_kept_is_reported_in_one_sentence(show, inbox, tmp_path):
     show()
     (tmp_path / "file").touch()
     still = Screenshot.of(inbox, tmp_path / "file" / "kept.png", SIZE, Quality.LOW)
@@ -304,9 +302,7 @@ def test_software_rendering_is_recognized(name, quality):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a font is always there")
-def test_without_a_font_for_chinese_the_window_says_so_in_english(
-    show, picture, monkeypatch, tmp_path
-):
+def test_without_a_chinese_font_the_window_says_so_in_english(show, picture, monkeypatch, tmp_path):
     show(replace(SCREEN, language="zh-Hans"))
     assert picture._content(0.0).screen.menu is None
     with monkeypatch.context() as patch:

@@ -14,7 +14,7 @@ SQUARE = np.array([[-1.0, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]])
 
 
 @pytest.mark.parametrize("normal", [(0, -1, 0), (0.6, -0.8, 0), (-0.48, -0.6, 0.64)])
-def test_a_still_surface_is_as_bright_as_vtk_lights_it(gl_window, normal):
+def test_a_static_surface_is_as_bright_as_vtk_renders_it(gl_window, normal):
     normals = np.tile(np.array(normal, dtype=np.float32), (4, 1))
     data = surface(SQUARE, np.array([[0, 1, 2], [0, 2, 3]]), normals)
     mapper, actor, renderer = vtkPolyDataMapper(), vtkActor(), vtkRenderer()

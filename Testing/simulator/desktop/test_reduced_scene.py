@@ -56,7 +56,7 @@ def test_the_scene_is_coarser_at_the_same_place_and_texts_and_inset_are_not(draw
         np.testing.assert_array_equal(coarse[kept], fine[kept])
 
 
-def test_a_window_is_shrunk_to_what_a_processor_draws_and_never_enlarged(monkeypatch):
+def test_a_window_is_scaled_down_to_what_a_processor_can_draw_and_never_up(monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "offscreen")
     window = GlWindow(SIZE, is_fullscreen=False)
     sizes = [window.shrink_to(most) or window.size for most in ((1280, 720), SIZE)]
@@ -64,6 +64,6 @@ def test_a_window_is_shrunk_to_what_a_processor_draws_and_never_enlarged(monkeyp
     assert sizes == [(1280, 720), (1280, 720)]
 
 
-def test_where_a_graphics_processor_draws_the_scene_keeps_its_resolution(draw):
+def test_with_a_graphics_processor_the_scene_keeps_its_resolution(draw):
     picture, _ = draw(Quality.MEDIUM)
     assert picture.viewports.main.GetViewport() == (0.0, 0.0, 1.0, 1.0)

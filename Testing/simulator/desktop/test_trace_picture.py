@@ -44,23 +44,23 @@ def count(pixels, color):
     return int(np.all((pixels >= low) & (pixels <= high), axis=2).sum())
 
 
-def test_marks_paint_and_ring_are_drawn_and_go_with_the_trace(show):
+def test_marks_paint_and_ring_are_drawn_and_disappear_with_the_trace(show):
     before = show(ShownTrace())
-    drawn = show(ShownTrace().with_news(news(AHEAD)))
+    drawn = show(ShownTrace().with_update(news(AHEAD)))
     for color in (MARKS, PAINT, RING):
         assert count(drawn, color) > count(before, color) + 60
     assert np.array_equal(show(ShownTrace()), before)
 
 
-def test_in_physical_light_the_skin_is_painted_too(show, picture):
+def test_with_physically_based_lighting_the_skin_is_painted_too(show, picture):
     picture.set_quality(Quality.MEDIUM)
-    before, drawn = show(ShownTrace()), show(ShownTrace().with_news(news(AHEAD)))
+    before, drawn = show(ShownTrace()), show(ShownTrace().with_update(news(AHEAD)))
     assert count(drawn, PAINT) > count(before, PAINT) + 60
 
 
-def test_without_guidance_there_are_marks_alone(show):
+def test_without_guidance_only_marks_are_drawn(show):
     before = show(ShownTrace())
-    drawn = show(ShownTrace().with_news(news(AHEAD, covered_mm=0.0, next_place=None)))
+    drawn = show(ShownTrace().with_update(news(AHEAD, covered_mm=0.0, next_place=None)))
     assert count(drawn, MARKS) > count(before, MARKS) + 60
     for color in (PAINT, RING):
         assert abs(count(drawn, color) - count(before, color)) < 20
@@ -72,33 +72,33 @@ def test_the_legend_has_a_sample_of_the_paint(show):
     assert count(legend, PAINT) > count(plain, PAINT) + 60
 
 
-def test_nothing_is_drawn_again_while_the_trace_stays(show, picture):
-    show(ShownTrace().with_news(news(AHEAD)))
+def test_nothing_is_redrawn_while_the_trace_is_unchanged(show, picture):
+    show(ShownTrace().with_update(news(AHEAD)))
     assert not picture.is_due(1e5)
 
 
-def test_news_continue_a_trace_and_take_a_stroke_back():
-    trace = ShownTrace().with_news(news([[1, 2, 3], [4, 5, 6]]))
-    longer = trace.with_news(news([[7, 8, 9]], known=2))
+def test_updates_extend_a_trace_and_remove_an_undone_stroke():
+    trace = ShownTrace().with_update(news([[1, 2, 3], [4, 5, 6]]))
+    longer = trace.with_update(news([[7, 8, 9]], known=2))
     assert longer.points.tolist() == pytest.approx(
         np.array([[1, 2, 3], [4, 5, 6], [7, 8, 9]]) / 1e3
     )
-    assert longer.with_news(news(known=1)).points == pytest.approx(np.array([[1, 2, 3]]) / 1e3)
-    assert len(longer.with_news(news(known=0)).points) == 0
+    assert longer.with_update(news(known=1)).points == pytest.approx(np.array([[1, 2, 3]]) / 1e3)
+    assert len(longer.with_update(news(known=0)).points) == 0
 
 
-def test_the_paint_is_the_same_whether_a_trace_comes_at_once_or_in_pieces():
+def test_the_paint_is_the_same_whether_a_trace_arrives_at_once_or_in_pieces():
     vertices = np.random.default_rng(3).uniform(-0.02, 0.02, (500, 3))
     whole, pieces = SkinPaint(), SkinPaint()
     points = [[float(x), 0.0, 0.0] for x in range(-10, 10)]
-    trace = ShownTrace().with_news(news(points[:7], covered_mm=10.0))
+    trace = ShownTrace().with_update(news(points[:7], covered_mm=10.0))
     assert pieces.cover(vertices, trace)
     assert not pieces.cover(vertices, trace)
-    trace = trace.with_news(news(points[7:], 7, 10.0))
+    trace = trace.with_update(news(points[7:], 7, 10.0))
     assert pieces.cover(vertices, trace)
     assert whole.cover(vertices, trace)
     assert np.allclose(whole.shares, pieces.shares)
-    shorter = trace.with_news(news(known=5, covered_mm=10.0))
+    shorter = trace.with_update(news(known=5, covered_mm=10.0))
     assert pieces.cover(vertices, shorter)
     again = SkinPaint()
     again.cover(vertices, shorter)

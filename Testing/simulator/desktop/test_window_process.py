@@ -14,7 +14,7 @@ import pytest
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.net.views.presenter import Feedback, Hello
+from rastrainer_simulator.presentation.presenter import Feedback, Hello
 from Testing.end_to_end.window_process import BYTES_A_SECOND, times_heard
 from Testing.simulator.net.views.served import ServedViews
 
@@ -88,7 +88,7 @@ def session(loop_thread, control_loop, tmp_path_factory):
         again = ServedViews(loop_thread, control_loop, port=port)
         loop_thread.call(again.server.sessions.admit, key)
         joined += _wait_for_join(again)
-        _hear_out(window)
+        _wait_for_last_sound(window)
         again.close()
     finally:
         window.process.send_signal(signal.SIGKILL)
@@ -96,7 +96,7 @@ def session(loop_thread, control_loop, tmp_path_factory):
     return {"joined": joined, "said": said, "heard": window.heard}
 
 
-def _hear_out(window):
+def _wait_for_last_sound(window):
     """Wait for another second of sound: a window that is late plays the last event only now."""
     give_up, wanted = time.monotonic() + PATIENCE_S, window.heard.stat().st_size + BYTES_A_SECOND
     while window.heard.stat().st_size < wanted:
@@ -112,14 +112,14 @@ def _wait_for_join(served):
     return found
 
 
-def test_the_window_joins_as_a_desktop_and_joins_again_after_its_server_was_away(session):
+def test_the_window_joins_as_a_desktop_and_rejoins_after_its_server_was_away(session):
     assert len(session["joined"]) == 2
     for _name, _view, hello in session["joined"]:
         assert isinstance(hello, Hello)
         assert hello.kind == "desktop"
 
 
-def test_the_window_has_nothing_to_complain_about(session):
+def test_the_window_prints_no_warnings_or_errors(session):
     lines = session["said"].splitlines()
     assert [line for line in lines if "warning" in line.lower() or "error" in line.lower()] == []
 
@@ -138,7 +138,7 @@ def test_each_event_is_heard_exactly_once(session, name):
         (["--connect", "http://127.0.0.1:1", "--code", "1"], "", "There must be a simulator at "),
     ],
 )
-def test_wrong_arguments_end_with_one_sentence_and_status_2(
+def test_wrong_arguments_exit_with_a_one_sentence_error_and_status_2(
     capsys, monkeypatch, arguments, key, sentence
 ):
     monkeypatch.setenv("RASTRAINER_VIEW_KEY", key)
@@ -148,7 +148,7 @@ def test_wrong_arguments_end_with_one_sentence_and_status_2(
     assert len(said.splitlines()) == 1
 
 
-def test_without_a_display_the_window_ends_with_one_sentence_which_its_log_keeps(tmp_path):
+def test_without_a_display_the_window_exits_with_one_sentence_which_its_log_keeps(tmp_path):
     environment = {**os.environ, "RASTRAINER_VIEW_KEY": "k" * 40, "SDL_VIDEODRIVER": "none-such"}
     command = [sys.executable, "-m", "rastrainer_simulator.cli.main", "window"]
     command += ["--log-folder", str(tmp_path)]

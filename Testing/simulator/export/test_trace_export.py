@@ -13,7 +13,7 @@ from Testing.simulator.record.test_recorded_trace import record_of
 LANDMARKS = np.array([[0.0, 90.0, -30.0], [50.0, 60.0, -40.0], [-50.0, 60.0, -40.0]])
 
 
-def test_points_of_a_trace_are_written_in_world_and_where_the_registration_puts_them(tmp_path):
+def test_points_of_a_trace_are_exported_in_world_and_registered_coordinates(tmp_path):
     record = TrialRecord.from_json(record_of())
     moved = transforms.apply(transforms.rigid(np.eye(3), [100.0, 0.0, 50.0]), LANDMARKS)
     rigid = register(moved, LANDMARKS, labels=record.labels)
@@ -30,7 +30,7 @@ def test_points_of_a_trace_are_written_in_world_and_where_the_registration_puts_
     assert read_markups(tmp_path / "touched-world.mrk.json").labels == record.labels
 
 
-def test_without_a_registration_they_are_written_in_world_alone(tmp_path):
+def test_without_a_registration_they_are_exported_only_in_world_coordinates(tmp_path):
     stored = StoredTrial(TrialRecord.from_json(record_of()), {}, None, None, None)
     names = [path.name for path in write_slicer_files(stored, tmp_path)]
     assert names == ["touched-world.mrk.json", "traced-world.mrk.json", "traced-world.ply"]

@@ -21,7 +21,7 @@ from rastrainer_simulator.viewpoint.best_view import TouchViews
 from Testing.sdl_virtual_gamepad import VirtualGamepad
 from Testing.simulator.at_once import at_once
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Pad, Trainee
-from Testing.without_tutorial import WITHOUT_TUTORIAL, leave_tutorial_out
+from Testing.without_tutorial import WITHOUT_TUTORIAL, skip_tutorial
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -136,7 +136,7 @@ def trainee(loop, presenter):
 @pytest.fixture
 def running(loop, outside):
     """Return a presenter with SDL's gamepads."""
-    leave_tutorial_out(outside.services.config)
+    skip_tutorial(outside.services.config)
     running = RunningPresenter(loop, outside.services, has_gamepad=True)
     yield running
     running.close()
@@ -158,4 +158,4 @@ def pilot(loop, running, felt):
     yield pilot
     pilot.close()
     if gamepad.is_plugged_in:
-        gamepad.plug_out()
+        gamepad.unplug()

@@ -30,9 +30,9 @@ from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial import MatchReport
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
-from rastrainer_simulator.net.views.screen import Screen, without_secrets
+from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage
-from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import FinalRegistration, TrainingState, TrialResult
 from rastrainer_simulator.trial_state import PlannedLine, ProcedureState, TrajectoryState
 

@@ -8,8 +8,8 @@ from unicodedata import east_asian_width
 import pytest
 
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
-from rastrainer_simulator.net.views.screen import Screen
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.presentation.screen import Screen
+from rastrainer_simulator.texts.texts import LANGUAGES
 from Testing.simulator.flow.every_page import every_screen
 
 LONGEST = "longest"

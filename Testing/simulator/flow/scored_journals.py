@@ -13,7 +13,7 @@ from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.screen import Screen
 from Testing.domain.trial.trial_records import make_aborted, make_record
 
 TRAINEE = "P07"

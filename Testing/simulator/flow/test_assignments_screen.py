@@ -12,7 +12,7 @@ from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.flow.pages.result import FinishedPage
 from rastrainer_simulator.flow.session.curricula import MAX_TRAINEES, Curricula
 from rastrainer_simulator.flow.session.session import REACHED_S
-from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import STEP_S
 
 LOCKED, OPEN, REACHED = (state.value for state in AssignmentState)
@@ -53,20 +53,20 @@ def page(menu):
     return menu
 
 
-def test_the_menu_says_how_far_the_trainee_is_and_what_comes_next(menu):
+def test_the_menu_shows_the_trainees_progress_and_what_comes_next(menu):
     row = menu.item("assignments")
     assert (row.label, row.value) == ("Your assignments", "1 of 6 reached")
     assert row.help == "Next: Task 2, your weakest. Most points are lost on time."
 
 
-def test_a_board_reads_where_the_trainee_stands(menu, outside):
+def test_a_board_can_read_a_trainees_progress(menu, outside):
     told = "1 of 6 reached · Next: Task 2 (1 / 3)"
     assert menu.presenter.seat().assignments == told
     outside.has_slicer = False
     assert menu.presenter.seat().assignments == ""
 
 
-def test_each_assignment_is_a_row_with_its_state_and_the_next_one_has_the_focus(page):
+def test_each_assignment_is_a_row_with_its_state_and_the_next_one_has_focus(page):
     assert page.menu.paragraphs[0] == "First steps"
     assert page.menu.focus == "assignment two"
     rows = [(item.label, item.value, item.is_enabled) for item in page.menu.items]
@@ -93,7 +93,7 @@ def test_an_assignment_begins_its_trial_in_its_mode(page):
     assert (page.state.training.task, page.state.training.mode) == ("task-4", "hmd")
 
 
-def test_after_a_trial_the_next_assignment_is_offered_and_not_the_next_task(page, outside):
+def test_after_a_trial_the_next_assignment_is_offered_instead_of_the_next_task(page, outside):
     page.choose("assignment one")
     page.until_menu(None)
     finished = FinishedPage(page.presenter._session)
@@ -108,14 +108,14 @@ def test_after_a_trial_the_next_assignment_is_offered_and_not_the_next_task(page
     assert "next" not in [item.name for item in finished.items()]
 
 
-def test_a_locked_task_waits_for_its_gate_and_an_open_one_for_no_task_before_it(menu):
+def test_a_locked_task_waits_for_its_gate_and_an_open_one_for_no_earlier_task(menu):
     assert menu.item("task-2").is_enabled
     assert not menu.item("task-3").is_enabled
     assert menu.item("task-3").help == "Locked. First reach: Task 2."
     assert menu.item("task-5").help == "Task 1 comes first."
 
 
-def test_a_study_comes_before_a_curriculum(menu, outside):
+def test_a_study_takes_precedence_over_a_curriculum(menu, outside):
     outside.services.study.take(StudyStep("P07", "trial", 3, 19, "task-3", "desktop"))
     menu.step(20)
     assert "assignments" not in [item.name for item in menu.menu.items]
@@ -125,7 +125,7 @@ def test_a_study_comes_before_a_curriculum(menu, outside):
     assert menu.item("assignments").is_enabled
 
 
-def test_without_slicer_nothing_is_locked_and_nothing_is_said(menu, outside):
+def test_without_slicer_nothing_is_locked_and_nothing_is_announced(menu, outside):
     outside.has_slicer = False
     menu.step(20)
     assert "assignments" not in [item.name for item in menu.menu.items]
@@ -137,7 +137,7 @@ def test_the_page_closes_when_the_curriculum_ends(page, outside):
     page.until_menu("experiment")
 
 
-def test_what_slicer_tells_later_is_shown_at_once(page, outside):
+def test_later_updates_from_slicer_are_shown_at_once(page, outside):
     reached = replace(TOLD.assignments[1], state=REACHED, done=3)
     three = replace(TOLD.assignments[2], state=OPEN, missing=(), done=40)
     told = (TOLD.assignments[0], reached, three)
@@ -156,7 +156,7 @@ def said(menu):
     return [(each.text, each.tone) for each in menu.presenter.screen.warnings]
 
 
-def test_a_reached_assignment_is_said_once_and_none_of_another_trainee(menu, outside):
+def test_a_reached_assignment_is_announced_once_and_only_to_its_own_trainee(menu, outside):
     two = replace(TOLD.assignments[1], state=REACHED, done=3)
     reached = replace(TOLD, assignments=(TOLD.assignments[0], two, *TOLD.assignments[2:]))
     outside.services.curricula.take(replace(reached, trainee="P08"))

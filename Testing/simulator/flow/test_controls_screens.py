@@ -15,8 +15,8 @@ from rastrainer_simulator.flow.session.preferences import Preferences, write_pre
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
 from rastrainer_simulator.input.controls import IDLE_S
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.net.views.presenter import Hello
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.presentation.presenter import Hello
+from rastrainer_simulator.texts.texts import LANGUAGES
 from Testing.simulator.flow.trainee import STEP_S, Keys
 
 
@@ -24,7 +24,7 @@ def tip(trainee):
     return np.array(trainee.tip)
 
 
-def test_unplugging_the_gamepad_in_use_stops_the_robot_and_the_clock_until_the_trial_is_resumed(
+def test_unplugging_the_gamepad_in_use_stops_robot_and_clock_until_the_trial_is_resumed(
     pilot,
 ):
     pilot.start("task-1")
@@ -32,7 +32,7 @@ def test_unplugging_the_gamepad_in_use_stops_the_robot_and_the_clock_until_the_t
     before = tip(pilot)
     pilot.step(20)
     assert np.linalg.norm(tip(pilot) - before) > 0.002
-    pilot.hands.plugged.plug_out()
+    pilot.hands.plugged.unplug()
     pilot.step()
     stopped = tip(pilot)
     pilot.step(15)
@@ -53,7 +53,7 @@ def test_unplugging_the_gamepad_in_use_stops_the_robot_and_the_clock_until_the_t
     assert np.linalg.norm(tip(pilot) - stopped) > 0.002
 
 
-def test_a_stick_that_is_held_while_a_menu_closes_does_not_move_the_arm_until_let_go(pilot):
+def test_a_stick_held_while_a_menu_closes_does_not_move_the_arm_until_released(pilot):
     pilot.start("task-1")
     pilot.tap("menu")
     pilot.until_menu("trial")
@@ -71,7 +71,7 @@ def test_a_stick_that_is_held_while_a_menu_closes_does_not_move_the_arm_until_le
     assert not np.array_equal(tip(pilot), still)
 
 
-def test_another_operator_takes_the_control_only_after_a_rest_and_by_the_menu(trainee):
+def test_another_operator_takes_control_only_after_a_rest_and_through_the_menu(trainee):
     trainee.start("task-1")
     other = Keys(trainee, view=2, kind="page")
     trainee.hands.push(1.0, 0.0, 0.0, False)
@@ -97,7 +97,7 @@ def test_another_operator_takes_the_control_only_after_a_rest_and_by_the_menu(tr
     assert trainee.state.training.phase == "paused"
 
 
-def test_the_keyboard_and_the_gamepad_of_one_seat_share_the_control(pilot):
+def test_the_keyboard_and_the_gamepad_of_one_seat_share_control(pilot):
     keys = Keys(pilot, view=1)
     pilot.tap("down")
     assert pilot.presenter.control.holder == "gamepad"
@@ -107,7 +107,7 @@ def test_the_keyboard_and_the_gamepad_of_one_seat_share_the_control(pilot):
     assert pilot.presenter.control.holder == "gamepad"
 
 
-def test_a_view_that_leaves_lets_the_arm_stand_still_and_gives_the_control_up(trainee):
+def test_a_view_that_leaves_stops_the_arm_and_releases_control(trainee):
     trainee.start("task-1")
     trainee.hands.push(1.0, 0.0, 0.0, False)
     trainee.step(20)
@@ -119,7 +119,7 @@ def test_a_view_that_leaves_lets_the_arm_stand_still_and_gives_the_control_up(tr
     assert trainee.presenter.control.holder == ""
 
 
-def test_who_no_longer_sees_the_trial_gives_the_control_up(trainee):
+def test_a_view_that_no_longer_sees_the_trial_releases_control(trainee):
     trainee.start("task-1")
     trainee.presenter.on_visibility(1, False)
     trainee.until_menu("trial")
@@ -138,7 +138,7 @@ def test_who_no_longer_sees_the_trial_gives_the_control_up(trainee):
         (lambda presenter: presenter.on_silence(1), "the picture froze"),
     ],
 )
-def test_a_trial_that_nobody_could_see_is_paused_and_says_why_until_it_goes_on(trainee, lose, why):
+def test_a_trial_that_nobody_could_see_is_paused_and_says_why_until_it_resumes(trainee, lose, why):
     trainee.start("task-1")
     lose(trainee.presenter)
     trainee.until_menu("trial")
@@ -150,7 +150,7 @@ def test_a_trial_that_nobody_could_see_is_paused_and_says_why_until_it_goes_on(t
     assert trainee.presenter.screen.warnings == ()
 
 
-def test_a_headset_makes_the_next_trial_one_in_a_headset_and_doffing_pauses_it(trainee):
+def test_a_headset_makes_the_next_trial_a_headset_trial_and_taking_it_off_pauses_it(trainee):
     trainee.presenter.view_left(1)
     presenter = trainee.presenter
     presenter.view_joined(5, Hello("headset", "Quest 3", 90.0))
@@ -165,7 +165,7 @@ def test_a_headset_makes_the_next_trial_one_in_a_headset_and_doffing_pauses_it(t
     trainee.until_menu("trial")
 
 
-def test_a_headset_that_came_back_as_another_view_is_the_one_that_is_worn(trainee):
+def test_a_headset_that_reconnects_as_another_view_is_the_one_being_worn(trainee):
     presenter = trainee.presenter
     for view in (5, 6):
         presenter.view_joined(view, Hello("headset", "Quest 3", 90.0))
@@ -178,7 +178,7 @@ def test_a_headset_that_came_back_as_another_view_is_the_one_that_is_worn(traine
     trainee.until_menu("trial")
 
 
-def test_a_control_is_given_a_free_key_and_keeps_it(trainee, outside):
+def test_a_free_key_can_be_assigned_to_a_control_and_is_kept(trainee, outside):
     open_the_bindings(trainee)
     trainee.choose("touch")
     trainee.until_menu("listen")
@@ -195,7 +195,7 @@ def test_a_control_is_given_a_free_key_and_keeps_it(trainee, outside):
 
 
 @pytest.mark.parametrize("answer", ["exchange", "cancel"])
-def test_a_key_that_is_taken_is_exchanged_only_on_request(trainee, answer):
+def test_a_key_already_in_use_is_exchanged_only_on_request(trainee, answer):
     open_the_bindings(trainee)
     trainee.choose("touch")
     trainee.until_menu("listen")
@@ -209,7 +209,7 @@ def test_a_key_that_is_taken_is_exchanged_only_on_request(trainee, answer):
     assert labels == (("C", "Space") if answer == "exchange" else ("Space, Enter", "C"))
 
 
-def test_nobody_pressing_anything_leaves_the_bindings_as_they_were(trainee):
+def test_pressing_nothing_leaves_the_bindings_unchanged(trainee):
     open_the_bindings(trainee)
     trainee.choose("undo")
     trainee.until_menu("listen")
@@ -217,7 +217,7 @@ def test_nobody_pressing_anything_leaves_the_bindings_as_they_were(trainee):
     assert trainee.presenter.controls.bindings == DEFAULT_BINDINGS
 
 
-def test_without_a_gamepad_the_keyboard_is_taught_with_the_direction_of_each_key(presenter):
+def test_without_a_gamepad_the_keyboard_is_explained_with_the_direction_of_each_key(presenter):
     presenter._session.pages.open(ControlsPage(presenter._session))
     menu = presenter._session.pages.menu()
     assert menu.picture == "keyboard"
@@ -230,7 +230,7 @@ def test_without_a_gamepad_the_keyboard_is_taught_with_the_direction_of_each_key
     assert hints[1].control == "Enter"
 
 
-def test_a_gamepad_that_is_plugged_in_is_taught_before_anybody_has_acted(pilot):
+def test_a_plugged_in_gamepad_is_explained_before_anybody_has_acted(pilot):
     assert pilot.presenter.control.holder == ""
     pilot.step(20)
     assert pilot.presenter.screen.hints[1].control == "A"
@@ -292,7 +292,7 @@ def test_the_test_screen_shows_every_stick_and_button_as_it_moves(pilot):
     pilot.until_menu("controls")
 
 
-def test_hostile_settings_files_are_told_and_the_defaults_used(loop, outside):
+def test_hostile_settings_files_are_reported_and_the_defaults_used(loop, outside):
     folder = outside.services.config
     folder.mkdir()
     (folder / BINDINGS_FILE).write_text(json.dumps({"formatVersion": 1, "keyboard": {"touch": []}}))
@@ -306,7 +306,7 @@ def test_hostile_settings_files_are_told_and_the_defaults_used(loop, outside):
     running.close()
 
 
-def test_a_window_without_chinese_letters_is_told_so_in_english_and_offers_the_others(
+def test_a_window_without_chinese_letters_says_so_in_english_and_offers_other_languages(
     loop, outside
 ):
     others = tuple(tag for tag in LANGUAGES if tag != "zh-Hans")

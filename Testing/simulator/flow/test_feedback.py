@@ -12,7 +12,7 @@ from rastrainer.protocol import TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.net.views.feedback_event import (
+from rastrainer_simulator.presentation.feedback_event import (
     FEEDBACK_EFFECTS,
     FeedbackEvent,
     feedback_event,
@@ -47,7 +47,7 @@ def feedback_events_of(loop):
     return heard
 
 
-def test_touch_undo_proximity_contact_and_finish_are_told_and_felt_exactly_once(pilot, felt):
+def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactly_once(pilot, felt):
     expected = feedback_events_of(pilot.loop)
     # SDL only prolongs what vibrates already: here simulated time is faster than the motors.
     pilot.presenter.subscribe(lambda _news: pilot.presenter.rumble(0.0, 0.0))
@@ -91,13 +91,13 @@ def test_touch_undo_proximity_contact_and_finish_are_told_and_felt_exactly_once(
     assert numbers == list(range(1, len(numbers) + 1))
 
 
-def test_every_sound_that_is_named_comes_with_rastrainer():
+def test_every_named_sound_ships_with_rastrainer():
     sounds = {effect.sound for effect in FEEDBACK_EFFECTS.values()} - {""}
     assert sounds == {path.stem for path in asset_path("sounds").glob("*.wav")}
     assert set(FEEDBACK_EFFECTS) == set(FeedbackEvent)
 
 
-def test_muted_sounds_have_no_volume(trainee):
+def test_muted_sounds_have_zero_volume(trainee):
     trainee.choose("settings")
     trainee.until_menu("settings")
     trainee.focus("volume")
@@ -121,11 +121,11 @@ def test_muted_sounds_have_no_volume(trainee):
         (EventKind.CAMERA, {"camera": "far"}, None),
     ],
 )
-def test_what_an_event_means(kind, data, meant):
+def test_each_event_maps_to_its_feedback(kind, data, meant):
     assert feedback_event(Event(kind, 0.0, data), TouchStage.ELSEWHERE) is meant
 
 
-def test_reaching_the_skin_where_a_touch_counts_is_a_soft_tone_and_no_alarm():
+def test_reaching_the_skin_where_a_touch_counts_plays_a_soft_tone_and_no_alarm():
     reached = Event(EventKind.PROXIMITY, 0.0, {"from": "proximity", "to": "contact"})
     assert feedback_event(reached, TouchStage.ON_SKIN) is FeedbackEvent.ON_SKIN
     soft, alarm = (

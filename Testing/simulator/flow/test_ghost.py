@@ -99,7 +99,7 @@ def on_the_head(head_to_world, tool_to_world):
     return np.linalg.inv(head_to_world) @ tool_to_world
 
 
-def test_the_ghost_goes_the_recorded_way_on_the_head_of_the_present_trial(place, anywhere):
+def test_the_ghost_follows_the_recorded_path_on_the_head_of_the_current_trial(place, anywhere):
     recorded = RecordedTrial(read_track(place.best), anywhere)
     place.prefer(ghost="own best")
     place.start_and_load()
@@ -123,7 +123,7 @@ def test_the_ghost_goes_the_recorded_way_on_the_head_of_the_present_trial(place,
     np.testing.assert_array_equal(place.ghost[TOOL], stopped)
 
 
-def test_the_journal_says_so_and_is_simulated_again_to_the_last_bit(place, capsys):
+def test_the_journal_records_the_ghost_and_replays_to_the_last_bit(place, capsys):
     place.prefer(ghost="own best")
     place.start_and_load()
     place.hands.push(1.0, 0.0, -1.0, False)
@@ -136,14 +136,14 @@ def test_the_journal_says_so_and_is_simulated_again_to_the_last_bit(place, capsy
     assert "equal to the last bit" in capsys.readouterr().out
 
 
-def test_there_is_none_by_default(place):
+def test_there_is_no_ghost_by_default(place):
     place.start_and_load()
     place.step(20)
     assert place.ghost is None
     assert place.noted() == []
 
 
-def test_the_expert_is_the_trainee_whom_the_settings_name(place):
+def test_the_expert_is_the_trainee_named_in_the_settings(place):
     place.prefer(ghost="expert", expert="P07")
     place.start_and_load(trainee="P08")
     place.step(5)
@@ -154,7 +154,7 @@ def test_the_expert_is_the_trainee_whom_the_settings_name(place):
 @pytest.mark.parametrize(
     ("task", "choice"), [("task-2", "own best"), ("task-1", "expert")], ids=("task", "expert")
 )
-def test_where_no_acceptable_trial_is_to_be_found_the_trainee_is_told(place, task, choice):
+def test_the_trainee_is_told_if_no_acceptable_trial_can_be_found(place, task, choice):
     place.prefer(ghost=choice)
     place.start_and_load(task)
     place.until(
@@ -165,7 +165,7 @@ def test_where_no_acceptable_trial_is_to_be_found_the_trainee_is_told(place, tas
 
 
 @pytest.mark.parametrize(("ghost", "noted"), [("", []), ("own best", ["own best"])])
-def test_in_a_study_there_is_one_only_by_its_protocol(place, ghost, noted):
+def test_in_a_study_a_ghost_is_shown_only_if_its_protocol_says_so(place, ghost, noted):
     place.prefer(ghost="expert", expert="P07")
     step = StudyStep("P07", "trial", task="task-1", ghost=ghost)
     place.outside.services.study.take(step)
@@ -175,14 +175,14 @@ def test_in_a_study_there_is_one_only_by_its_protocol(place, ghost, noted):
     assert place.noted() == noted
 
 
-def test_the_ghost_goes_soon_after_its_last_touch(place, anywhere):
+def test_the_ghost_disappears_soon_after_its_last_touch(place, anywhere):
     ghost = Ghost(read_track(place.best), anywhere, np.eye(4))
     last = read_track(place.best).trajectory.touches[-1].time_s
     assert ghost.poses(last) is not None
     assert ghost.poses(last + 1.0) is None
 
 
-def test_while_a_trial_is_shown_again_there_is_no_ghost(place):
+def test_no_ghost_is_shown_during_a_replay(place):
     place.prefer(ghost="own best")
     place.play_and_be_scored(ACCEPTABLE)
     place.show_again()

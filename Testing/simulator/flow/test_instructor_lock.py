@@ -7,8 +7,8 @@ import re
 import pytest
 
 from rastrainer_simulator.flow.session.preferences import OF_TRAINEES, OPTIONS
-from rastrainer_simulator.net.views.presenter import Hello
 from rastrainer_simulator.ops.instructor_pin import PIN_FILE
+from rastrainer_simulator.presentation.presenter import Hello
 from Testing.simulator.flow.mouse import Mouse
 from Testing.simulator.flow.trainee import STEP_S, Trainee
 
@@ -48,7 +48,7 @@ def said(trainee):
     return [warning.text for warning in trainee.presenter.screen.warnings]
 
 
-def until_said(trainee, sentence):
+def until_message(trainee, sentence):
     trainee.until(lambda: any(sentence in text for text in said(trainee)), sentence)
 
 
@@ -56,7 +56,7 @@ def enabled(trainee):
     return {item.name for item in trainee.menu.items if item.is_enabled}
 
 
-def test_with_a_pin_only_language_and_sound_are_changed_without_it(trainee):
+def test_with_a_pin_set_only_language_and_sound_can_be_changed_without_it(trainee):
     trainee.choose("settings")
     trainee.until_menu("settings")
     assert enabled(trainee) == {*OF_TRAINEES, "unlock", "back"}
@@ -75,7 +75,7 @@ def test_without_a_pin_nothing_is_locked_and_the_order_is_in_the_file(trainee, o
     assert "unlock" not in {item.name for item in trainee.menu.items}
 
 
-def test_the_pin_is_typed_and_then_the_order_can_be_chosen_and_locked_again(trainee):
+def test_after_the_pin_is_typed_the_order_can_be_chosen_and_locked_again(trainee):
     open_pin(trainee)
     trainee.hands.type("77")
     for _ in range(2):
@@ -125,7 +125,7 @@ def test_the_pin_is_entered_in_a_headset(loop, presenter):
     worn.close()
 
 
-def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_looked_at(trainee, outside):
+def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_checked(trainee, outside):
     open_pin(trainee)
     lock = trainee.presenter._session.lock
     trainee.hands.type("4028")
@@ -135,12 +135,12 @@ def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_looked_at(trainee,
     for number in range(5):
         trainee.hands.type("" if number == 0 else OTHER)
         trainee.tap("accept")
-        until_said(trainee, "wait 1 s" if number == 4 else "not the PIN of this seat")
+        until_message(trainee, "wait 1 s" if number == 4 else "not the PIN of this seat")
         trainee.until(lambda: trainee.item("unlock").value == "_", "the digits gone")
         trainee.step(round(6.0 / STEP_S))
     trainee.hands.type(PIN)
     trainee.tap("accept")
-    until_said(trainee, "wait 1 s")
+    until_message(trainee, "wait 1 s")
     assert lock.is_locked
     outside.now = 1.5
     trainee.hands.type(PIN)
@@ -148,13 +148,13 @@ def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_looked_at(trainee,
     until_unlocked(trainee)
 
 
-def test_boards_and_the_seat_guess_from_the_same_few(trainee, outside):
+def test_boards_and_the_seat_share_one_limit_on_pin_attempts(trainee, outside):
     for _ in range(4):
         assert not outside.services.pin.guess(OTHER).is_right
     open_pin(trainee)
     trainee.hands.type(OTHER)
     trainee.tap("accept")
-    until_said(trainee, "too many wrong PINs")
+    until_message(trainee, "too many wrong PINs")
     assert outside.services.pin.guess(PIN).wait_s == 1.0
 
 
@@ -164,11 +164,11 @@ def test_a_damaged_pin_file_unlocks_nothing_and_is_named(trainee, outside, conte
     open_pin(trainee)
     trainee.hands.type(PIN)
     trainee.tap("accept")
-    until_said(trainee, PIN_FILE)
+    until_message(trainee, PIN_FILE)
     assert trainee.presenter._session.lock.is_locked
 
 
-def test_who_leaves_the_page_before_the_answer_unlocks_nothing(trainee):
+def test_leaving_the_page_before_the_answer_unlocks_nothing(trainee):
     open_pin(trainee)
     session = trainee.presenter._session
     trainee.hands.type(PIN)
@@ -213,7 +213,7 @@ def unlock_in_the_trials_menu(trainee):
     until_unlocked(trainee)
 
 
-def test_it_is_locked_again_when_a_trial_begins_and_stays_so_in_its_menu(trainee):
+def test_the_settings_lock_again_when_a_trial_begins_and_stay_locked_in_its_menu(trainee):
     trainee.presenter._session.trainee = "P07"
     trainee.step(2)
     unlock(trainee)
@@ -228,7 +228,7 @@ def test_it_is_locked_again_when_a_trial_begins_and_stays_so_in_its_menu(trainee
 
 
 @pytest.mark.parametrize("event", [change_trainee, begin_tutorial])
-def test_it_is_locked_again_when_somebody_else_trains(trainee, event):
+def test_the_settings_lock_again_when_somebody_else_trains(trainee, event):
     unlock(trainee)
     trainee.presenter._session.trainee = "P07"
     trainee.step(2)
@@ -243,7 +243,7 @@ def press_menu(presenter):
     presenter.on_key(PAGE, "KeyM", False, "")
 
 
-def test_another_view_takes_the_control_of_who_rests_only_after_the_pin(trainee, presenter):
+def test_another_view_takes_control_from_an_idle_operator_only_with_the_pin(trainee, presenter):
     trainee.start("task-1")
     trainee.hands.push(1.0, 0.0, 0.0, False)
     trainee.step(2)
@@ -254,7 +254,7 @@ def test_another_view_takes_the_control_of_who_rests_only_after_the_pin(trainee,
     press_menu(presenter)
     trainee.step(2)
     assert presenter.control.view == 1
-    until_said(trainee, "Only an instructor can pass it on: Menu, Settings, Instructor's PIN.")
+    until_message(trainee, "Only an instructor can pass it on: Menu, Settings, Instructor's PIN.")
     unlock_in_the_trials_menu(trainee)
     trainee.step(rest)
     press_menu(presenter)
@@ -262,7 +262,7 @@ def test_another_view_takes_the_control_of_who_rests_only_after_the_pin(trainee,
     assert presenter.control.view == PAGE
 
 
-def test_no_screen_no_file_and_no_event_holds_the_pin(trainee, outside):
+def test_no_screen_file_or_event_contains_the_pin(trainee, outside):
     open_pin(trainee)
     trainee.hands.type(PIN)
     assert trainee.item("unlock").value == "••••••_"

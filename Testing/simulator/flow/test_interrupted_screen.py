@@ -58,7 +58,7 @@ def journal(records):
     return read_journal(path)
 
 
-def test_the_menu_tells_what_is_kept_and_going_on_leads_to_the_next_point(back, records, language):
+def test_the_menu_says_what_was_kept_and_resuming_leads_to_the_next_point(back, records, language):
     back.until_menu("trial")
     assert SENTENCES[language] in [warning.text for warning in back.presenter.screen.warnings]
     back.choose("resume")

@@ -49,7 +49,7 @@ def test_a_new_id_is_clicked_character_by_character(clicking):
     assert clicking.item("trainee").value == "P7"
 
 
-def test_an_id_that_has_trained_here_is_one_click_away(clicking, outside):
+def test_a_previously_used_id_is_one_click_away(clicking, outside):
     clicking.start("task-1", "P21")
     clicking.submit("Abort")
     clicking.until_menu("experiment")
@@ -60,7 +60,7 @@ def test_an_id_that_has_trained_here_is_one_click_away(clicking, outside):
     assert clicking.item("trainee").value == "P21"
 
 
-def test_the_arm_is_driven_touches_and_takes_back_by_clicks_and_dragged_sticks(clicking):
+def test_the_arm_is_driven_and_touches_are_made_and_undone_by_clicks_and_dragged_sticks(clicking):
     session = clicking.presenter._session
     session.prefer(replace(session.preferences, order="any"))
     session.trainee = "P07"
@@ -86,7 +86,7 @@ def test_the_arm_is_driven_touches_and_takes_back_by_clicks_and_dragged_sticks(c
     assert not clicking.presenter.screen.has_sticks
 
 
-def test_the_right_stick_tilts_once_its_hint_was_clicked(clicking):
+def test_the_right_stick_tilts_once_its_hint_has_been_clicked(clicking):
     clicking.hands.click("train")
     session, presenter = clicking.presenter._session, clicking.presenter
     session.screen_sticks.is_shown = True
@@ -97,7 +97,7 @@ def test_the_right_stick_tilts_once_its_hint_was_clicked(clicking):
     assert (session.held.translation, session.held.rotation) == ((0.0, 0.0, 0.0), (0.2, 0.5))
 
 
-def test_who_holds_a_gamepad_is_not_shown_what_is_for_a_mouse(pilot):
+def test_a_trainee_with_a_gamepad_is_not_shown_mouse_controls(pilot):
     pilot.start("task-1")
     pilot.hands.push(0.0, 0.0, 0.5, False)
     pilot.step(5)
@@ -137,7 +137,7 @@ def enter_id(newcomer):
     assert newcomer.item("trainee").value == "P7"
 
 
-def train_and_look_at_the_result(newcomer, outside, task):
+def train_and_view_the_result(newcomer, outside, task):
     """Touch all points of a task that runs, register them and read the score."""
     newcomer.play(task)
     assert len(newcomer.state.training.touches) == 15
@@ -155,7 +155,7 @@ def train_and_look_at_the_result(newcomer, outside, task):
 
 @pytest.mark.soak
 @pytest.mark.parametrize("newcomer", ["desktop"], indirect=True)
-def test_by_the_mouse_the_tutorial_is_done_and_a_trial_is_touched_and_scored(newcomer, outside):
+def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer, outside):
     enter_id(newcomer)
     assert not newcomer.item("trial-run").is_enabled
     newcomer.choose("tutorial")
@@ -170,13 +170,11 @@ def test_by_the_mouse_the_tutorial_is_done_and_a_trial_is_touched_and_scored(new
     assert max(told.errors_mm) < 3.0
     newcomer.choose("trial-run")
     newcomer.until_menu(None)
-    train_and_look_at_the_result(newcomer, outside, "trial-run")
+    train_and_view_the_result(newcomer, outside, "trial-run")
 
 
 @pytest.mark.parametrize("newcomer", ["page"], indirect=True)
-def test_by_the_mouse_an_optional_tutorial_is_skipped_and_a_trial_is_touched_and_scored(
-    newcomer, outside
-):
+def test_an_optional_tutorial_is_skipped_and_a_trial_scored_with_the_mouse_alone(newcomer, outside):
     newcomer.presenter._session.prefer(Preferences(tutorial="optional"))
     enter_id(newcomer)
     newcomer.choose("tutorial")
@@ -188,4 +186,4 @@ def test_by_the_mouse_an_optional_tutorial_is_skipped_and_a_trial_is_touched_and
     newcomer.choose("trial-run")
     newcomer.until_menu(None)
     newcomer.hands.click("press sticks")
-    train_and_look_at_the_result(newcomer, outside, "trial-run")
+    train_and_view_the_result(newcomer, outside, "trial-run")

@@ -15,8 +15,8 @@ from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.net.views.screen import Tone
-from rastrainer_simulator.ops.texts.german import GERMAN
+from rastrainer_simulator.presentation.screen import Tone
+from rastrainer_simulator.texts.german import GERMAN
 from rastrainer_simulator.trial_state import Tool
 
 OWN = "This score is the simulator's own and is not stored in a study."
@@ -62,7 +62,7 @@ def errors_are_drawn_as_revealed(trainee, registration):
 
 
 @pytest.mark.soak
-def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_replaces_it(
+def test_without_slicer_the_trainee_gets_the_simulators_own_score_until_slicers_replaces_it(
     trainee, outside
 ):
     trial = register(trainee)
@@ -87,7 +87,7 @@ def test_without_a_slicer_the_trainee_gets_the_simulators_own_score_and_slicers_
 
 
 @pytest.mark.soak
-def test_after_a_trial_on_shifted_skin_one_sentence_tells_of_it_and_none_before(trainee, outside):
+def test_one_sentence_about_shifted_skin_is_shown_after_the_trial_and_none_before(trainee, outside):
     skin = {"shiftMm": 3.0, "indentationMm": 0.5}
     start = {"task": "task-1", "trainee": "P07", "seed": 5, "skin": skin}
     assert trainee.submit("StartTask", **start).ok
@@ -108,7 +108,7 @@ def test_after_a_trial_on_shifted_skin_one_sentence_tells_of_it_and_none_before(
 
 
 @pytest.mark.soak
-def test_while_slicer_is_connected_or_a_study_is_led_the_simulator_scores_nothing(trainee, outside):
+def test_the_simulator_scores_nothing_with_slicer_connected_or_a_study_running(trainee, outside):
     outside.has_slicer = True
     trial = register(trainee)
     trainee.step(150)
@@ -127,7 +127,7 @@ def test_while_slicer_is_connected_or_a_study_is_led_the_simulator_scores_nothin
         assert entries_of(outside, one, "registration") == []
 
 
-def test_a_slicer_that_comes_back_within_seconds_finds_the_trial_unscored(trainee, outside):
+def test_a_slicer_that_returns_within_seconds_finds_the_trial_unscored(trainee, outside):
     outside.has_slicer = True
     trainee.step(2)
     outside.has_slicer = False
@@ -138,7 +138,7 @@ def test_a_slicer_that_comes_back_within_seconds_finds_the_trial_unscored(traine
     trainee.until_menu("result")
 
 
-def test_the_page_says_it_in_german_too():
+def test_the_page_is_shown_in_german_too():
     for key in ("waiting.own", "waiting.problem", "result.own"):
         assert key in GERMAN
 
@@ -178,7 +178,7 @@ def feed(trainee, to_mm):
     raise AssertionError(f"It is only {1000 * trainee.state.feed:.1f} mm deep.")
 
 
-def test_without_a_slicer_the_simulator_registers_for_a_procedure_and_scores_it(trainee, outside):
+def test_without_slicer_the_simulator_registers_and_scores_a_procedure(trainee, outside):
     # That a study is led keeps it from scoring alone: registering reveals nothing.
     outside.services.study.take(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
     # While a Slicer is connected, it is the one that registers.

@@ -17,7 +17,7 @@ from rastrainer_simulator.teleoperation.steering import ToolDirection
 
 
 @pytest.mark.parametrize("name", OPTIONS)
-def test_stepping_goes_through_every_option_and_each_is_saved(tmp_path, name):
+def test_stepping_cycles_through_every_option_and_saves_each(tmp_path, name):
     path = tmp_path / "preferences.json"
     preferences, seen = Preferences(), []
     for _ in OPTIONS[name]:
@@ -39,12 +39,12 @@ def test_the_experts_id_is_read_and_kept(tmp_path):
     assert read_preferences(path).expert == "E01"
 
 
-def test_the_defaults_leave_the_simulation_as_it_is():
+def test_the_defaults_leave_the_simulation_unchanged():
     assert Preferences().applied_to(SimulationSettings()) == SimulationSettings()
 
 
 @pytest.mark.parametrize("name", OPTIONS)
-def test_only_what_is_said_to_changes_the_simulation(name):
+def test_only_preferences_that_affect_the_simulation_change_it(name):
     changed = Preferences().stepped(name, 1).applied_to(SimulationSettings())
     assert (changed != SimulationSettings()) is (name in OF_THE_SIMULATION)
 
@@ -66,7 +66,7 @@ def test_every_way_to_steer_the_tool_can_be_chosen():
         ('{"expert": 7}', "expert must be printable text of 0 to 64 characters"),
     ],
 )
-def test_what_is_no_option_is_refused_with_a_sentence(tmp_path, content, sentence):
+def test_an_invalid_option_is_refused_with_a_message(tmp_path, content, sentence):
     path = tmp_path / "preferences.json"
     path.write_text(content)
     with pytest.raises(InputError, match=sentence):

@@ -19,7 +19,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.rendering.procedure_picture import (
     PLACED,
     PLANNED,
@@ -256,11 +256,11 @@ def shown_in_world(operation: Operation, point_ras) -> np.ndarray:
     return transforms.apply(transforms.inverse(matrix), np.array(point_ras)) / MM_PER_M
 
 
-def test_a_procedure_is_chosen_beside_the_tasks(operation):
+def test_procedures_are_offered_beside_the_tasks(operation):
     assert operation.seen["procedures"] == ["Nothing: touches only", "Dbs", "Seeg", "Biopsy"]
 
 
-def test_the_registration_is_accepted_only_once_there_is_one(operation):
+def test_the_registration_can_be_accepted_only_once_there_is_one(operation):
     menu = operation.seen["menu without a registration"]
     items = {item.name: item.is_enabled for item in menu.items}
     assert items == {"accept": False, "again": True, "work": True}
@@ -268,7 +268,7 @@ def test_the_registration_is_accepted_only_once_there_is_one(operation):
     assert waiting.instruction.text == "P07, your points are being registered."
 
 
-def test_the_error_of_a_checkpoint_is_by_the_registration(operation):
+def test_the_error_at_a_checkpoint_follows_from_the_registration(operation):
     screen, _told, state = operation.seen["verifying"]
     (checked,) = state.training.procedure.checkpoints
     error_mm = MM_PER_M * checked.error
@@ -279,7 +279,7 @@ def test_the_error_of_a_checkpoint_is_by_the_registration(operation):
 
 
 @pytest.mark.parametrize(("name", "number"), [("aligning", 0), ("aligned 1", 1)])
-def test_the_line_at_hand_is_drawn_where_the_registration_shows_it(operation, name, number):
+def test_the_current_line_is_drawn_where_the_registration_places_it(operation, name, number):
     screen = screen_of(operation, name)
     assert screen.is_head_clear
     (line,) = [
@@ -296,7 +296,7 @@ def test_the_line_at_hand_is_drawn_where_the_registration_shows_it(operation, na
         assert np.linalg.norm(beside) < MICROMETRE
 
 
-def test_the_bulls_eye_agrees_with_the_figures_until_the_guide_is_on_the_line(operation):
+def test_the_bulls_eye_agrees_with_the_numbers_until_the_guide_is_on_the_line(operation):
     aim, state = told_of(operation, "aligning")["aim"], operation.seen["aligning"][2]
     assert math.hypot(*aim["entryMm"]) == pytest.approx(aim["entryDistanceMm"], abs=0.02)
     assert aim["angleDeg"] == pytest.approx(math.degrees(state.alignment.angle), abs=0.01)
@@ -310,7 +310,7 @@ def test_the_bulls_eye_agrees_with_the_figures_until_the_guide_is_on_the_line(op
         assert max(map(abs, (*aim["entryMm"], *aim["targetMm"], aim["angleDeg"]))) <= 0.05
 
 
-def test_the_ruler_measures_from_the_guide_s_tip_by_the_plan(operation):
+def test_the_ruler_measures_from_the_guides_tip_according_to_the_plan(operation):
     for number in range(2):
         screen, told, _state = operation.seen[f"drilled {number}"]
         assert told["tool"] == "drill"
@@ -326,7 +326,7 @@ def test_the_ruler_measures_from_the_guide_s_tip_by_the_plan(operation):
         assert inserted["feedMm"] == pytest.approx(ruler.target - 1.0, abs=0.5)
 
 
-def test_what_the_drill_meets_is_said_heard_and_felt(operation):
+def test_what_the_drill_meets_is_shown_heard_and_felt(operation):
     kinds = operation.trainee.watcher.kinds
     assert "checkpoint" in kinds
     assert kinds.count("bone") == kinds.count("through") == 2
@@ -366,14 +366,14 @@ def test_the_lines_on_the_head_show_plan_registration_and_instrument(operation):
         assert placed.end == pytest.approx(tip, abs=MICROMETRE)
 
 
-def test_the_trial_shown_again_draws_the_plan_as_it_was_seen(operation):
+def test_the_replayed_trial_draws_the_plan_as_it_was_seen(operation):
     replayed, drilled = (screen_of(operation, name) for name in ("replayed", "drilled 1"))
     assert replayed.is_head_clear
     assert replayed.errors == drilled.errors
     assert told_of(operation, "replayed")["tool"] == "drill"
 
 
-def test_the_menu_offers_the_robot_s_alignment_only_where_it_is_allowed(operation):
+def test_the_menu_offers_robot_alignment_only_where_it_is_allowed(operation):
     menu = operation.seen["menu lock"]
     assert [item.name for item in menu.items] == ["lock", "align", "work"]
     assert [item.name for item in operation.seen["menu insert"].items] == [

@@ -31,7 +31,7 @@ def write_journal(folder, name, trainee, task, *kinds, scenario=HEAD):
         ({"kind": "attempt", "record": {"reason": "practice over"}}, True),
     ],
 )
-def test_the_trial_run_counts_once_all_points_were_touched_or_its_time_was_over(
+def test_the_trial_run_counts_once_all_points_were_touched_or_its_time_was_up(
     tmp_path, entry, is_done
 ):
     write_journal(tmp_path, "1", "P01", "trial-run", entry)
@@ -53,7 +53,7 @@ def test_a_task_counts_once_registered(tmp_path):
     assert progress.missing_before("nobody", HEAD, "trial-run", ORDER) is None
 
 
-def test_a_task_of_one_head_is_not_that_of_another(tmp_path):
+def test_a_task_on_one_head_does_not_count_for_another(tmp_path):
     write_journal(tmp_path, "1", "P01", "trial-run", "registered", scenario="other")
     progress = DoneTasks(tmp_path)
     progress.note("P01", "other", "task-1")
@@ -61,7 +61,7 @@ def test_a_task_of_one_head_is_not_that_of_another(tmp_path):
     assert progress.missing_before("P01", HEAD, "task-2", ORDER) == "trial-run"
 
 
-def test_what_is_no_journal_tells_nothing(tmp_path):
+def test_files_that_are_not_journals_count_for_nothing(tmp_path):
     write_journal(tmp_path, "whole", "P01", "task-1", "registered")
     whole = (tmp_path / "whole.journal").read_bytes()
     (tmp_path / "forged.journal").write_bytes(whole.replace(b"P01", b"P02"))
@@ -75,5 +75,5 @@ def test_what_is_no_journal_tells_nothing(tmp_path):
     assert not progress.has_done("P02", HEAD, "task-1")
 
 
-def test_a_folder_that_is_not_there_yet_tells_nothing(tmp_path):
+def test_a_missing_folder_counts_for_nothing(tmp_path):
     assert not DoneTasks(tmp_path / "later").has_done("P01", HEAD, "task-1")

@@ -17,8 +17,8 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input import controls
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.net.views.presenter import Hello, InstructorOrder
-from rastrainer_simulator.net.views.screen import screen_to_json
+from rastrainer_simulator.presentation.presenter import Hello, InstructorOrder
+from rastrainer_simulator.presentation.screen import screen_to_json
 from rastrainer_simulator.replay import recorded_trial
 from Testing.simulator.flow.conftest import Outside
 from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
@@ -115,7 +115,7 @@ def result(place):
         place.until_menu("result")
 
 
-def test_the_trial_is_shown_again_to_the_views_while_the_arm_stands(result):
+def test_the_trial_is_replayed_in_the_views_while_the_arm_stands_still(result):
     arm, before = result.state.q, result.journal.read_bytes()
     result.show_again()
     result.shown.clear()
@@ -131,7 +131,7 @@ def test_the_trial_is_shown_again_to_the_views_while_the_arm_stands(result):
     assert result.journal.read_bytes() == before
 
 
-def test_the_errors_on_the_head_are_turned_by_keys_and_pad_and_left_by_a_click(result):
+def test_the_view_of_the_errors_is_turned_by_keys_and_gamepad_and_closed_by_a_click(result):
     control = result.presenter._session.view.control
     control.reset()
     result.choose("errors")
@@ -148,7 +148,7 @@ def test_the_errors_on_the_head_are_turned_by_keys_and_pad_and_left_by_a_click(r
     control.reset()
 
 
-def test_a_replay_is_left_by_a_click(result):
+def test_a_replay_is_closed_by_a_click(result):
     result.show_again()
     items = [hint.item for hint in result.presenter.screen.hints]
     assert items == ["press accept", "", "press up", "press camera", "back"]
@@ -156,7 +156,7 @@ def test_a_replay_is_left_by_a_click(result):
     result.until_menu("result")
 
 
-def test_the_worst_touch_is_looked_at_from_where_it_is_seen_best(result):
+def test_the_worst_touch_is_shown_from_where_it_is_seen_best(result):
     view = result.presenter._session.view
     view.control.reset()
     result.show_again("worst")
@@ -180,7 +180,7 @@ def test_the_worst_touch_is_looked_at_from_where_it_is_seen_best(result):
     result.until(sees_it, "the best view")
 
 
-def test_what_was_heard_and_felt_is_heard_and_felt_again(result):
+def test_recorded_sounds_and_vibrations_are_played_again(result):
     result.show_again()
     heard = len(result.watcher.kinds)
     result.until(lambda: len(result.replay.training.touches) == 5, "the fifth touch")
@@ -199,7 +199,7 @@ def test_the_worst_touch_is_shown_at_half_speed_up_to_the_touch(result):
     assert result.replay.training.touches[-1].label == words[1].strip(",")
 
 
-def test_it_is_played_and_sought_by_the_keys_of_the_replay_command(result):
+def test_the_keys_of_the_replay_command_play_and_seek(result):
     result.show_again()
     result.hands.key("ArrowRight")
     result.step(20)
@@ -222,7 +222,7 @@ def test_it_is_played_and_sought_by_the_keys_of_the_replay_command(result):
     result.until_menu("result")
 
 
-def test_a_teacher_has_the_trial_shown_again_and_pauses_it(result):
+def test_a_teacher_starts_and_pauses_a_replay(result):
     presenter = result.presenter
     assert presenter.instruct(InstructorOrder.REPLAY, "") == ""
     result.until(lambda: result.replay is not result.loop.latest, "the replay")
@@ -233,7 +233,7 @@ def test_a_teacher_has_the_trial_shown_again_and_pauses_it(result):
     assert result.replay.tick == stands
 
 
-def test_sticks_and_touches_do_nothing_to_the_arm_meanwhile(result):
+def test_sticks_and_touches_do_not_affect_the_arm_meanwhile(result):
     result.show_again()
     arm = result.state.q
     result.hands.push(1, 1, -1, False)
@@ -244,7 +244,7 @@ def test_sticks_and_touches_do_nothing_to_the_arm_meanwhile(result):
     assert result.state.q == arm
 
 
-def test_only_who_holds_the_control_steers_until_another_takes_it_over(result, monkeypatch):
+def test_only_the_holder_of_control_steers_the_replay_until_another_takes_over(result, monkeypatch):
     # The trial would be over after the usual rest.
     monkeypatch.setattr(controls, "IDLE_S", 2.0)
     presenter = result.presenter
@@ -267,7 +267,7 @@ def test_only_who_holds_the_control_steers_until_another_takes_it_over(result, m
     presenter.view_left(PAGE)
 
 
-def test_a_headset_steps_through_it_by_stick_and_leaves_by_the_button_that_goes_back(result):
+def test_a_headset_steps_through_it_by_stick_and_leaves_with_the_back_button(result):
     presenter = result.presenter
     presenter.view_left(1)
     presenter.view_joined(PAGE, Hello("headset"))
@@ -315,7 +315,7 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
     assert not any(told.startswith("Step") for told in result.menu.paragraphs)
 
 
-def test_a_trial_that_slicer_starts_ends_it_and_is_what_the_views_show(place):
+def test_a_trial_started_by_slicer_ends_the_replay_and_is_what_the_views_show(place):
     place.show_again()
     before = place.state.training.trial_id
     assert place.submit("StartTask", task="task-2", trainee="T-99").ok
@@ -347,7 +347,7 @@ def test_until_the_trial_is_loaded_the_views_say_so_and_one_can_go_back(place, m
     place.until_menu("experiment")
 
 
-def test_a_trial_whose_journal_has_gone_is_told_of_in_one_sentence(place):
+def test_a_trial_whose_journal_is_gone_is_reported_in_one_sentence(place):
     place.play_and_be_scored()
     place.journal.rename(place.outside.services.config.with_name("elsewhere"))
     place.choose("replay")

@@ -8,9 +8,9 @@ from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.net.views.screen import Tone
-from rastrainer_simulator.ops.texts.german import GERMAN
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.presentation.screen import Tone
+from rastrainer_simulator.texts.german import GERMAN
+from rastrainer_simulator.texts.texts import Texts
 from Testing.simulator.flow.conftest import Outside, put_back
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
 
@@ -65,7 +65,7 @@ def facts_of(menu):
     return {fact.label: fact for fact in menu.facts}
 
 
-def test_the_true_error_in_the_brain_stands_beside_the_others(result_of):
+def test_the_true_error_in_the_brain_is_shown_beside_the_others(result_of):
     menu = result_of(regionTreMm=0.73, isAccurate=True, isSafe=True, passMark=70.0)
     assert [fact.label for fact in menu.facts][:5] == [
         "Score",
@@ -81,7 +81,7 @@ def test_the_true_error_in_the_brain_stands_beside_the_others(result_of):
     assert not any("acceptable" in sentence for sentence in menu.paragraphs)
 
 
-def test_the_common_bias_is_told_and_a_warning_beyond_its_limit(result_of):
+def test_the_common_bias_is_shown_with_a_warning_beyond_its_limit(result_of):
     within = facts_of(result_of(commonBiasMm=0.41, isAccurate=True, isUnbiased=True, isSafe=True))
     fact = within["Bias that all touches share"]
     assert (fact.value, fact.tone) == ("0.41 mm", Tone.PLAIN)
@@ -92,7 +92,7 @@ def test_the_common_bias_is_told_and_a_warning_beyond_its_limit(result_of):
 @pytest.mark.parametrize(
     ("mark", "tone"), [(70.0, Tone.GOOD), (99.0, Tone.PLAIN), (None, Tone.PLAIN)]
 )
-def test_a_score_looks_good_where_it_reaches_the_mark_and_never_without_one(result_of, mark, tone):
+def test_a_score_is_shown_as_good_only_where_it_reaches_a_pass_mark(result_of, mark, tone):
     assert facts_of(result_of(passMark=mark))["Score"].tone is tone
 
 
@@ -120,7 +120,7 @@ def test_a_score_without_the_error_in_the_brain_has_no_line_for_it(result_of):
         ),
     ],
 )
-def test_a_trial_beyond_a_limit_is_called_so_and_nothing_of_it_looks_good(
+def test_a_trial_beyond_a_limit_is_called_not_acceptable_and_nothing_in_it_looks_good(
     result_of, details, sentence
 ):
     menu = result_of(regionTreMm=1.6, passMark=10.0, feedback=[GENERAL], **details)
@@ -137,7 +137,7 @@ def test_an_error_in_the_brain_beyond_the_limit_is_a_warning_however_small_it_lo
     assert facts_of(menu)["True error in the brain (TRE)"].tone is Tone.WARNING
 
 
-def test_the_page_says_it_in_german_too():
+def test_the_page_is_shown_in_german_too():
     texts = Texts(GERMAN)
     for key in (
         "region tre",

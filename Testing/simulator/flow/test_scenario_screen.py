@@ -33,7 +33,7 @@ def at_heads(heads, trainee):  # noqa: ARG001
     return trainee
 
 
-def test_heads_are_listed_with_pictures_and_those_that_cannot_be_used_say_why(at_heads):
+def test_heads_are_listed_with_pictures_and_unusable_ones_say_why(at_heads):
     items = {item.name: item for item in at_heads.menu.items}
     assert list(items) == ["head colin27", "head mine", "head broken", "back"]
     assert at_heads.menu.focus == "head colin27"
@@ -58,7 +58,7 @@ def test_a_chosen_head_is_loaded_and_no_task_begins_meanwhile(at_heads, heads):
     at_heads.until(lambda: at_heads.item("trial-run").is_enabled, "the task may begin")
 
 
-def test_a_head_that_is_refused_leaves_everything_and_says_why(at_heads, heads):
+def test_a_refused_head_changes_nothing_and_the_reason_is_shown(at_heads, heads):
     at_heads.choose("head mine")
     at_heads.step()
     heads.loads[0][1].set_result(Answer(0, False, "A trial is open."))
@@ -67,7 +67,7 @@ def test_a_head_that_is_refused_leaves_everything_and_says_why(at_heads, heads):
     assert at_heads.menu.name == "scenario"
 
 
-def test_the_menu_goes_back_by_itself_when_the_head_is_there(at_heads, heads):
+def test_the_menu_goes_back_by_itself_once_the_head_is_loaded(at_heads, heads):
     at_heads.choose("head colin27")
     at_heads.step()
     heads.loads[0][1].set_result(Answer(0, True))

@@ -20,7 +20,7 @@ def history_of(tmp_path):
     return lambda: ScoreHistory(tmp_path, DoneTasks(tmp_path).journals)
 
 
-def test_only_scores_of_the_mode_and_of_the_present_version_are_compared(tmp_path, history_of):
+def test_only_scores_of_the_same_mode_and_the_current_version_are_compared(tmp_path, history_of):
     write_scored(tmp_path, 1, 40.0, 45.0)
     write_scored(tmp_path, 2, 99.0, task="trial-run")
     write_scored(tmp_path, 3, 98.0, version="1")
@@ -47,7 +47,7 @@ def test_the_best_acceptable_trials_of_a_task_come_first(tmp_path, history_of):
     assert history_of().best("P08", "task-1") == ()
 
 
-def test_a_failure_by_aborting_counts_for_the_competence_though_it_has_no_score(
+def test_a_trial_failed_by_aborting_counts_toward_competence_though_it_has_no_score(
     tmp_path, history_of
 ):
     write_scored(tmp_path, 1, 40.0)
@@ -63,9 +63,7 @@ def test_a_score_whose_journal_was_altered_is_left_out(tmp_path, history_of):
     assert history_of().trend(TRAINEE, "desktop") == (50.0,)
 
 
-def test_what_a_trial_adds_is_in_the_trend_at_once_and_only_the_newest_are_shown(
-    tmp_path, history_of
-):
+def test_a_new_trial_enters_the_trend_at_once_and_only_the_newest_are_shown(tmp_path, history_of):
     history = history_of()
     for number in range(1, 26):
         path = write_scored(tmp_path, number, float(number))
@@ -80,13 +78,13 @@ def test_what_a_trial_adds_is_in_the_trend_at_once_and_only_the_newest_are_shown
     ("language", "sentence"),
     [("en", "the line is the pass mark, 70."), ("de", "die Linie ist die Marke zum Bestehen, 70.")],
 )
-def test_the_task_menu_shows_the_trend_and_says_it_in_words(loop, outside, language, sentence):
+def test_the_task_menu_shows_the_trend_and_describes_it_in_words(loop, outside, language, sentence):
     menu = task_menu(loop, outside.services, language=language).menu
     assert (menu.trend.scores, menu.trend.mark) == (SCORES, 70.0)
     assert menu.paragraphs[0].endswith(sentence)
     assert "38, 52, 47, 67, 71, 69, 88" in menu.trend.text
 
 
-def test_who_has_no_score_is_shown_no_plot(loop, outside):
+def test_a_trainee_without_scores_is_shown_no_plot(loop, outside):
     menu = task_menu(loop, outside.services, scores=()).menu
     assert (menu.trend, menu.paragraphs) == (None, ())

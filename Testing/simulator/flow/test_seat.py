@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from rastrainer_simulator.flow.seat import SENTENCE_S
-from rastrainer_simulator.net.views.presenter import InstructorOrder
-from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.presentation.presenter import InstructorOrder
+from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import STEP_S
 
 
@@ -14,7 +14,7 @@ def said(trainee) -> list[str]:
     return [warning.text for warning in trainee.presenter.screen.warnings]
 
 
-def test_a_board_reads_who_trains_what_and_where_the_trial_stands(trainee, presenter, outside):
+def test_a_board_reads_who_is_training_what_and_how_far_the_trial_is(trainee, presenter, outside):
     before = presenter.seat()
     assert (before.trainee, before.task, before.count, before.score) == ("", "", 0, None)
     assert before.screen == presenter.screen.menu.title
@@ -33,7 +33,7 @@ def test_a_board_reads_who_trains_what_and_where_the_trial_stands(trainee, prese
     trainee.until(lambda: presenter.seat().warnings, "the warning of the lost Slicer")
 
 
-def test_a_teacher_s_sentence_is_read_and_goes_after_its_time(trainee, presenter):
+def test_a_teachers_message_is_shown_and_disappears_after_its_time(trainee, presenter):
     assert presenter.instruct(InstructorOrder.SAY, "Look from the side <b>.") == ""
     trainee.until(lambda: said(trainee), "the sentence")
     (warning,) = presenter.screen.warnings
@@ -43,7 +43,7 @@ def test_a_teacher_s_sentence_is_read_and_goes_after_its_time(trainee, presenter
     assert said(trainee) == []
 
 
-def test_a_teacher_pauses_a_trial_and_the_trainee_reads_who_did(trainee, presenter):
+def test_a_teacher_pauses_a_trial_and_the_trainee_sees_who_did(trainee, presenter):
     nothing = "Nothing that could be paused is running at this seat."
     assert presenter.instruct(InstructorOrder.PAUSE, "") == nothing
     trainee.start("task-1")

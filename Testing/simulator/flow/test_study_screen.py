@@ -46,7 +46,7 @@ def tell(menu, guide, step):
     menu.step(20)
 
 
-def test_only_what_comes_next_can_be_begun_and_the_menu_says_what_that_is(menu, guide):
+def test_only_what_comes_next_can_be_started_and_the_menu_says_what_that_is(menu, guide):
     assert (enabled(menu), menu.menu.paragraphs) == (["trial-run"], ())
     tell(menu, guide, TASK_2)
     assert enabled(menu) == ["task-2"]
@@ -64,7 +64,7 @@ def test_only_what_comes_next_can_be_begun_and_the_menu_says_what_that_is(menu, 
     assert (menu.state.training.task, menu.state.training.mode) == ("task-2", "desktop")
 
 
-def test_in_another_mode_nothing_can_be_begun(menu, guide):
+def test_in_another_mode_nothing_can_be_started(menu, guide):
     tell(menu, guide, TASK_2)
     menu.focus("mode")
     menu.tap("right")
@@ -92,13 +92,13 @@ def test_in_another_mode_nothing_can_be_begun(menu, guide):
         (StudyStep("P07", "all-done", 9, 9), "All steps of the study are done"),
     ],
 )
-def test_what_is_no_trial_is_said_and_nothing_can_be_begun(menu, guide, step, sentence):
+def test_a_step_that_is_not_a_trial_is_described_and_cannot_be_started(menu, guide, step, sentence):
     tell(menu, guide, step)
     assert enabled(menu) == []
     assert sentence in menu.menu.paragraphs[0]
 
 
-def test_other_trainees_and_those_who_are_led_no_more_practice_freely(menu, guide):
+def test_other_trainees_and_those_no_longer_in_the_study_practice_freely(menu, guide):
     tell(menu, guide, StudyStep("P08", "all-done", 9, 9))
     assert enabled(menu) == ["trial-run"]
     tell(menu, guide, TASK_2)
@@ -109,7 +109,7 @@ def test_other_trainees_and_those_who_are_led_no_more_practice_freely(menu, guid
 TRIAL_RUN = StudyStep("P07", "trial-run", 2, 9, "trial-run", "desktop", minutes=8.0)
 
 
-def test_the_trial_run_lasts_for_what_is_left_of_the_studys_minutes(menu, guide):
+def test_the_trial_run_lasts_for_the_rest_of_the_studys_minutes(menu, guide):
     tell(menu, guide, replace(TRIAL_RUN, over=6.0))
     menu.choose("trial-run")
     menu.until_menu(None)
@@ -117,9 +117,7 @@ def test_the_trial_run_lasts_for_what_is_left_of_the_studys_minutes(menu, guide)
     assert menu.presenter.screen.status[2].startswith(("02:00", "01:5"))
 
 
-def test_the_trial_run_is_over_when_the_studys_minutes_are_though_slicer_went_on_before(
-    menu, guide
-):
+def test_the_trial_run_ends_with_the_studys_minutes_even_if_slicer_has_moved_on(menu, guide):
     tell(menu, guide, replace(TRIAL_RUN, over=7.99))
     menu.choose("trial-run")
     menu.until_menu(None)
@@ -149,7 +147,7 @@ def mark(form, number, *directions):
     form.step(20)
 
 
-def test_a_questionnaire_is_answered_line_by_line_and_handed_over_only_when_all_are(form, guide):
+def test_a_questionnaire_is_answered_line_by_line_and_submitted_only_when_complete(form, guide):
     assert [item.value for item in form.menu.items[:10]] == ["–"] * 10
     assert "1 is strongly disagree, 5 is strongly agree" in form.menu.paragraphs[0]
     for number in range(1, 10):
@@ -173,7 +171,7 @@ def test_a_questionnaire_is_answered_line_by_line_and_handed_over_only_when_all_
         ("de", "4. Leistung: 0 = perfekt, 100 = Misserfolg", "5. Anstrengung"),
     ],
 )
-def test_the_line_of_performance_says_that_its_ends_are_its_own(
+def test_the_performance_line_says_that_its_ends_differ_from_the_others(
     menu, guide, language, performance, effort
 ):
     session = menu.presenter._session
@@ -184,7 +182,7 @@ def test_the_line_of_performance_says_that_its_ends_are_its_own(
     assert [item.label for item in menu.menu.items[3:5]] == [performance, effort]
 
 
-def test_answers_wait_until_slicer_goes_on_and_are_forgotten_then(guide):
+def test_answers_wait_until_slicer_moves_on_and_are_then_forgotten(guide):
     guide.take(SUS)
     guide.answer("P07", [3] * 10)
     guide.take(SUS)
@@ -194,20 +192,20 @@ def test_answers_wait_until_slicer_goes_on_and_are_forgotten_then(guide):
     assert (guide.unacknowledged_answers(), guide.step_of("P07")) == ((), TASK_2)
 
 
-def test_a_form_closes_when_the_study_goes_on_without_it(form, guide):
+def test_a_form_closes_when_the_study_moves_on_without_it(form, guide):
     guide.take(TASK_2)
     form.until_menu("experiment")
     assert enabled(form) == ["task-2"]
 
 
-def test_a_questionnaire_that_this_version_does_not_know_is_said(menu, guide):
+def test_a_questionnaire_unknown_to_this_version_is_reported(menu, guide):
     tell(menu, guide, replace(SUS, questionnaire="dance"))
     menu.choose("answer")
     menu.step(20)
     assert any("There is no questionnaire" in w.text for w in menu.presenter.screen.warnings)
 
 
-def test_a_break_is_counted_down_from_what_was_over_when_it_was_told():
+def test_a_break_counts_down_from_the_elapsed_time_slicer_sent():
     now = [100.0]
     guide = StudySteps(lambda: now[0])
     guide.take(StudyStep("P07", "break", 4, 9, minutes=10.0, over=4.0))
@@ -217,7 +215,7 @@ def test_a_break_is_counted_down_from_what_was_over_when_it_was_told():
     assert (guide.break_left_s("P07"), guide.break_left_s("P08")) == (0.0, 0.0)
 
 
-def test_a_trial_that_was_asked_for_is_not_begun_twice_before_slicer_says_what_follows(menu, guide):
+def test_a_requested_trial_is_not_started_twice_before_slicer_sends_the_next_step(menu, guide):
     tell(menu, guide, TASK_2)
     guide.note_registered("P07", "task-1", "desktop")
     menu.step(20)
@@ -228,7 +226,7 @@ def test_a_trial_that_was_asked_for_is_not_begun_twice_before_slicer_says_what_f
     assert menu.menu.paragraphs == ("Task 2 is done. 3D Slicer will say what comes next.",)
 
 
-def test_the_guide_forgets_the_oldest_news_and_keeps_no_more_than_it_may():
+def test_the_oldest_steps_are_forgotten_beyond_the_limit():
     guide = StudySteps()
     for number in range(MAX_TRAINEES + 5):
         guide.take(StudyStep(f"P{number}", "all-done", 1, 1))
@@ -236,7 +234,7 @@ def test_the_guide_forgets_the_oldest_news_and_keeps_no_more_than_it_may():
     assert guide.step_of("P5") is not None
 
 
-def test_a_trial_of_a_study_is_registered_by_what_its_protocol_says(menu, guide):
+def test_a_study_trial_is_registered_by_the_method_of_its_protocol(menu, guide):
     session = menu.presenter._session
     chosen = registration_method(session, "task-2")
     tell(menu, guide, replace(TASK_2, method="surface"))
@@ -252,7 +250,7 @@ def test_a_trial_of_a_study_is_registered_by_what_its_protocol_says(menu, guide)
     assert registration_method(session, "task-2") is chosen
 
 
-def test_a_trial_of_a_study_has_the_skin_of_its_protocol(menu, guide):
+def test_a_study_trial_has_the_skin_of_its_protocol(menu, guide):
     session = menu.presenter._session
     skin = {"shiftMm": 2.0, "indentationMm": 0.5}
     tell(menu, guide, TASK_2)

@@ -15,7 +15,7 @@ from rastrainer.trial.touch_registration import GivenPoints, register_trial
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow.pages.trial import MatchPage, MatchReport, match_report
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
-from rastrainer_simulator.net.views.presenter import TraceGuidance
+from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import given
 from rastrainer_simulator.trial_state import TouchState, TracedPoint, TraceState
@@ -82,7 +82,7 @@ def test_guidance_paints_what_is_covered_and_shows_where_to_draw_next(trainee, c
     trainee.until(lambda: ("Next: " in facts(trainee)) is (choice == "words"), "the words")
 
 
-def test_after_a_stroke_elsewhere_another_place_is_next(trainee):
+def test_after_a_stroke_elsewhere_the_next_place_changes(trainee):
     prefer(trainee, "arrow")
     landmarks_touched(trainee)
     trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
@@ -91,7 +91,7 @@ def test_after_a_stroke_elsewhere_another_place_is_next(trainee):
     trainee.until(lambda: guidance(trainee).next_place != first, "another place")
 
 
-def test_the_best_view_is_that_of_the_place_to_draw_next(trainee):
+def test_the_best_view_is_that_of_the_next_place_to_draw(trainee):
     prefer(trainee, "arrow")
     landmarks_touched(trainee)
     trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
@@ -110,7 +110,7 @@ def test_the_best_view_is_that_of_the_place_to_draw_next(trainee):
     trainee.until(is_seen, "the view of the place")
 
 
-def test_without_guidance_nothing_but_the_trace_is_shown(trainee):
+def test_without_guidance_only_the_trace_is_shown(trainee):
     prefer(trainee, "none")
     landmarks_touched(trainee)
     for _ in range(200):
@@ -129,7 +129,7 @@ def test_guidance_fades_from_task_to_task_as_for_fiducials(trainee):
     assert guidance(trainee) == TraceGuidance()
 
 
-def test_landmarks_are_touched_and_strokes_begun_ended_and_registered_by_the_controls(trainee):
+def test_landmarks_strokes_and_the_registration_are_made_with_the_trainees_controls(trainee):
     start = {"task": "task-1", "trainee": "P07", "method": "surface"}
     assert trainee.submit("StartTask", **start).ok
     trainee.until_menu(None)
@@ -183,7 +183,7 @@ def register_matched(trainee):
     trainee.until(lambda: trainee.state.training.phase is Phase.REGISTERED, "the registration")
 
 
-def test_the_method_is_chosen_in_the_experiment_menu_where_the_head_has_landmarks(trainee):
+def test_the_method_is_chosen_in_the_experiment_menu_if_the_head_has_landmarks(trainee):
     trainee.go_to_experiment("P07")
     trainee.focus("method")
     seen = [trainee.item("method").value]
@@ -244,7 +244,7 @@ def test_the_report_has_the_numbers_of_the_registration(landmarked):
     assert "slides" not in report.codes
 
 
-def test_a_trace_on_the_crown_alone_is_named_before_it_is_accepted(landmarked):
+def test_a_trace_on_the_crown_alone_is_reported_before_it_is_accepted(landmarked):
     report = match_report(drawn(landmarked, "crown"), landmarked)
     assert report.residual_mm < 0.2
     assert "slides" in report.codes

@@ -13,13 +13,13 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.flow.session.trainee_history import DoneTasks
-from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
-from rastrainer_simulator.ops.texts.german import GERMAN
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.presentation.screen import ScreenMessage, Tone
+from rastrainer_simulator.texts.german import GERMAN
+from rastrainer_simulator.texts.texts import Texts
 from Testing.simulator.flow.trainee import STEP_S
 
 
-def test_a_trial_that_slicer_starts_pauses_and_aborts_leads_to_the_same_screens(trainee):
+def test_a_trial_that_slicer_starts_pauses_and_aborts_shows_the_same_screens(trainee):
     trainee.start("task-2", "T-99")
     assert trainee.presenter.screen.instruction.text == "T-99, touch point 1."
     assert trainee.presenter.screen.status[:2] == ("Task 2", "0 of 15 points")
@@ -32,7 +32,7 @@ def test_a_trial_that_slicer_starts_pauses_and_aborts_leads_to_the_same_screens(
     assert trainee.item("trainee").value == "T-99"
 
 
-def test_a_trial_is_paused_and_goes_on_by_the_same_control(trainee):
+def test_the_same_control_pauses_and_resumes_a_trial(trainee):
     for control in ("pause", "menu"):
         trainee.start("task-1")
         trainee.tap(control)
@@ -46,7 +46,7 @@ def test_a_trial_is_paused_and_goes_on_by_the_same_control(trainee):
         trainee.until_menu("experiment")
 
 
-def test_a_trial_is_aborted_only_when_the_trainee_says_so_twice(trainee):
+def test_a_trial_is_aborted_only_after_the_trainee_confirms(trainee):
     trainee.start("task-1")
     trainee.tap("menu")
     trainee.until_menu("trial")
@@ -63,7 +63,7 @@ def test_a_trial_is_aborted_only_when_the_trainee_says_so_twice(trainee):
     assert trainee.state.training.phase == "idle"
 
 
-def test_tasks_wait_for_the_one_before_unless_the_instructor_says_otherwise(trainee):
+def test_tasks_wait_for_the_previous_one_unless_the_instructor_disables_that(trainee):
     trainee.choose("train")
     trainee.until_menu("introduction")
     trainee.choose("skip")
@@ -97,7 +97,7 @@ def test_tasks_wait_for_the_one_before_unless_the_instructor_says_otherwise(trai
     assert trainee.item("task-5").is_enabled
 
 
-def test_what_was_done_is_known_after_the_simulator_was_started_again(trainee, outside, loop):
+def test_completed_tasks_are_still_known_after_a_restart_of_the_simulator(trainee, outside, loop):
     trainee.start("trial-run", "P07")
     trainee.play("trial-run")
     trainee.submit("Abort")
@@ -135,7 +135,7 @@ def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monke
     assert trainee.item("task-1").is_enabled
 
 
-def test_a_menu_that_opens_by_itself_takes_no_control_for_seven_tenths_of_a_second(trainee):
+def test_a_menu_that_opens_by_itself_accepts_no_input_for_seven_tenths_of_a_second(trainee):
     trainee.start("task-1")
     trainee.submit("Pause")
     trainee.until_menu("trial")
@@ -150,14 +150,14 @@ def test_a_menu_that_opens_by_itself_takes_no_control_for_seven_tenths_of_a_seco
     trainee.until_menu(None)
 
 
-def test_a_menu_that_the_trainee_opens_takes_the_next_press(trainee):
+def test_a_menu_opened_by_the_trainee_accepts_the_next_press(trainee):
     trainee.start("task-1")
     trainee.tap("menu")
     trainee.until_menu("trial")
     assert trainee.menu.focus == "resume"
 
 
-def test_a_stray_key_after_a_trial_does_not_make_another_trainee(trainee):
+def test_a_stray_key_after_a_trial_does_not_create_another_trainee(trainee):
     trainee.start("task-1", "P07")
     trainee.tap("menu")
     trainee.until_menu("trial")
@@ -170,7 +170,7 @@ def test_a_stray_key_after_a_trial_does_not_make_another_trainee(trainee):
     assert trainee.menu.focus == "trial-run"
 
 
-def test_a_trial_run_of_one_point_is_not_done(trainee):
+def test_a_trial_run_with_one_point_does_not_count_as_done(trainee):
     trainee.start("trial-run")
     truth = trainee.loop.truth
     point, center = (truth.in_world(p) / MM_PER_M for p in (truth.fiducials["1"], truth.target))
@@ -185,7 +185,7 @@ def test_a_trial_run_of_one_point_is_not_done(trainee):
     )
 
 
-def test_a_touch_that_is_too_far_is_refused_in_the_chosen_language_and_with_one_tone(trainee):
+def test_a_touch_too_far_away_is_refused_in_the_chosen_language_with_one_tone(trainee):
     trainee.choose("settings")
     trainee.until_menu("settings")
     trainee.focus("language")
@@ -202,7 +202,7 @@ def test_a_touch_that_is_too_far_is_refused_in_the_chosen_language_and_with_one_
     assert trainee.watcher.kinds.count("error") == 1
 
 
-def test_after_a_refused_touch_the_skin_is_said_again_where_the_tip_has_gone(trainee):
+def test_after_a_refused_touch_the_skin_is_announced_again_once_the_tip_has_moved(trainee):
     trainee.start("trial-run")
     trainee.tap("touch")
     trainee.until(lambda: trainee.presenter.screen.instruction.tone == "warning")
@@ -269,7 +269,7 @@ def test_the_direction_to_the_target_is_shown_in_words_in_the_trial_run(trainee)
     assert {word.strip(",") for word in words[4:]} <= {"left", "right", "back", "forward", "down"}
 
 
-def test_the_trainee_is_told_that_slicer_is_gone_and_who_scores_then(trainee, outside):
+def test_the_trainee_is_told_that_slicer_is_gone_and_who_will_score(trainee, outside):
     trainee.start("task-1")
     assert trainee.presenter.screen.warnings == ()
     outside.has_slicer = True
@@ -282,7 +282,7 @@ def test_the_trainee_is_told_that_slicer_is_gone_and_who_scores_then(trainee, ou
     assert trainee.presenter.screen.warnings == ()
 
 
-def test_the_camera_changes_by_its_control(trainee):
+def test_the_camera_is_switched_by_its_control(trainee):
     trainee.start("task-1")
     change_the_camera(trainee)
     change_the_camera(trainee)
@@ -308,7 +308,7 @@ def change_the_camera(trainee):
     assert trainee.state.camera != before
 
 
-def test_what_the_arm_s_settings_would_change_waits_for_the_end_of_a_trial(trainee, outside):
+def test_settings_that_would_affect_the_arm_wait_for_the_end_of_a_trial(trainee, outside):
     trainee.start("task-1")
     trainee.tap("menu")
     trainee.until_menu("trial")
@@ -324,7 +324,7 @@ def test_what_the_arm_s_settings_would_change_waits_for_the_end_of_a_trial(train
     assert [settings.teleoperation.fine_speed for settings in outside.settings] == [0.04]
 
 
-def test_quitting_is_asked_for(trainee, outside):
+def test_quitting_asks_for_confirmation(trainee, outside):
     trainee.choose("quit")
     trainee.until_menu("quit")
     trainee.tap("accept")
@@ -337,7 +337,7 @@ def test_quitting_is_asked_for(trainee, outside):
     assert outside.has_quit
 
 
-def test_another_simulation_after_a_trial_leaves_the_settings_open(trainee, loop, setup):
+def test_replacing_the_simulation_after_a_trial_leaves_the_settings_open(trainee, loop, setup):
     trainee.start("task-1")
     abort_and_open_settings(trainee)
     handover = loop.replace_simulation(Simulation(setup, 4))
@@ -346,7 +346,7 @@ def test_another_simulation_after_a_trial_leaves_the_settings_open(trainee, loop
     assert trainee.menu.name == "settings"
 
 
-def test_leaving_the_way_to_the_next_point_is_told_and_keeping_to_it_is_not(pilot):
+def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_is_not(pilot):
     pilot.start("task-1")
     truth = pilot.loop.truth
     center, first, second = (
@@ -370,7 +370,7 @@ def test_leaving_the_way_to_the_next_point_is_told_and_keeping_to_it_is_not(pilo
     assert pilot.presenter.screen.instruction.text.endswith("Now touch point 3.")
 
 
-def test_a_correct_touch_is_no_alarm_and_names_the_button(pilot):
+def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
     pilot.start("task-1")
     truth = pilot.loop.truth
     point, center = (truth.in_world(p) / MM_PER_M for p in (truth.fiducials["1"], truth.target))
@@ -383,7 +383,7 @@ def test_a_correct_touch_is_no_alarm_and_names_the_button(pilot):
     assert "contact" not in pilot.watcher.kinds
 
 
-def test_a_pressed_tool_is_told_by_its_depth_in_both_languages(pilot):
+def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):
     pilot.start("task-1")
     truth = pilot.loop.truth
     above = truth.in_world(truth.target) / MM_PER_M + (0.0, 0.0, 0.13)

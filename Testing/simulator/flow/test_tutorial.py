@@ -16,7 +16,7 @@ from rastrainer_simulator.flow.session.session import TUTORIAL_VIEW
 from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
 from rastrainer_simulator.flow.tutorial.steps import TutorialStep
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.state import TOUCH_ERRORS
 from rastrainer_simulator.training.rules import TOO_DEEP_MM
 from Testing.simulator.flow.learner import FlowLearner
@@ -143,7 +143,7 @@ def test_a_step_counts_only_the_movement_it_asks_for(learner):
     learner.until(lambda: "left: A" in instruction(learner), "the next step")
 
 
-def test_what_has_not_been_learned_yet_does_nothing(learner):
+def test_controls_not_yet_taught_do_nothing(learner):
     learner.tap("touch", "undo", "best_view")
     learner.step(50)
     assert status(learner)[1] == "Step 1 of 14"
@@ -161,7 +161,7 @@ def test_a_touch_that_does_not_count_says_why(learner):
     assert "Point 1: " in status(learner)[-1]
 
 
-def test_the_view_goes_nowhere_by_itself_before_the_guided_touches(learner):
+def test_the_view_does_not_move_by_itself_before_the_guided_touches(learner):
     control = session_of(learner).view.control
     go_to_step(learner, TutorialStep.LOWER)
     learner.step(100)
@@ -192,7 +192,7 @@ def lower_gently(learner, player):
             return
 
 
-def test_the_tip_that_rests_on_the_first_point_is_no_error_of_the_guided_touches(learner):
+def test_a_tip_resting_on_the_first_point_is_not_an_error_in_the_guided_touches(learner):
     player = FlowLearner(learner)
     go_to_step(learner, TutorialStep.LOWER)
     lower_gently(learner, player)
@@ -202,7 +202,7 @@ def test_the_tip_that_rests_on_the_first_point_is_no_error_of_the_guided_touches
     assert learner.presenter.screen.warnings == ()
 
 
-def test_its_menu_lets_it_wait_begin_again_or_be_left(learner):
+def test_the_tutorials_menu_lets_it_wait_restart_or_be_left(learner):
     go_to_step(learner, TutorialStep.UP)
     learner.tap("menu")
     learner.until_menu("tutorial")
@@ -225,7 +225,7 @@ def test_its_menu_lets_it_wait_begin_again_or_be_left(learner):
 
 
 @pytest.mark.parametrize(("rule", "is_listed"), [("optional", True), ("skipped", False)])
-def test_where_the_setting_says_so_the_trial_run_waits_for_nothing(trainee, rule, is_listed):
+def test_where_so_configured_the_trial_run_does_not_wait_for_the_tutorial(trainee, rule, is_listed):
     go_to_experiment(trainee, rule)
     names = [item.name for item in trainee.menu.items]
     assert ("tutorial" in names) is is_listed
@@ -238,7 +238,7 @@ def test_where_the_setting_says_so_the_trial_run_waits_for_nothing(trainee, rule
         assert trainee.item("leave").label == "Skip the tutorial"
 
 
-def test_a_study_decides_by_its_protocol(menu, outside):
+def test_a_study_decides_by_its_protocol_whether_the_tutorial_is_required(menu, outside):
     def offered(step):
         outside.services.study.take(step)
         menu.step(20)
@@ -255,7 +255,7 @@ def test_a_study_decides_by_its_protocol(menu, outside):
     assert (other["tutorial"], other["task-2"]) == (False, True)
 
 
-def test_in_another_mode_another_device_is_to_be_learned(menu):
+def test_in_another_mode_another_device_must_be_learned(menu):
     session_of(menu).tutorials._note(LEARNED)
     menu.step(20)
     assert menu.item("trial-run").is_enabled
@@ -264,7 +264,7 @@ def test_in_another_mode_another_device_is_to_be_learned(menu):
     assert menu.item("trial-run").help == FIRST
 
 
-def test_slicer_has_the_tutorial_opened_before_the_trial_run(trainee):
+def test_slicer_opens_the_tutorial_before_the_trial_run(trainee):
     session = session_of(trainee)
     presenter = trainee.presenter
     assert presenter.start_tutorial("P07", "desktop").data == {"isNeeded": False}
@@ -284,7 +284,7 @@ def test_slicer_has_the_tutorial_opened_before_the_trial_run(trainee):
     assert "P07 is still doing Task 1" in refused.message
 
 
-def test_a_trial_that_slicer_starts_ends_it(learner):
+def test_a_trial_started_by_slicer_ends_the_tutorial(learner):
     go_to_step(learner, TutorialStep.LOWER)
     learner.start("task-1", "P08")
     learner.until(lambda: instruction(learner) == "P08, touch point 1.", "the trial")
@@ -292,7 +292,7 @@ def test_a_trial_that_slicer_starts_ends_it(learner):
     assert learner.presenter.shown.latest.training.trial_id == learner.state.training.trial_id
 
 
-def test_another_head_ends_it(learner, setup):
+def test_switching_to_another_head_ends_the_tutorial(learner, setup):
     session_of(learner).tutorial.setup = replace(setup)
     learner.until_menu("start")
     assert [each.text for each in learner.presenter.screen.warnings] == [
@@ -300,7 +300,7 @@ def test_another_head_ends_it(learner, setup):
     ]
 
 
-def test_the_arm_is_first_brought_to_where_trials_start(learner, setup):
+def test_the_arm_is_first_moved_to_the_start_pose_of_trials(learner, setup):
     start = np.array(start_tip(setup.scenario, setup.settings.start_height))
     learner.submit("MoveTipTo", positionMm=(MM_PER_M * start + [0, 150, 100]).tolist())
     learner.until(lambda: np.linalg.norm(learner.tip - start) > 0.15, "the arm elsewhere")
@@ -311,7 +311,7 @@ def test_the_arm_is_first_brought_to_where_trials_start(learner, setup):
     assert np.linalg.norm(learner.tip - start) < 0.02
 
 
-def test_nobody_works_at_it_unseen(learner):
+def test_the_tutorial_pauses_while_nobody_sees_it(learner):
     learner.presenter.on_visibility(1, False)
     learner.until_menu("tutorial")
     assert learner.presenter.screen.warnings[0].text == "Paused: the trial was out of sight."
@@ -321,7 +321,7 @@ def test_nobody_works_at_it_unseen(learner):
     assert learner.presenter.screen.warnings == ()
 
 
-def test_a_finished_tutorial_is_known_again_and_by_device(tmp_path):
+def test_a_finished_tutorial_is_remembered_per_device(tmp_path):
     tutorials = FinishedTutorials(tmp_path / "records")
     tutorials.keep(LEARNED)
     tutorials.keep(replace(LEARNED, trainee="P08", device="gamepad"))
@@ -348,7 +348,7 @@ def test_a_finished_tutorial_is_known_again_and_by_device(tmp_path):
     ],
     ids=lambda change: next(iter(change)),
 )
-def test_a_file_that_holds_no_tutorial_counts_for_nothing(tmp_path, change):
+def test_a_file_that_does_not_hold_a_tutorial_counts_for_nothing(tmp_path, change):
     values = {"utc": "now", **LEARNED.to_json(), **change}
     (tmp_path / "1.tutorial").write_text(json.dumps(values))
     (tmp_path / "2.tutorial").write_text("[")
@@ -356,7 +356,7 @@ def test_a_file_that_holds_no_tutorial_counts_for_nothing(tmp_path, change):
     assert FinishedTutorials(tmp_path).latest(values["trainee"]) is None
 
 
-def test_a_tutorial_that_cannot_be_written_counts_until_the_simulator_ends(learner, outside):
+def test_a_tutorial_that_cannot_be_saved_counts_until_the_simulator_ends(learner, outside):
     outside.services.records.write_text("in the way")
     session = session_of(learner)
     session.tutorial._done = list(session.tutorial.steps)

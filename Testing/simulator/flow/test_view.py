@@ -7,7 +7,7 @@ from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import StepKind
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.flow.session.trial_view import turned
-from rastrainer_simulator.net.views.presenter import Hello
+from rastrainer_simulator.presentation.presenter import Hello
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorInput
@@ -54,7 +54,7 @@ def moved(trainee, steps=40):
 
 
 @pytest.mark.parametrize("around", [0.0, 37.0, 90.0, 180.0, -120.0])
-def test_left_on_the_stick_is_left_in_the_picture_however_the_view_is_turned(by_hand, around):
+def test_stick_left_is_left_in_the_picture_however_the_view_is_turned(by_hand, around):
     by_hand.start("task-1")
     by_hand.presenter.on_orbit(1, around, 0.0, 1.0)
     by_hand.step()
@@ -64,7 +64,7 @@ def test_left_on_the_stick_is_left_in_the_picture_however_the_view_is_turned(by_
     assert abs(up) < 0.1 * abs(right)
 
 
-def test_the_view_of_the_scenarios_camera_leaves_the_sticks_bit_by_bit_as_they_are(by_hand):
+def test_the_scenario_cameras_view_leaves_the_sticks_bit_for_bit_unchanged(by_hand):
     sticks = OperatorInput((0.1, -0.7, 0.3), (0.2, 0.9), True, operator="gamepad")
     assert turned(sticks, 0.0) is sticks
     assert turned(sticks, 90.0).translation == pytest.approx((0.7, 0.1, 0.3))
@@ -76,7 +76,7 @@ def test_the_view_of_the_scenarios_camera_leaves_the_sticks_bit_by_bit_as_they_a
     assert held[-1].translation == (-1.0, 0.0, 0.0)
 
 
-def test_a_square_sticks_corner_stays_within_what_a_stick_can_say():
+def test_the_corner_of_a_square_stick_range_stays_within_full_deflection():
     corner = turned(OperatorInput((1.0, 1.0, 1.0), (1.0, -1.0)), 45.0)
     assert np.linalg.norm(corner.translation) == pytest.approx(1.0)
     assert np.linalg.norm(corner.rotation) == pytest.approx(1.0)
@@ -95,7 +95,7 @@ def test_the_sticks_of_a_headset_follow_the_eyes(by_hand):
         assert way @ ahead > 0.9 * np.linalg.norm(way) > 0.0
 
 
-def test_the_view_goes_to_each_next_point_by_itself_and_waits_for_the_sticks(trainee):
+def test_the_view_moves_to_each_next_point_by_itself_and_waits_for_the_sticks(trainee):
     trainee.start("task-1")
     trainee.hands.push(0.0, 0.0, 0.4, True)
     wait_for_views(trainee)
@@ -108,7 +108,7 @@ def test_the_view_goes_to_each_next_point_by_itself_and_waits_for_the_sticks(tra
     assert pictures.main.focal_point == pytest.approx(pictures.inset.focal_point)
 
 
-def test_the_best_view_comes_by_its_control_where_it_does_not_come_by_itself(by_hand):
+def test_the_best_view_is_shown_on_request_where_it_is_not_automatic(by_hand):
     by_hand.start("task-1")
     wait_for_views(by_hand)
     by_hand.step(50)
@@ -134,7 +134,7 @@ def test_held_keys_turn_the_view(by_hand):
         by_hand.presenter.on_key(1, key, False, "")
 
 
-def test_only_the_operators_view_turns_the_view(by_hand):
+def test_only_the_operators_view_can_turn_the_view(by_hand):
     presenter = by_hand.presenter
     presenter.view_joined(7, Hello("page", "Firefox", 0.0))
     by_hand.start("task-1")
@@ -146,7 +146,7 @@ def test_only_the_operators_view_turns_the_view(by_hand):
     assert orbit(by_hand).azimuth_deg == pytest.approx(40.0)
 
 
-def test_in_a_study_the_view_follows_only_where_that_is_set(trainee):
+def test_in_a_study_the_view_follows_only_where_that_is_configured(trainee):
     session, view = trainee.presenter._session, trainee.presenter._view
     trainee.start("task-1")
     assert view.follows
@@ -158,7 +158,7 @@ def test_in_a_study_the_view_follows_only_where_that_is_set(trainee):
     assert not view.follows
 
 
-def test_the_journal_says_how_the_view_was_turned_and_whether_it_follows(by_hand, outside):
+def test_the_journal_records_how_the_view_was_turned_and_whether_it_follows(by_hand, outside):
     by_hand.start("task-1")
     by_hand.presenter.on_orbit(1, 40.0, -5.0, 0.5)
     by_hand.step(30)
@@ -169,7 +169,7 @@ def test_the_journal_says_how_the_view_was_turned_and_whether_it_follows(by_hand
     assert not any(entry["follows"] or entry["isAutomatic"] for entry in views)
 
 
-def test_a_trial_with_a_view_that_turns_is_simulated_again_bit_by_bit(by_hand, outside):
+def test_a_trial_with_a_turning_view_replays_bit_for_bit(by_hand, outside):
     by_hand.start("task-1")
     for around in (25.0, -80.0, 160.0):
         by_hand.presenter.on_orbit(1, around, 3.0, 0.9)

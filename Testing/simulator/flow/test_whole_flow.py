@@ -11,7 +11,7 @@ from rastrainer.trial.wording import say
 from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.input.presets import LEFT_ALONE, RIGHT_ALONE, presets_of
-from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.presentation.screen import Tone
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.simulator.flow.test_controls_screens import open_the_bindings
 from Testing.simulator.flow.trainee import Pad
@@ -50,7 +50,7 @@ def go_to_the_experiment_menu(trainee):
     trainee.until_menu("experiment")
 
 
-def train_and_look_at_the_result(trainee, outside, monkeypatch):
+def train_and_view_the_result(trainee, outside, monkeypatch):
     trainee.until(lambda: trainee.item("trainee").value == "P07")
     assert not trainee.item("task-1").is_enabled
     monkeypatch.setattr(trial_screen, "TRIAL_RUN_S", 0.5)
@@ -85,14 +85,14 @@ def train_and_look_at_the_result(trainee, outside, monkeypatch):
 
 
 @pytest.mark.soak
-def test_the_whole_flow_goes_by_keys_alone(trainee, outside, monkeypatch):
+def test_the_whole_flow_is_done_with_keys_alone(trainee, outside, monkeypatch):
     go_to_the_experiment_menu(trainee)
     trainee.focus("trainee")
     trainee.hands.type("P07")
-    train_and_look_at_the_result(trainee, outside, monkeypatch)
+    train_and_view_the_result(trainee, outside, monkeypatch)
 
 
-def test_the_whole_flow_goes_by_a_gamepad_alone_and_its_trial_replays_bit_by_bit(
+def test_the_whole_flow_is_done_with_a_gamepad_alone_and_its_trial_replays_bit_for_bit(
     pilot, outside, setup, tmp_path, monkeypatch
 ):
     go_to_the_experiment_menu(pilot)
@@ -103,7 +103,7 @@ def test_the_whole_flow_goes_by_a_gamepad_alone_and_its_trial_replays_bit_by_bit
         pilot.tap(*["right"] * steps, "accept")
     pilot.choose("done")
     pilot.until_menu("experiment")
-    trial_id = train_and_look_at_the_result(pilot, outside, monkeypatch)
+    trial_id = train_and_view_the_result(pilot, outside, monkeypatch)
     (path,) = (tmp_path / "records").glob(f"*{trial_id}.journal")
     reading = read_journal(path)
     assert reading.integrity is Integrity.INTACT
@@ -175,7 +175,7 @@ def take_preset(pilot, preset):
         pytest.param(LEFT_ALONE, "Left hand alone", id="left", marks=pytest.mark.soak),
     ],
 )
-def test_one_hand_goes_through_the_menus_and_touches_all_points(pilot, tmp_path, preset, title):
+def test_one_hand_works_the_menus_and_touches_all_points(pilot, tmp_path, preset, title):
     take_preset(pilot, title)
     pilot.hands = OneHand(pilot, pilot.hands.plugged, preset)
     while pilot.menu.name != "start":

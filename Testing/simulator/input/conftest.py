@@ -14,13 +14,13 @@ class Ear:
     def __init__(self):
         self.came, self.went, self.unknown, self.inputs = [], [], [], []
 
-    def gamepad_came(self, number, name):
+    def gamepad_added(self, number, name):
         self.came.append((number, name))
 
     def gamepad_moved(self, number, inputs):
         self.inputs.append((number, dict(inputs)))
 
-    def gamepad_went(self, number, name):
+    def gamepad_removed(self, number, name):
         self.went.append((number, name))
 
     def gamepad_unknown(self, name):
@@ -49,4 +49,4 @@ def plugged(gamepads, ear):
     assert len(ear.came) == 1
     yield gamepad, felt
     if gamepad.is_plugged_in:
-        gamepad.plug_out()
+        gamepad.unplug()

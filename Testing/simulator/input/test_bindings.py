@@ -53,7 +53,7 @@ def test_no_rebinding_leaves_a_control_without_input_or_an_input_with_two_meanin
 
 
 @given(CONTROLS, st.sampled_from(sorted(GAMEPAD_INPUTS)))
-def test_saved_bindings_are_read_back_as_they_were(tmp_path_factory, control, name):
+def test_saved_bindings_are_read_back_unchanged(tmp_path_factory, control, name):
     try:
         bindings = DEFAULT_BINDINGS.rebound(InputDevice.GAMEPAD, control, name)
     except InputError:
@@ -63,7 +63,7 @@ def test_saved_bindings_are_read_back_as_they_were(tmp_path_factory, control, na
     assert read_bindings(path) == bindings
 
 
-def test_an_input_may_do_one_thing_at_work_and_another_in_menus():
+def test_an_input_may_have_different_functions_at_work_and_in_menus():
     assert (
         DEFAULT_BINDINGS.control(InputDevice.GAMEPAD, "a", ControlContext.WORK) is ControlName.TOUCH
     )
@@ -81,7 +81,7 @@ def test_an_input_may_do_one_thing_at_work_and_another_in_menus():
     }
 
 
-def test_a_control_that_loses_its_only_input_gets_the_other_s():
+def test_a_control_that_loses_its_only_input_gets_the_others():
     bindings = DEFAULT_BINDINGS.rebound(InputDevice.KEYBOARD, ControlName.CAMERA, "KeyP")
     assert bindings.keyboard[ControlName.CAMERA] == ("KeyP",)
     assert bindings.keyboard[ControlName.PAUSE] == ("KeyC",)
@@ -108,14 +108,14 @@ def test_a_control_that_loses_its_only_input_gets_the_other_s():
         (" " * 70_000, "larger than"),
     ],
 )
-def test_a_file_that_holds_something_else_is_refused_with_a_sentence(tmp_path, content, sentence):
+def test_a_file_with_other_content_is_refused_with_a_message(tmp_path, content, sentence):
     path = tmp_path / "controls.json"
     path.write_text(content)
     with pytest.raises(InputError, match=sentence):
         read_bindings(path)
 
 
-def test_what_a_file_leaves_out_is_as_by_default(tmp_path):
+def test_anything_a_file_leaves_out_keeps_its_default(tmp_path):
     path = tmp_path / "controls.json"
     path.write_text(json.dumps({"formatVersion": 1, "keyboard": {"touch": ["KeyT"]}}))
     bindings = read_bindings(path)
@@ -124,13 +124,13 @@ def test_what_a_file_leaves_out_is_as_by_default(tmp_path):
     assert bindings.gamepad == DEFAULT_BINDINGS.gamepad
 
 
-def test_bindings_that_cannot_be_saved_are_told(tmp_path):
+def test_bindings_that_cannot_be_saved_are_reported(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="cannot be made"):
         write_bindings(tmp_path / "file" / "controls.json", DEFAULT_BINDINGS)
 
 
-def test_a_browser_s_pad_has_the_inputs_of_sdl_s():
+def test_a_browsers_gamepad_has_the_same_inputs_as_sdls():
     # The W3C's standard gamepad: buttons 0-3 are A, B, X, Y, 6 and 7 the triggers, 12 up.
     buttons = [0.0] * 17
     buttons[0], buttons[7], buttons[12] = 1.0, 0.5, 1.0
@@ -142,7 +142,7 @@ def test_a_browser_s_pad_has_the_inputs_of_sdl_s():
     assert set(inputs) < GAMEPAD_INPUTS
 
 
-def test_a_file_of_an_earlier_version_keeps_its_inputs_and_the_view_takes_free_ones(tmp_path):
+def test_an_earlier_versions_file_keeps_its_inputs_and_the_view_takes_free_ones(tmp_path):
     path = tmp_path / "controls.json"
     of_view = {
         "gamepad": {"touch": ["x"], "fine": ["leftshoulder"]},
@@ -184,7 +184,7 @@ def named(case):
 
 
 @pytest.mark.parametrize(("device", "name"), ALL, ids=named)
-def test_a_preset_gives_every_input_one_meaning_and_is_kept(device, name, tmp_path):
+def test_a_preset_gives_every_input_one_function_and_is_kept(device, name, tmp_path):
     table = presets_of(device)[name]
     bindings = replace(DEFAULT_BINDINGS, **{device.value: table})
     write_bindings(tmp_path / BINDINGS_FILE, bindings)
@@ -193,7 +193,7 @@ def test_a_preset_gives_every_input_one_meaning_and_is_kept(device, name, tmp_pa
 
 
 @pytest.mark.parametrize(("device", "name"), REACH, ids=named)
-def test_one_hand_alone_reaches_all_that_a_trial_needs(device, name):
+def test_one_hand_alone_reaches_everything_a_trial_needs(device, name):
     table, reach = presets_of(device)[name], REACH[device, name]
     # Upward a menu wraps around: the way down leads everywhere.
     ways_up = {ControlName.UP} if (device, name) == (InputDevice.KEYBOARD, LEFT_ALONE) else set()
@@ -201,7 +201,7 @@ def test_one_hand_alone_reaches_all_that_a_trial_needs(device, name):
     assert out_of_reach == set()
 
 
-def test_the_usual_layout_is_a_preset_and_a_changed_one_is_none():
+def test_the_default_layout_is_a_preset_and_a_modified_one_is_not():
     device = InputDevice.GAMEPAD
     assert preset_name(device, DEFAULT_BINDINGS.gamepad) == TWO_HANDS
     changed = DEFAULT_BINDINGS.rebound(device, ControlName.TOUCH, "x")

@@ -54,7 +54,7 @@ def tap(controls, source, code):
     controls.set_key(source, code, False)
 
 
-def test_nobody_holds_the_control_until_somebody_acts(controls):
+def test_nobody_has_control_until_somebody_acts(controls):
     controls.set_inputs(GAMEPAD, {"+leftx": 0.0, "a": 0.0})
     assert controls.holder is None
     assert controls.sticks == HANDS_OFF
@@ -63,13 +63,13 @@ def test_nobody_holds_the_control_until_somebody_acts(controls):
     assert controls.sticks.operator == "gamepad"
 
 
-def test_a_key_without_meaning_takes_nothing(controls, ear):
+def test_an_unassigned_key_does_not_take_control(controls, ear):
     tap(controls, PAGE, "F12")
     assert controls.holder is None
     assert ear.refusals == []
 
 
-def test_another_seat_s_sticks_do_not_move_the_arm(controls):
+def test_another_seats_sticks_do_not_move_the_arm(controls):
     controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
     controls.set_key(PAGE, "KeyW", True)
     controls.advance(1.0)
@@ -77,7 +77,7 @@ def test_another_seat_s_sticks_do_not_move_the_arm(controls):
     assert controls.sticks.translation == (0.4, 0.0, 0.0)
 
 
-def test_not_even_a_long_rest_gives_the_control_away_unasked(controls, ear):
+def test_even_a_long_rest_does_not_pass_on_control_unasked(controls, ear):
     controls.set_inputs(GAMEPAD, {"a": 1.0})
     controls.set_inputs(GAMEPAD, {"a": 0.0})
     controls.advance(1000.0)
@@ -88,7 +88,7 @@ def test_not_even_a_long_rest_gives_the_control_away_unasked(controls, ear):
     assert PAGE in ear.refusals
 
 
-def test_the_menu_takes_an_idle_holder_s_control_and_does_nothing_else(controls, ear):
+def test_the_menu_control_takes_over_from_an_idle_holder_and_does_nothing_else(controls, ear):
     controls.set_inputs(GAMEPAD, {"a": 1.0})
     controls.set_inputs(GAMEPAD, {"a": 0.0})
     # 30 s, as docs/views.md promises.
@@ -102,14 +102,14 @@ def test_the_menu_takes_an_idle_holder_s_control_and_does_nothing_else(controls,
     assert ear.presses == [ControlName.TOUCH]
 
 
-def test_a_holder_that_pushes_a_stick_is_never_idle(controls):
+def test_a_holder_pushing_a_stick_is_never_idle(controls):
     controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
     controls.advance(10.0 * IDLE_S)
     tap(controls, PAGE, "KeyM")
     assert controls.holder == GAMEPAD
 
 
-def test_one_seat_passes_the_control_on_by_using_it_but_not_from_a_pushed_stick(controls):
+def test_a_seat_switches_devices_by_using_one_but_not_while_a_stick_is_pushed(controls):
     controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
     controls.set_inputs(Source(SourceKind.BROWSER_GAMEPAD, view=1), {"+lefty": 0.5})
     assert controls.holder == GAMEPAD
@@ -118,7 +118,7 @@ def test_one_seat_passes_the_control_on_by_using_it_but_not_from_a_pushed_stick(
     assert controls.holder == KEYS
 
 
-def test_a_holder_that_is_gone_holds_nothing(controls):
+def test_a_holder_that_has_left_no_longer_has_control(controls):
     controls.set_inputs(GAMEPAD, {"+leftx": 0.4})
     controls.forget(GAMEPAD)
     assert controls.sticks == HANDS_OFF
@@ -132,7 +132,7 @@ def test_sticks_do_nothing_in_a_menu(controls):
     assert controls.sticks == HANDS_OFF
 
 
-def test_a_key_repeats_in_a_menu_only_while_its_keyboard_says_so(controls, ear):
+def test_a_key_repeats_in_a_menu_only_while_its_keyboard_repeats_it(controls, ear):
     controls.enter(ControlContext.MENU)
     controls.set_key(KEYS, "ArrowDown", True)
     # A window that draws for so long has not looked at the release.
@@ -167,7 +167,7 @@ def right(hand):
     return hand.sticks(DEFAULT_BINDINGS).translation[0]
 
 
-def test_a_key_pushes_more_and_more_and_stops_at_once():
+def test_a_key_pushes_harder_over_time_and_stops_at_once():
     hand = InputState(InputDevice.KEYBOARD)
     hand.set_key("KeyD", True)
     pushed = [right(hand)]
@@ -188,7 +188,7 @@ def test_opposite_keys_cancel():
     assert right(hand) == 0.0
 
 
-def test_a_key_that_a_keyboard_repeats_is_pressed_once():
+def test_a_key_repeated_by_the_keyboard_is_pressed_once():
     hand = InputState(InputDevice.KEYBOARD)
     assert [hand.set_key("Space", True) for _ in range(3)] == [["Space"], [], []]
     hand.set_key("Space", False)
@@ -202,7 +202,7 @@ def test_a_trembling_trigger_is_pressed_once():
     assert pressed == [False, True, False, False, False, False, False, True]
 
 
-def test_what_is_held_through_a_change_counts_only_after_it_was_let_go():
+def test_inputs_held_through_a_change_count_only_after_being_released():
     hand = InputState(InputDevice.GAMEPAD)
     hand.set_inputs({"+leftx": 0.8, "-lefty": 0.0})
     hand.block()
@@ -214,7 +214,7 @@ def test_what_is_held_through_a_change_counts_only_after_it_was_let_go():
     assert right(hand) == 0.7
 
 
-def test_a_headset_s_sticks_wait_likewise():
+def test_a_headsets_sticks_wait_likewise():
     hand = InputState(InputDevice.GAMEPAD)
     pushed = OperatorInput((0.5, 0.0, 0.0), (0.0, 0.2), True)
     hand.set_sticks(pushed)
@@ -226,7 +226,7 @@ def test_a_headset_s_sticks_wait_likewise():
     assert hand.sticks(DEFAULT_BINDINGS).fine
 
 
-def test_sticks_that_rested_through_a_change_count_at_their_first_push():
+def test_sticks_at_rest_through_a_change_count_at_their_first_push():
     hand = InputState(InputDevice.GAMEPAD)
     hand.set_sticks(OperatorInput())
     hand.block()

@@ -23,7 +23,7 @@ def poll_until(gamepads, condition):
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-def test_each_button_is_told_by_sdl_s_name_alone(gamepads, ear, plugged, button):
+def test_each_button_is_reported_by_sdls_name_alone(gamepads, ear, plugged, button):
     gamepad, _felt = plugged
     gamepad.press(button)
     gamepads.poll()
@@ -32,7 +32,7 @@ def test_each_button_is_told_by_sdl_s_name_alone(gamepads, ear, plugged, button)
 
 
 @pytest.mark.parametrize("axis", AXES[:4])
-def test_each_way_of_a_stick_is_an_input_of_its_own(gamepads, ear, plugged, axis):
+def test_each_direction_of_a_stick_is_an_input_of_its_own(gamepads, ear, plugged, axis):
     gamepad, _felt = plugged
     for position, pushed, rests in ((0.5, "+" + axis, "-" + axis), (-1.0, "-" + axis, "+" + axis)):
         gamepad.move(**{axis: position})
@@ -54,17 +54,17 @@ def test_a_trigger_goes_from_zero_to_one(gamepads, ear, plugged, trigger):
 
 
 @pytest.mark.usefixtures("plugged")
-def test_what_does_not_change_is_not_told_again(gamepads, ear):
+def test_unchanged_inputs_are_not_reported_again(gamepads, ear):
     told = len(ear.inputs)
     for _ in range(5):
         gamepads.poll()
     assert len(ear.inputs) <= max(told, 1)
 
 
-def test_a_gamepad_may_come_and_go_again_and_again(gamepads, ear, plugged):
+def test_a_gamepad_can_be_plugged_and_unplugged_repeatedly(gamepads, ear, plugged):
     gamepad, _felt = plugged
     for times in (1, 2, 3):
-        gamepad.plug_out()
+        gamepad.unplug()
         gamepads.poll()
         assert [name for _, name in ear.went] == ["Virtual F310"] * times
         gamepad.plug_in()
@@ -84,7 +84,7 @@ def test_two_gamepads_are_told_apart(gamepads, ear):
     gamepads.poll()
     numbers = {name: number for number, name in ear.came}
     assert ear.inputs[-1][0] == numbers["Second"] != numbers["Virtual F310"]
-    second.plug_out()
+    second.unplug()
 
 
 def test_the_motors_run_as_strong_and_as_long_as_asked(gamepads, plugged):
@@ -102,16 +102,16 @@ def test_a_joystick_of_unknown_layout_is_named_once(gamepads, ear):
         gamepads.poll()
     assert ear.unknown == ["Odd wheel"]
     assert ear.came == []
-    wheel.plug_out()
+    wheel.unplug()
 
 
-def test_programs_that_the_simulator_starts_do_not_inherit_sdl_s_settings(monkeypatch):
+def test_programs_started_by_the_simulator_do_not_inherit_sdls_settings(monkeypatch):
     monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
     Gamepads(None).close()
     assert "SDL_VIDEODRIVER" not in os.environ
 
 
-def test_a_computer_without_pygame_gets_a_sentence():
+def test_a_computer_without_pygame_gets_a_message():
     program = (
         "import sys; sys.modules['pygame'] = None\n"
         "from rastrainer_simulator.input.gamepads import NoGamepadsError, start_sdl\n"

@@ -20,7 +20,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop import control_loop
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.timing import TrialLimits
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.record.trial_recorder import FLUSH_TICKS
 from rastrainer_simulator.replay.resimulation import replay
@@ -97,7 +97,7 @@ def labels(reading):
     return [entry["label"] for entry in reading.of_kind("touch")]
 
 
-def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_by_bit(
+def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_for_bit(
     running, tmp_path, anywhere
 ):
     sticks = OperatorInput(translation=(0.3, -0.2, -0.9), operator="gamepad")
@@ -134,7 +134,7 @@ def test_a_whole_trial_is_recorded_delivered_scored_and_replayed_bit_by_bit(
     assert record.undone_touches == 1
 
 
-def test_a_replay_finds_a_number_that_does_not_follow_from_the_inputs(running, tmp_path, anywhere):
+def test_a_replay_detects_a_number_that_does_not_follow_from_inputs(running, tmp_path, anywhere):
     running.loop.hold_sticks(OperatorInput(translation=(0.0, -0.8, 0.4)))
     running.start()
     running.ticks(30)
@@ -148,14 +148,14 @@ def test_a_replay_finds_a_number_that_does_not_follow_from_the_inputs(running, t
     assert f"line {entry['n']}: q was" in report.difference
 
 
-def test_an_answered_touch_is_on_the_disk(running, tmp_path):
+def test_an_answered_touch_is_on_disk(running, tmp_path):
     running.start()
     for number in range(1, 6):
         assert running.do(CommandName.CAPTURE).ok
         assert labels(read_journal(journals(tmp_path)[0])) == [str(i + 1) for i in range(number)]
 
 
-def test_nobody_sees_a_touch_before_it_is_on_the_disk_and_the_arm_continues_meanwhile(
+def test_nobody_sees_a_touch_before_it_is_on_disk_and_the_arm_continues_meanwhile(
     running, monkeypatch
 ):
     running.start()
@@ -180,7 +180,7 @@ def test_nobody_sees_a_touch_before_it_is_on_the_disk_and_the_arm_continues_mean
     assert sum(event.kind == "touch" for result in seen for event in result.events) == 1
 
 
-def test_commands_that_come_meanwhile_are_carried_out_in_their_order(running):
+def test_commands_that_arrive_meanwhile_are_carried_out_in_order(running):
     running.start()
     futures = [running.submit(CommandName.CAPTURE) for _ in range(15)]
     futures.append(running.submit(CommandName.REGISTER))
@@ -202,7 +202,7 @@ def test_a_trial_whose_journal_cannot_be_made_does_not_start(running, tmp_path):
     assert len(journals(tmp_path)) == 1
 
 
-def test_a_refused_start_leaves_no_journal_though_the_disk_took_what_came_after(
+def test_a_refused_start_leaves_no_journal_even_if_the_disk_accepted_later_writes(
     running, tmp_path, monkeypatch
 ):
     opened, refusals = Journal._opened, [OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))]
@@ -270,7 +270,7 @@ def test_a_disk_that_fills_up_between_two_touches_pauses_the_trial(running, monk
         wait_for(lambda: running.loop.latest.training.phase is Phase.PAUSED)
 
 
-def test_a_finished_trial_waits_for_its_acknowledgment_also_after_a_restart(
+def test_a_finished_trial_waits_for_its_acknowledgment_even_across_a_restart(
     running, tmp_path, anywhere
 ):
     trial_id = running.start()
@@ -287,7 +287,7 @@ def test_a_finished_trial_waits_for_its_acknowledgment_also_after_a_restart(
         assert loop.unacknowledged() == ()
 
 
-def test_a_question_about_an_older_trial_that_fails_unforeseen_is_answered(running, caplog):
+def test_a_request_about_an_older_trial_is_answered_even_if_it_fails_unexpectedly(running, caplog):
     trial_id = running.start()
     running.finish()
     assert running.register(trial_id).ok
@@ -304,9 +304,7 @@ def test_a_question_about_an_older_trial_that_fails_unforeseen_is_answered(runni
     assert running.do(CommandName.GET_TRIAL, trialId=trial_id).ok
 
 
-def test_a_trial_in_a_second_session_with_the_same_seed_is_another_trial(
-    anywhere, tmp_path, running
-):
+def test_the_same_seed_in_a_second_session_gives_a_different_trial(anywhere, tmp_path, running):
     first = running.start()
     running.do(CommandName.ABORT)
     running.loop.stop()
@@ -314,9 +312,7 @@ def test_a_trial_in_a_second_session_with_the_same_seed_is_another_trial(
         assert Client(loop).start() != first
 
 
-def test_stopping_in_the_middle_of_a_trial_marks_it_and_refuses_what_comes_too_late(
-    running, tmp_path
-):
+def test_stopping_in_the_middle_of_a_trial_marks_it_and_refuses_late_commands(running, tmp_path):
     running.start()
     running.do(CommandName.CAPTURE)
     running.loop.stop()
@@ -326,7 +322,7 @@ def test_stopping_in_the_middle_of_a_trial_marks_it_and_refuses_what_comes_too_l
     assert "shutting down" in running.do(CommandName.CAPTURE).message
 
 
-def test_another_simulation_takes_over_between_two_trials_only(running, anywhere):
+def test_another_simulation_takes_over_only_between_two_trials(running, anywhere):
     other = Simulation(anywhere, 4)
     running.start()
     assert not running.loop.replace_simulation(other).result(TIMEOUT_S).ok
@@ -338,7 +334,7 @@ def test_another_simulation_takes_over_between_two_trials_only(running, anywhere
     running.start()
 
 
-def test_trials_that_are_started_too_often_are_refused_and_make_no_journal(anywhere, tmp_path):
+def test_trials_started_too_often_are_refused_and_create_no_journal(anywhere, tmp_path):
     places = (Simulation(anywhere, 1), tmp_path / "records")
     with ControlLoop(*places, speed=None, trial_limits=TrialLimits(1e-6, 2)) as loop:
         client = Client(loop)
@@ -377,7 +373,7 @@ def test_a_late_tick_is_counted_and_lost_ticks_are_not_hidden(anywhere, tmp_path
     assert min(statistics.late, statistics.skipped) > 0
 
 
-class ClockOfItsOwn:
+class SteppedClock:
     """Time that goes on only where the loop sleeps or is held up: no machine stands still in it."""
 
     def __init__(self):
@@ -390,8 +386,8 @@ class ClockOfItsOwn:
         self.now = max(self.now, moment)
 
 
-def test_after_a_delay_the_loop_makes_up_for_it_tick_by_tick(anywhere, tmp_path, monkeypatch):
-    clock = ClockOfItsOwn()
+def test_after_a_delay_the_loop_catches_up_tick_by_tick(anywhere, tmp_path, monkeypatch):
+    clock = SteppedClock()
     monkeypatch.setattr(control_loop, "time", clock)
     monkeypatch.setattr(control_loop, "sleep_until", clock.sleep_until)
     with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=1.0) as loop:
@@ -410,7 +406,7 @@ def test_after_a_delay_the_loop_makes_up_for_it_tick_by_tick(anywhere, tmp_path,
         assert loop.statistics.skipped == 0
 
 
-def test_a_faulty_subscriber_stops_the_loop_and_every_question_is_still_answered(
+def test_a_faulty_subscriber_stops_the_loop_and_every_request_is_still_answered(
     anywhere, tmp_path, caplog
 ):
     with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None) as loop:

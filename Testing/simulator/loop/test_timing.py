@@ -43,7 +43,7 @@ def may_be_first() -> bool:
 
 
 @linux_only
-def test_the_loop_runs_before_ordinary_threads_where_the_system_permits_it():
+def test_the_loop_has_priority_over_ordinary_threads_where_the_system_permits_it():
     def inside() -> int:
         with precise_timing(is_first_in_line=True):
             return policy()
@@ -61,7 +61,7 @@ def test_threads_that_the_loop_starts_stay_ordinary():
 
 
 @linux_only
-def test_who_shares_the_interpreter_with_the_loop_comes_after_it_and_before_ordinary_threads():
+def test_threads_sharing_the_loops_interpreter_rank_between_it_and_ordinary_threads():
     def priority() -> tuple[int, int]:
         return policy(), os.sched_getparam(0).sched_priority
 
@@ -85,7 +85,7 @@ def test_who_shares_the_interpreter_with_the_loop_comes_after_it_and_before_ordi
 
 
 @linux_only
-def test_a_loop_that_never_sleeps_is_not_put_first():
+def test_a_loop_that_never_sleeps_gets_no_priority():
     def inside() -> int:
         with precise_timing(is_first_in_line=False):
             return policy()
@@ -93,7 +93,7 @@ def test_a_loop_that_never_sleeps_is_not_put_first():
     assert in_a_thread(inside) == os.SCHED_OTHER
 
 
-def test_everything_is_as_before_when_it_ends():
+def test_everything_is_restored_when_it_ends():
     interval = sys.getswitchinterval()
 
     def around() -> tuple[float, int]:

@@ -82,7 +82,7 @@ def test_a_token_with_an_unknown_key_id_is_refused(lab, browser, key_id):
     assert lab.trainees() == []
 
 
-def test_made_up_key_ids_do_not_make_this_tool_ask_the_platform_again_and_again(lab, browser):
+def test_made_up_key_ids_do_not_make_the_tool_query_the_platform_repeatedly(lab, browser):
     assert browser.launch(**TEACHER)[0] == 200
     asked = lab.platform.asked_for_keys
     key_sets = lab.tool.server._key_sets
@@ -94,7 +94,7 @@ def test_made_up_key_ids_do_not_make_this_tool_ask_the_platform_again_and_again(
     assert browser.launch(**TEACHER)[0] == 200
 
 
-def test_a_key_that_the_token_itself_brings_or_points_to_is_not_used(lab, browser, platform):
+def test_a_key_embedded_in_or_referenced_by_the_token_is_not_used(lab, browser, platform):
     place = f"{platform.address}/attacker"
     for headers in (
         {"jwk": public_key(OTHER_KEY)},
@@ -151,7 +151,7 @@ def test_a_token_for_somebody_else_or_of_another_kind_is_refused(lab, browser, c
     assert lab.trainees() == []
 
 
-def test_a_launch_is_used_once(browser, platform):
+def test_a_launch_can_be_used_only_once(browser, platform):
     asked = browser.login()
     claims = platform.claims(asked["nonce"], browser.launch_url, **TEACHER)
     token = jwt.encode(claims, KEY, "RS256", {"kid": KEY_ID})
@@ -162,7 +162,7 @@ def test_a_launch_is_used_once(browser, platform):
     assert browser.post("made-up", token)[0] == 400
 
 
-def test_a_launch_that_was_begun_in_another_browser_is_refused(browser, lab, platform):
+def test_a_launch_begun_in_another_browser_is_refused(browser, lab, platform):
     victim = lab.new_browser()
     victim.login()
     asked = browser.login()
@@ -187,13 +187,13 @@ def test_a_launch_that_was_begun_in_another_browser_is_refused(browser, lab, pla
     ],
     ids=str,
 )
-def test_nobody_is_sent_anywhere_but_to_a_registered_platform(browser, changes):
+def test_nobody_is_redirected_anywhere_but_to_a_registered_platform(browser, changes):
     status, headers, _text = browser.begin(**changes)
     assert status == 400
     assert "Location" not in headers
 
 
-def test_too_long_deep_or_empty_tokens_are_refused(lab, browser):
+def test_overlong_deeply_nested_or_empty_tokens_are_refused(lab, browser):
     deep = base64.urlsafe_b64encode(b"[" * 9000).rstrip(b"=").decode()
     for token in ("", "a.b.c", "." * 50, "x" * (LARGEST_TOKEN + 1), f"{deep}.{deep}.x"):
         assert browser.post(browser.login()["state"], token)[0] == 400, token[:20]
@@ -221,13 +221,13 @@ def test_too_long_deep_or_empty_tokens_are_refused(lab, browser):
     ],
     ids=["list", "text", "many", "short", "symmetric", "another", "nothing", "huge"],
 )
-def test_keys_that_are_unusable_or_huge_let_nobody_in(restarted, answer):
+def test_unusable_or_huge_keys_let_nobody_in(restarted, answer):
     restarted.platform.keys = answer
     assert restarted.new_browser().launch()[0] in (400, 503)
     assert restarted.trainees() == []
 
 
-def test_a_platform_s_key_that_is_too_short_lets_nobody_in(restarted):
+def test_a_platform_key_that_is_too_short_lets_nobody_in(restarted):
     key = rsa.generate_private_key(public_exponent=65_537, key_size=1024)
     restarted.platform.keys = {"keys": [public_key(key)]}
     with pytest.warns(jwt.InsecureKeyLengthWarning):
@@ -235,14 +235,14 @@ def test_a_platform_s_key_that_is_too_short_lets_nobody_in(restarted):
     assert restarted.trainees() == []
 
 
-def test_keys_that_never_come_are_not_waited_for_without_end(restarted):
+def test_the_tool_does_not_wait_forever_for_keys(restarted):
     restarted.platform.keys = None
     restarted.start(timeout_s=0.2)
     assert restarted.new_browser().launch()[0] == 503
     assert restarted.trainees() == []
 
 
-def test_logins_that_are_begun_again_and_again_take_no_memory():
+def test_repeatedly_begun_logins_do_not_exhaust_memory():
     logins = OpenLogins(lambda: 0.0)
     first, _nonce = logins.begin(None, "browser")
     for _number in range(MOST_LOGINS):
@@ -253,7 +253,7 @@ def test_logins_that_are_begun_again_and_again_take_no_memory():
     assert logins.end(last, "browser").browser == "browser"
 
 
-def test_a_login_is_over_after_ten_minutes():
+def test_a_login_expires_after_ten_minutes():
     now = [0.0]
     logins = OpenLogins(lambda: now[0])
     state, _nonce = logins.begin(None, "browser")
@@ -262,7 +262,7 @@ def test_a_login_is_over_after_ten_minutes():
         logins.end(state, "browser")
 
 
-def test_keys_that_are_elsewhere_are_not_followed(restarted):
+def test_a_redirect_to_keys_elsewhere_is_not_followed(restarted):
     platform = restarted.platform
     asked = platform.asked_for_keys
     platform.keys = web.Response(status=302, headers={"Location": f"{platform.address}/jwks"})

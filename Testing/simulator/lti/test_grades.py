@@ -131,7 +131,7 @@ def test_a_lab_can_forbid_all_grades(lab, platform):
     assert platform.scores == []
 
 
-def test_an_outage_loses_no_grade_and_is_asked_about_less_and_less_often(lab, browser, platform):
+def test_an_outage_loses_no_grade_and_retries_become_less_frequent(lab, browser, platform):
     skip(lab, 0.0)
     browser.launch()
     score = play(lab)
@@ -151,7 +151,7 @@ def test_an_outage_loses_no_grade_and_is_asked_about_less_and_less_often(lab, br
     assert [each["scoreGiven"] for each in platform.scores] == [score]
 
 
-def test_a_platform_may_ask_for_another_audience_of_requests(lab, browser, platform):
+def test_a_platform_may_require_a_different_audience_for_token_requests(lab, browser, platform):
     browser.launch()
     play(lab)
     platform.audience = "https://api.example.org/token"
@@ -160,7 +160,7 @@ def test_a_platform_may_ask_for_another_audience_of_requests(lab, browser, platf
     assert lab.tool.send_due() == 1
 
 
-def test_a_platform_that_nobody_runs_gets_the_grade_when_it_is_back(lab, browser, platform):
+def test_a_platform_that_was_down_gets_the_grade_when_it_is_back(lab, browser, platform):
     browser.launch()
     play(lab)
     platform.token = "another"
@@ -172,7 +172,7 @@ def test_a_platform_that_nobody_runs_gets_the_grade_when_it_is_back(lab, browser
     assert lab.tool.send_due() == 1
 
 
-def test_a_crash_between_sending_and_noting_sends_the_same_grade_again(lab, browser, platform):
+def test_a_crash_between_sending_and_recording_sends_the_same_grade_again(lab, browser, platform):
     browser.launch()
     score = play(lab)
     platform.planned, platform.stored_first = [500], True
@@ -184,9 +184,7 @@ def test_a_crash_between_sending_and_noting_sends_the_same_grade_again(lab, brow
     assert first <= second
 
 
-def test_a_grade_that_is_refused_holds_up_no_other_and_is_sent_with_the_next_score(
-    lab, browser, platform
-):
+def test_a_refused_grade_blocks_no_other_and_is_sent_with_the_next_score(lab, browser, platform):
     browser.launch()
     lab.new_browser().launch("user-2")
     play(lab)
@@ -199,7 +197,7 @@ def test_a_grade_that_is_refused_holds_up_no_other_and_is_sent_with_the_next_sco
     assert lab.tool.send_due() == 1
 
 
-def test_a_grade_that_the_platform_always_fails_at_holds_up_no_other(lab, browser, platform):
+def test_a_grade_on_which_the_platform_always_fails_blocks_no_other(lab, browser, platform):
     skip(lab, 0.0)
     browser.launch()
     lab.new_browser().launch("user-2")
@@ -216,7 +214,7 @@ def test_a_grade_that_the_platform_always_fails_at_holds_up_no_other(lab, browse
 
 
 @pytest.mark.parametrize("lasts", [None, "soon", [], 10**400], ids=lambda lasts: str(lasts)[:5])
-def test_access_for_a_time_that_is_none_is_asked_for_again_later(lab, browser, platform, lasts):
+def test_a_token_with_an_invalid_lifetime_is_requested_again_later(lab, browser, platform, lasts):
     skip(lab, 0.0)
     browser.launch()
     play(lab)
@@ -227,7 +225,7 @@ def test_access_for_a_time_that_is_none_is_asked_for_again_later(lab, browser, p
     assert lab.tool.send_due() == 1
 
 
-def test_a_mistake_of_ours_is_logged_and_stops_no_later_grade(
+def test_a_programming_error_is_logged_and_stops_no_later_grade(
     lab, browser, platform, monkeypatch, caplog
 ):
     browser.launch()
@@ -249,7 +247,7 @@ def test_a_mistake_of_ours_is_logged_and_stops_no_later_grade(
     assert "a mistake" in caplog.text
 
 
-def test_a_redirection_would_show_the_token_to_others_and_is_not_followed(lab, browser, platform):
+def test_a_redirect_that_would_reveal_the_token_is_not_followed(lab, browser, platform):
     browser.launch()
     play(lab)
     platform.planned = [302]
@@ -269,7 +267,7 @@ def test_a_later_grade_has_a_later_time_even_if_the_clock_was_set_back(lab, brow
     assert moment(platform.scores[-1]["timestamp"]) == moment(ahead) + timedelta(milliseconds=1)
 
 
-def test_a_course_that_nobody_has_opened_for_long_gets_no_more_grades(lab, browser):
+def test_a_course_that_nobody_has_opened_for_a_long_time_gets_no_more_grades(lab, browser):
     browser.launch()
     play(lab)
     links = PlatformLinks(lab.study)
@@ -281,7 +279,7 @@ def test_a_course_that_nobody_has_opened_for_long_gets_no_more_grades(lab, brows
     assert lab.tool.send_due() == 1
 
 
-def test_deleting_a_trainee_deletes_who_they_were_at_the_platform(lab, browser, tmp_path):
+def test_deleting_a_trainee_deletes_who_they_were_on_the_platform(lab, browser, tmp_path):
     browser.launch("user-7654321")
     assert PlatformLinks(lab.study).pseudonyms() == {"T001"}
     with Study.open(lab.study) as study:
@@ -293,7 +291,7 @@ def test_deleting_a_trainee_deletes_who_they_were_at_the_platform(lab, browser, 
     assert b"user-7654321" not in PlatformLinks(lab.study).path.read_bytes()
 
 
-def test_where_scores_are_sent_keeps_the_query_of_the_column():
+def test_the_address_for_scores_keeps_the_query_of_the_column():
     assert scores_url("https://m.example.org/1/lineitem?type_id=3") == (
         "https://m.example.org/1/lineitem/scores?type_id=3"
     )

@@ -22,7 +22,7 @@ def pseudonym_in(page: str) -> str:
     return page.partition("<strong>")[2].partition("</strong>")[0]
 
 
-def test_the_browser_is_sent_to_the_platform_with_all_that_it_must_repeat(browser, platform):
+def test_the_browser_is_sent_to_the_platform_with_everything_it_must_return(browser, platform):
     status, headers, _text = browser.begin()
     assert status == 302
     assert headers["Location"].startswith(f"{platform.address}/auth?site=1&")
@@ -47,7 +47,7 @@ def test_a_learner_gets_the_next_pseudonym_and_the_same_one_again(lab, browser):
         assert not study.trainee(first).consent
 
 
-def test_the_study_knows_no_user_of_the_platform_and_nobody_keeps_names(lab, browser):
+def test_the_study_knows_no_platform_user_and_no_names_are_stored(lab, browser):
     browser.launch("user-1234567")
     links = PlatformLinks(lab.study).path
     assert b"user-1234567" in links.read_bytes()
@@ -58,7 +58,7 @@ def test_the_study_knows_no_user_of_the_platform_and_nobody_keeps_names(lab, bro
         assert b"jo@example.org" not in path.read_bytes()
 
 
-def test_a_trainee_who_is_deleted_is_forgotten_and_comes_back_as_somebody_new(lab, browser):
+def test_a_deleted_trainee_is_forgotten_and_returns_as_somebody_new(lab, browser):
     first = pseudonym_in(browser.launch("user-7654321")[1])
     other = pseudonym_in(browser.launch("user-8765432")[1])
     with Study.open(lab.study) as study:
@@ -69,9 +69,7 @@ def test_a_trainee_who_is_deleted_is_forgotten_and_comes_back_as_somebody_new(la
     assert b"user-8765432" not in PlatformLinks(lab.study).path.read_bytes()
 
 
-def test_a_learner_who_comes_while_deleted_ones_are_forgotten_is_not_forgotten(
-    lab, browser, monkeypatch
-):
+def test_a_learner_who_launches_while_deleted_ones_are_removed_is_kept(lab, browser, monkeypatch):
     pseudonyms = []
 
     def linked_now():
@@ -118,7 +116,7 @@ def test_the_page_speaks_the_language_of_the_platform_or_of_the_browser(browser)
     assert "Votre pseudonyme" in browser.launch(language="xx,fr-CA;q=0.8,en;q=0.5")[1]
 
 
-def test_the_page_may_not_be_framed_run_scripts_or_be_kept(browser, platform):
+def test_the_page_may_not_be_framed_run_scripts_or_be_cached(browser, platform):
     asked = browser.login()
     claims = platform.claims(asked["nonce"], browser.launch_url)
     token = jwt.encode(claims, KEY, headers={"kid": KEY_ID}, algorithm="RS256")
@@ -132,14 +130,14 @@ def test_the_page_may_not_be_framed_run_scripts_or_be_kept(browser, platform):
     assert headers["X-Content-Type-Options"] == "nosniff"
 
 
-def test_what_a_platform_says_is_text_in_the_page_and_no_markup(browser):
+def test_text_from_a_platform_is_shown_as_text_and_not_as_markup(browser):
     custom = {"task": "<script>alert(1)</script>"}
     status, text = browser.launch(**{f"{CLAIM}custom": custom})
     assert status == 200
     assert "<script" not in text
 
 
-def test_what_fails_in_the_lab_is_logged_and_told_to_no_visitor(lab, browser, caplog):
+def test_lab_side_failures_are_logged_and_not_revealed_to_visitors(lab, browser, caplog):
     links = PlatformLinks(lab.study).path
     kept = links.read_bytes()
     links.write_bytes(b"no database" * 100)

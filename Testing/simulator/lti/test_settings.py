@@ -40,7 +40,7 @@ def test_settings_are_read_with_their_defaults(tmp_path):
     assert settings.platform("https://elsewhere.example.org", "") is None
 
 
-def test_grades_go_to_the_platform_s_own_servers_only(tmp_path):
+def test_grades_go_only_to_the_platforms_own_servers(tmp_path):
     further = ["https://grades.example.org"]
     write(tmp_path, platforms=[{**PLATFORM, "lineItemOrigins": further}])
     (platform,) = read_lti_settings(tmp_path).platforms
@@ -78,13 +78,13 @@ def test_grades_go_to_the_platform_s_own_servers_only(tmp_path):
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
-def test_what_cannot_be_used_is_named(tmp_path, values, words):
+def test_unusable_settings_are_named(tmp_path, values, words):
     write(tmp_path, **values)
     with pytest.raises(InputError, match=words):
         read_lti_settings(tmp_path)
 
 
-def test_the_private_key_is_made_once_and_its_owner_s_alone(tmp_path):
+def test_the_private_key_is_created_once_and_readable_by_its_owner_only(tmp_path):
     key = ToolKey(tmp_path)
     path = tmp_path / KEY_FILE
     assert ToolKey(tmp_path).key_set() == key.key_set()
@@ -101,7 +101,7 @@ def test_the_private_key_is_made_once_and_its_owner_s_alone(tmp_path):
         ToolKey(tmp_path)
 
 
-def test_of_two_first_starts_at_once_both_use_the_key_that_is_kept(tmp_path, monkeypatch):
+def test_two_simultaneous_first_starts_use_the_same_stored_key(tmp_path, monkeypatch):
     generate, others = rsa.generate_private_key, []
 
     def generate_while_another_starts(**terms):

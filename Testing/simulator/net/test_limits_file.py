@@ -30,7 +30,7 @@ def test_without_a_file_the_limits_are_the_defaults(tmp_path):
     assert read_limits(tmp_path) == ServerLimits(LinkLimits(), ViewLimits(), TrialLimits())
 
 
-def test_what_the_file_leaves_out_is_as_by_default(tmp_path):
+def test_anything_the_file_leaves_out_keeps_its_default(tmp_path):
     write(tmp_path, {"clients": {"clients": 3, "slow_client_s": 2}, "views": {"views": 5}})
     assert read_limits(tmp_path) == ServerLimits(
         LinkLimits(clients=3, slow_client_s=2), ViewLimits(views=5)
@@ -61,7 +61,7 @@ def test_what_the_file_leaves_out_is_as_by_default(tmp_path):
         ('{"clients": {"slow_client_s": NaN}}', "limits.json"),
     ],
 )
-def test_what_is_no_limit_is_refused_with_what_would_be_one(tmp_path, content, sentence):
+def test_an_invalid_limit_is_refused_with_what_would_be_valid(tmp_path, content, sentence):
     write(tmp_path, content)
     with pytest.raises(InputError) as refused:
         read_limits(tmp_path)
@@ -84,7 +84,7 @@ def test_the_simulator_accepts_no_more_clients_and_trials_than_the_file_allows(t
         assert simulator.stop()[0] == 0
 
 
-def test_a_wrong_file_ends_the_start_with_one_sentence_and_status_2(tmp_path):
+def test_an_invalid_file_ends_the_start_with_a_one_sentence_error_and_status_2(tmp_path):
     write(tmp_path, {"clients": {"clients": 0}})
     places = ["--records", str(tmp_path / "records"), "--config", str(tmp_path)]
     command = [*COMMAND, *places, "--port", "0", "--no-views"]

@@ -17,7 +17,7 @@ from rastrainer_simulator.ops.folders import config_folder
         ("darwin", "HOME", "", Path("home", "Library", "Application Support", "RASTrainer")),
     ],
 )
-def test_the_folder_of_the_settings(monkeypatch, platform, variable, value, folder):
+def test_the_settings_folder_of_each_system(monkeypatch, platform, variable, value, folder):
     monkeypatch.setattr(sys, "platform", platform)
     monkeypatch.setattr(Path, "home", lambda: Path("home"))
     monkeypatch.setenv(variable, value)

@@ -37,7 +37,7 @@ def test_each_record_is_one_line_of_json_with_time_level_and_data(tmp_path):
     assert line["utc"].endswith("Z")
 
 
-def test_only_warnings_come_to_the_terminal(tmp_path, capsys):
+def test_only_warnings_are_printed_to_the_terminal(tmp_path, capsys):
     with keep_logs(tmp_path, "simulator"):
         OURS.info("quiet")
         OURS.warning("loud")
@@ -46,7 +46,7 @@ def test_only_warnings_come_to_the_terminal(tmp_path, capsys):
     assert "quiet" not in error
 
 
-def test_the_files_rotate_and_the_oldest_goes(tmp_path, monkeypatch):
+def test_the_files_rotate_and_the_oldest_is_deleted(tmp_path, monkeypatch):
     monkeypatch.setattr(log_files, "LARGEST_FILE", 2000)
     with keep_logs(tmp_path, "simulator"):
         for number in range(1000):
@@ -63,7 +63,7 @@ def log_one_line(folder):
     return True
 
 
-def test_two_programs_of_one_name_log_to_two_files_and_the_next_one_to_the_first(tmp_path):
+def test_two_programs_with_one_name_log_to_two_files_and_the_next_one_to_the_first(tmp_path):
     with keep_logs(tmp_path, "simulator"):
         OURS.info("the first")
         assert in_child(log_one_line, tmp_path)
@@ -74,7 +74,7 @@ def test_two_programs_of_one_name_log_to_two_files_and_the_next_one_to_the_first
     assert [line["message"] for line in second] == ["the second"]
 
 
-def test_a_crash_is_logged_with_its_traceback_and_a_refusal_with_its_sentence(tmp_path):
+def test_a_crash_is_logged_with_its_traceback_and_a_refusal_with_its_message(tmp_path):
     with pytest.raises(ZeroDivisionError), keep_logs(tmp_path, "crashed"):
         1 / 0  # noqa: B018
     (line,) = lines(tmp_path / "crashed.log")
@@ -106,14 +106,14 @@ def test_a_disk_that_fails_does_not_stop_the_program(tmp_path, monkeypatch, caps
     assert "Traceback" not in capsys.readouterr().err
 
 
-def test_a_message_from_outside_cannot_make_a_second_line_or_a_huge_one(tmp_path):
+def test_a_message_from_outside_can_create_neither_a_second_line_nor_a_huge_one(tmp_path):
     with keep_logs(tmp_path, "simulator"):
         OURS.warning("%s", 'x\n{"level":"info"}' + "y" * 100_000)
     (line,) = lines(tmp_path / "simulator.log")
     assert len(line["message"]) == 8000
 
 
-def test_afterwards_logging_is_as_it_was(tmp_path):
+def test_logging_is_restored_afterwards(tmp_path):
     before = list(logging.getLogger().handlers)
     with keep_logs(tmp_path, "simulator"):
         assert logging.getLogger().handlers != before
@@ -139,7 +139,7 @@ def record(text):
     return logging.LogRecord("rastrainer", logging.WARNING, __file__, 1, text, None, None)
 
 
-def test_a_log_that_nobody_reads_holds_nobody_up_keeps_what_came_first_and_counts_the_rest():
+def test_a_stalled_log_blocks_nobody_keeps_the_first_lines_and_counts_the_rest():
     blocked = Blocked()
     aside = BackgroundHandler(blocked)
     aside.handle(record("0"))
@@ -173,7 +173,7 @@ def test_lost_lines_are_reported_where_they_would_have_stood():
     assert set(blocked.taken[:-2]) == {"kept or lost"}
 
 
-def test_what_is_logged_last_is_written_when_the_log_ends():
+def test_the_last_messages_are_written_when_the_log_ends():
     blocked = Blocked()
     blocked.go.set()
     aside = BackgroundHandler(blocked)

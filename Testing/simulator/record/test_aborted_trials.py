@@ -45,7 +45,7 @@ def wait_for_offer(server):
     return server.loop.unacknowledged()
 
 
-def test_it_is_offered_with_its_touches_until_it_is_acknowledged_also_after_a_restart(
+def test_an_aborted_trial_is_offered_with_its_touches_until_acknowledged_even_after_a_restart(
     simulation, anywhere, tmp_path
 ):
     with Server(simulation, tmp_path) as server:
@@ -76,7 +76,7 @@ def test_it_is_offered_with_its_touches_until_it_is_acknowledged_also_after_a_re
     assert replay(read_journal(server.path), anywhere).difference is None
 
 
-def test_after_all_touches_it_says_so_and_reports_the_time_of_the_last_one(simulation, tmp_path):
+def test_after_all_touches_the_record_says_so_with_the_time_of_the_last_one(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         server.move(ticks=50)
@@ -91,7 +91,7 @@ def test_after_all_touches_it_says_so_and_reports_the_time_of_the_last_one(simul
     assert record.reason == "client"
 
 
-def test_in_a_pause_it_says_so(simulation, tmp_path):
+def test_a_trial_aborted_during_a_pause_is_recorded_as_such(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         touch(server, 1)
@@ -114,7 +114,7 @@ def test_a_trial_run_is_kept_too_and_marked(simulation, tmp_path):
     assert record.reason == "practice over"
 
 
-def test_one_that_was_only_looked_at_is_not_kept(simulation, tmp_path):
+def test_a_trial_that_was_only_looked_at_is_not_kept(simulation, tmp_path):
     # So slow that its ten seconds are not over while the disk keeps the start.
     with Server(simulation, tmp_path, speed=0.1) as server:
         server.start()
@@ -125,7 +125,7 @@ def test_one_that_was_only_looked_at_is_not_kept(simulation, tmp_path):
     assert find_unacknowledged(tmp_path) == []
 
 
-def test_one_without_a_touch_is_kept_after_ten_seconds(simulation, tmp_path):
+def test_a_trial_without_a_touch_is_kept_after_ten_seconds(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         while server.loop.latest.elapsed <= MIN_ABORTED_S:
@@ -136,7 +136,7 @@ def test_one_without_a_touch_is_kept_after_ten_seconds(simulation, tmp_path):
     assert record.elapsed_s > MIN_ABORTED_S
 
 
-def test_a_touch_that_was_refused_is_enough(setup, tmp_path):
+def test_a_refused_touch_is_enough_to_keep_a_trial(setup, tmp_path):
     with Server(Simulation(setup, 3), tmp_path) as server:
         server.start()
         assert not server.do(CommandName.CAPTURE).ok
@@ -145,7 +145,7 @@ def test_a_touch_that_was_refused_is_enough(setup, tmp_path):
     assert (record.points, record.rejected_touches) == ((), 1)
 
 
-def test_a_finished_trial_after_it_is_offered_beside_it(simulation, tmp_path):
+def test_a_later_finished_trial_is_offered_beside_it(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         touch(server, 2)
@@ -159,7 +159,7 @@ def test_a_finished_trial_after_it_is_offered_beside_it(simulation, tmp_path):
     ]
 
 
-def full_from_the_abort_on():
+def disk_full_from_the_abort():
     """Return a write that fails from the abort on: the states before it come at any moment."""
     write, is_full = os.write, []
 
@@ -172,14 +172,14 @@ def full_from_the_abort_on():
     return on_disk
 
 
-def test_one_that_a_full_disk_did_not_take_is_offered_and_written_later(
+def test_an_aborted_trial_that_a_full_disk_could_not_take_is_offered_and_written_later(
     simulation, anywhere, tmp_path, monkeypatch
 ):
     with Server(simulation, tmp_path) as server:
         trial_id = server.start()
         touch(server, 2)
         with monkeypatch.context() as patch:
-            patch.setattr(os, "write", full_from_the_abort_on())
+            patch.setattr(os, "write", disk_full_from_the_abort())
             server.do(CommandName.ABORT)
             (record,) = wait_for_offer(server)
             refused = server.do(CommandName.ACKNOWLEDGE_TRIAL, trialId=trial_id)
@@ -196,7 +196,7 @@ def test_one_that_a_full_disk_did_not_take_is_offered_and_written_later(
     assert replay(reading, anywhere).difference is None
 
 
-def test_one_of_two_commands_that_end_a_trial_at_once_does(simulation, tmp_path):
+def test_of_two_simultaneous_commands_that_end_a_trial_only_one_takes_effect(simulation, tmp_path):
     """A trainee registers while somebody else aborts: there is one record, of what came first."""
     kinds = []
     with Server(simulation, tmp_path) as server:
@@ -277,7 +277,7 @@ def test_an_interrupted_trial_is_not_aborted_as_long_as_it_can_be_resumed(simula
     assert (record.phase, record.reason, len(record.points)) == ("paused", "trainee", touches)
 
 
-def test_a_journal_left_at_any_byte_reports_every_touch_that_is_whole(simulation, tmp_path):
+def test_a_journal_cut_at_any_byte_reports_every_complete_touch(simulation, tmp_path):
     original = tmp_path / "original"
     with Server(simulation, original) as server:
         server.start()
@@ -308,7 +308,7 @@ def test_a_journal_left_at_any_byte_reports_every_touch_that_is_whole(simulation
             assert TrialArchive(folder).unacknowledged() == archive.unacknowledged()
 
 
-def test_aborted_trials_of_before_this_was_kept_are_not_offered(simulation, tmp_path):
+def test_trials_aborted_before_this_was_recorded_are_not_offered(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         touch(server, 2)
@@ -322,7 +322,7 @@ def test_aborted_trials_of_before_this_was_kept_are_not_offered(simulation, tmp_
         assert wait_for_offer(server) == ()
 
 
-def test_an_altered_journal_that_was_left_is_named_and_not_offered(simulation, tmp_path):
+def test_an_altered_leftover_journal_is_named_and_not_offered(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         touch(server, 2)
@@ -342,7 +342,7 @@ def test_an_altered_journal_that_was_left_is_named_and_not_offered(simulation, t
         pytest.param({"kind": "phase", "phase": "scored"}, id="phase"),
     ],
 )
-def test_a_forged_journal_that_was_left_is_refused_with_a_sentence(simulation, tmp_path, change):
+def test_a_forged_leftover_journal_is_refused_with_a_message(simulation, tmp_path, change):
     with Server(simulation, tmp_path) as server:
         server.start()
         touch(server, 2)

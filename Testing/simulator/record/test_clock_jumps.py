@@ -83,7 +83,7 @@ def play(loop, trainee, is_ended):
 
 @pytest.mark.parametrize("minutes", [-5, -600_000])
 @pytest.mark.parametrize("restarts", [False, True], ids=["in one server", "with a restart between"])
-def test_the_trial_started_last_is_resumed_however_the_clock_was_set_back_before_it(
+def test_the_most_recently_started_trial_is_resumed_even_if_the_clock_was_set_back(
     simulation, tmp_path, jumping, minutes, restarts
 ):
     with ControlLoop(simulation, tmp_path, speed=None) as first:

@@ -96,7 +96,7 @@ def cut(path, size):
         file.truncate(size)
 
 
-def test_the_trial_continues_from_the_next_fiducial_and_its_one_journal_replays_bit_by_bit(
+def test_the_trial_continues_at_the_next_fiducial_and_its_single_journal_replays_bit_for_bit(
     simulation, anywhere, tmp_path
 ):
     with Server(simulation, tmp_path) as server:
@@ -142,7 +142,7 @@ def test_the_trial_continues_from_the_next_fiducial_and_its_one_journal_replays_
     ]
 
 
-def test_a_journal_cut_at_any_byte_is_resumed_with_every_touch_that_is_whole(simulation, tmp_path):
+def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_touch(simulation, tmp_path):
     original = tmp_path / "original"
     with Server(simulation, original) as server:
         server.start()
@@ -172,7 +172,7 @@ def test_a_journal_cut_at_any_byte_is_resumed_with_every_touch_that_is_whole(sim
         assert training.next_point == str(len(kept) + 1)
 
 
-def test_ten_ends_in_one_trial_leave_one_intact_journal(simulation, anywhere, tmp_path):
+def test_ten_interruptions_of_one_trial_leave_one_intact_journal(simulation, anywhere, tmp_path):
     rng = random.Random(8)
     with Server(simulation, tmp_path) as server:
         trial_id = server.start()
@@ -205,7 +205,7 @@ def test_ten_ends_in_one_trial_leave_one_intact_journal(simulation, anywhere, tm
     assert replay(reading, anywhere).difference is None
 
 
-def test_the_time_of_the_trial_is_stopped_until_it_is_resumed(simulation, tmp_path):
+def test_the_trials_clock_is_stopped_until_it_is_resumed(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         assert server.do(CommandName.CAPTURE).ok
@@ -226,7 +226,7 @@ def test_the_time_of_the_trial_is_stopped_until_it_is_resumed(simulation, tmp_pa
     assert np.all(np.diff(times) > 0.0)
 
 
-def test_a_trial_interrupted_while_the_tool_is_pressed_in_continues_unpressed_and_replays(
+def test_a_trial_interrupted_while_pressing_continues_unpressed_and_replays(
     simulation, anywhere, tmp_path
 ):
     with Server(simulation, tmp_path) as server:
@@ -250,7 +250,7 @@ def test_a_trial_interrupted_while_the_tool_is_pressed_in_continues_unpressed_an
     assert record.motion["pressing_depth_mm"] >= (1 - 1e-9) * pressed_mm / np.sqrt(15)
 
 
-def test_a_trial_that_waits_leaves_its_journal_as_it_is(simulation, tmp_path):
+def test_a_waiting_trial_leaves_its_journal_unchanged(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         server.do(CommandName.CAPTURE)
@@ -310,7 +310,7 @@ def test_a_full_disk_when_the_trial_is_resumed_pauses_it_again(
     assert record.labels == tuple(str(i) for i in range(1, 16))
 
 
-def test_an_altered_journal_is_not_resumed_but_named(simulation, tmp_path):
+def test_an_altered_journal_is_named_and_not_resumed(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         server.do(CommandName.CAPTURE)
@@ -332,7 +332,7 @@ def test_an_altered_journal_is_not_resumed_but_named(simulation, tmp_path):
         {"kind": "proximity", "to": "inside"},
     ],
 )
-def test_a_forged_journal_is_refused_with_a_sentence(simulation, tmp_path, change):
+def test_a_forged_journal_is_refused_with_a_message(simulation, tmp_path, change):
     with Server(simulation, tmp_path) as server:
         server.start()
         server.do(CommandName.CAPTURE)

@@ -17,7 +17,7 @@ from rastrainer.journal.journal_file import (
     Integrity,
     read_journal,
 )
-from rastrainer_simulator.record.journal import Journal, RecordError
+from rastrainer_simulator.record.journal_writer import Journal, RecordError
 
 HEADER = {"kind": "header", "format": FORMAT, "version": FORMAT_VERSION, "trialId": "T"}
 TRIAL = [
@@ -42,7 +42,7 @@ def without_chain(entries):
     return [{k: v for k, v in e.items() if k not in ("n", "previous", "sha256")} for e in entries]
 
 
-def test_what_was_written_is_read_back_exactly(written):
+def test_written_entries_are_read_back_exactly(written):
     reading = read_journal(written)
     assert reading.integrity is Integrity.INTACT
     assert without_chain(reading.entries) == TRIAL
@@ -65,7 +65,7 @@ def test_a_line_can_be_checked_with_any_sha256_tool(written):
     assert computed.split()[0] == seal[:64]
 
 
-def test_cut_at_every_byte_it_is_recovered_up_to_the_last_whole_line(written, tmp_path):
+def test_a_journal_cut_at_any_byte_is_recovered_up_to_the_last_complete_line(written, tmp_path):
     data = written.read_bytes()
     cut = tmp_path / "cut.journal"
     for size in range(len(data)):
@@ -76,7 +76,7 @@ def test_cut_at_every_byte_it_is_recovered_up_to_the_last_whole_line(written, tm
         assert without_chain(reading.entries) == TRIAL[: len(reading.entries)]
 
 
-def test_any_altered_byte_is_found_and_its_line_named(written, tmp_path):
+def test_any_altered_byte_is_detected_and_its_line_named(written, tmp_path):
     data = written.read_bytes()
     altered = tmp_path / "altered.journal"
     starts = [0, *(i + 1 for i, byte in enumerate(data) if byte == 10)]
@@ -91,7 +91,7 @@ def test_any_altered_byte_is_found_and_its_line_named(written, tmp_path):
         assert len(reading.entries) == line - 1
 
 
-def test_a_line_taken_out_exchanged_or_forged_with_a_right_hash_is_found(written, tmp_path):
+def test_a_removed_swapped_or_forged_line_with_a_valid_hash_is_detected(written, tmp_path):
     lines = written.read_bytes().splitlines(keepends=True)
     forger = Journal(tmp_path / "forged.journal")
     forger.write([HEADER, {"kind": "touch", "label": "1", "positionMm": [9, 9, 9]}], sync=False)
@@ -106,7 +106,7 @@ def test_a_line_taken_out_exchanged_or_forged_with_a_right_hash_is_found(written
         assert read_journal(path).integrity is Integrity.ALTERED
 
 
-def test_a_trial_without_its_end_is_cut_short_even_at_a_whole_line(tmp_path):
+def test_a_trial_without_its_end_counts_as_cut_short_even_at_a_complete_line(tmp_path):
     path = tmp_path / "open.journal"
     Journal(path).write(TRIAL[:3], sync=False)
     reading = read_journal(path)
@@ -117,14 +117,14 @@ def test_a_trial_without_its_end_is_cut_short_even_at_a_whole_line(tmp_path):
 @pytest.mark.parametrize(
     "content", [b"hello\n", b'{"n":1}\n', b"\x00" * 5_000_000, b"\xff\xfe", b"[" * 100_000]
 )
-def test_a_file_that_is_no_journal_gets_a_sentence(tmp_path, content):
+def test_a_file_that_is_not_a_journal_is_refused_with_a_message(tmp_path, content):
     path = tmp_path / "other.journal"
     path.write_bytes(content)
     with pytest.raises(InputError, match="is not a trial's journal"):
         read_journal(path)
 
 
-def test_a_line_without_end_is_refused_without_reading_all_of_it(written):
+def test_a_line_without_an_end_is_refused_without_reading_all_of_it(written):
     with written.open("ab") as file:
         file.truncate(10_000_000_000)
     reading = read_journal(written)
@@ -132,7 +132,7 @@ def test_a_line_without_end_is_refused_without_reading_all_of_it(written):
     assert "line 5 " in reading.sentence
 
 
-def test_a_journal_of_a_later_format_gets_a_sentence(tmp_path):
+def test_a_journal_in_a_later_format_is_refused_with_a_message(tmp_path):
     path = tmp_path / "later.journal"
     Journal(path).write([HEADER | {"version": 99}], sync=False)
     with pytest.raises(InputError, match="format version 99"):
@@ -148,7 +148,7 @@ def test_an_existing_file_is_never_overwritten(written):
     assert written.read_bytes() == before
 
 
-def test_a_half_line_is_cut_off_before_more_is_appended(written):
+def test_an_incomplete_line_is_cut_off_before_more_is_appended(written):
     with written.open("ab") as file:
         file.write(b'{"n":5,"prev')
     journal = Journal.reopened(read_journal(written))
@@ -176,7 +176,7 @@ def test_two_programs_cannot_write_to_one_journal_at_once(written):
         theirs.write([{"kind": "acknowledged"}], sync=True)
 
 
-def test_a_folder_that_cannot_be_made_gets_a_sentence_and_the_entries_are_kept(tmp_path):
+def test_a_folder_that_cannot_be_created_is_reported_and_the_entries_are_kept(tmp_path):
     blocked = tmp_path / "records"
     blocked.write_text("a file where the folder should be")
     journal = Journal(blocked / "trial.journal")
@@ -187,11 +187,11 @@ def test_a_folder_that_cannot_be_made_gets_a_sentence_and_the_entries_are_kept(t
     assert without_chain(read_journal(journal.path).entries) == TRIAL
 
 
-def test_on_a_full_disk_no_half_line_stays_and_all_is_written_once_there_is_room(tmp_path):
+def test_a_full_disk_leaves_no_partial_line_and_everything_is_written_once_there_is_room(tmp_path):
     script = f"""
 import resource, signal, sys
 from pathlib import Path
-from rastrainer_simulator.record.journal import Journal, RecordError
+from rastrainer_simulator.record.journal_writer import Journal, RecordError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 journal = Journal(Path({str(tmp_path / "full.journal")!r}))
 journal.write([{HEADER!r}], sync=True)
@@ -215,11 +215,11 @@ journal.write([{{"kind": "aborted"}}], sync=True)
     assert [e.get("i") for e in reading.entries[1:-1]] == list(range(10))
 
 
-def test_kill_9_of_a_writing_process_keeps_every_line_that_was_acknowledged(tmp_path):
+def test_kill_9_of_a_writing_process_keeps_every_acknowledged_line(tmp_path):
     script = """
 import sys
 from pathlib import Path
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 journal = Journal(Path(sys.argv[1]))
 header = {"kind": "header", "format": "rastrainer-trial-journal", "version": 1}
 journal.write([header], sync=True)
@@ -243,7 +243,7 @@ for i in range(100_000):
         assert touched[:acknowledged] == list(range(9, last + 1, 10))
 
 
-def test_a_reader_rests_every_few_lines_and_reads_the_same(tmp_path):
+def test_a_reader_pauses_every_few_lines_and_reads_the_same(tmp_path):
     path, rests = tmp_path / "long.journal", []
     samples = [{"kind": "sample", "i": i} for i in range(1000)]
     Journal(path).write([TRIAL[0], *samples, TRIAL[-1]], sync=False)

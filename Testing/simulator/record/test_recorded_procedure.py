@@ -58,13 +58,13 @@ class Theatre(Server):
         """Feed by the stick, with other sticks in between, until it is so deep."""
         is_deep = threading.Event()
 
-        def let_go_in_time(result):
+        def release_in_time(result):
             if MM_PER_M * result.state.feed >= to_mm:
                 self.loop.hold_sticks(OperatorInput())
                 is_deep.set()
 
         self.loop.hold_sticks(OperatorInput(IN, operator="gamepad"))
-        unsubscribe = self.loop.subscribe(let_go_in_time)
+        unsubscribe = self.loop.subscribe(release_in_time)
         assert is_deep.wait(TIMEOUT_S)
         unsubscribe()
         self.move((0.0, 0.0, 0.0), 20)
@@ -154,7 +154,7 @@ def finished(simulation, tmp_path_factory):
     return server.path, record
 
 
-def test_a_whole_procedure_is_played_again_to_the_last_bit(finished, planned):
+def test_a_whole_procedure_replays_to_the_last_bit(finished, planned):
     reading = read_journal(finished[0])
     assert reading.integrity is Integrity.INTACT
     report = replay(reading, planned)
@@ -163,7 +163,7 @@ def test_a_whole_procedure_is_played_again_to_the_last_bit(finished, planned):
     assert report.compared["sample"] > 500
 
 
-def test_a_changed_depth_is_found_by_the_replay(finished, planned):
+def test_a_changed_depth_is_detected_by_the_replay(finished, planned):
     reading = read_journal(finished[0])
     entries = [dict(entry) for entry in reading.entries]
     deep = [entry for entry in entries if entry.get("feedMm", 0.0) > 1.0 and "q" in entry]
@@ -220,7 +220,7 @@ def test_the_motion_of_a_trial_is_that_of_its_touches_alone(finished):
     assert record.motion["path_length_mm"] < 0.9 * trial_motion(whole)["path_length_mm"]
 
 
-def test_the_views_are_shown_the_procedure_again(finished, planned):
+def test_the_procedure_is_replayed_in_the_views(finished, planned):
     path, record = finished
     trial = RecordedTrial(read_track(path), planned)
     times = np.arange(0.0, trial.duration_s, 0.1)
@@ -259,7 +259,7 @@ def assert_nearly_equal(resumed, before):
         (Phase.INSERTING, "biopsy", 1),
     ],
 )
-def test_a_server_that_ends_in_a_phase_is_resumed_there_and_all_replays(
+def test_a_server_that_ends_in_a_phase_is_resumed_there_and_everything_replays(
     simulation, planned, tmp_path, phase, procedure, count
 ):
     with Theatre(simulation, tmp_path) as server:
@@ -290,7 +290,7 @@ def test_a_server_that_ends_in_a_phase_is_resumed_there_and_all_replays(
 
 
 @pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
-def test_an_abort_in_a_phase_is_kept_with_the_phase(simulation, tmp_path, phase):
+def test_an_abort_in_a_phase_is_recorded_with_the_phase(simulation, tmp_path, phase):
     with Theatre(simulation, tmp_path) as server:
         server.to(phase)
         elapsed = server.loop.latest.elapsed
@@ -317,7 +317,7 @@ def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simul
     assert (record.phase, left.phase) == ("drilling", "drilling")
 
 
-def test_a_procedure_that_nobody_continues_counts_as_aborted_in_its_phase(simulation, tmp_path):
+def test_a_procedure_that_nobody_resumes_counts_as_aborted_in_its_phase(simulation, tmp_path):
     with Theatre(simulation, tmp_path) as server:
         server.to(Phase.DRILLING)
         server.loop.stop()
@@ -327,7 +327,7 @@ def test_a_procedure_that_nobody_continues_counts_as_aborted_in_its_phase(simula
     assert record.elapsed_s == pytest.approx(elapsed, abs=0.1)
 
 
-def test_a_trial_of_touches_has_nothing_of_a_procedure_in_its_journal(simulation, tmp_path):
+def test_a_trial_with_touches_only_has_no_procedure_in_its_journal(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         server.move()
@@ -359,7 +359,7 @@ def drilled(simulation, tmp_path_factory):
     ],
     ids=["no object", "no phase", "no distance", "no direction", "no depth", "no number"],
 )
-def test_a_forged_procedure_is_refused_with_a_sentence(drilled, kind, change):
+def test_a_forged_procedure_is_refused_with_a_message(drilled, kind, change):
     entries = [dict(entry) for entry in drilled]
     for entry in entries:
         if entry["kind"] == kind:
@@ -368,7 +368,7 @@ def test_a_forged_procedure_is_refused_with_a_sentence(drilled, kind, change):
         InterruptedTrial.of(entries)
 
 
-def test_a_journal_of_another_procedure_is_not_shown_or_resumed_as_this_one(finished, planned):
+def test_a_journal_of_another_procedure_is_neither_replayed_nor_resumed(finished, planned):
     track = read_track(finished[0])
     track.header["procedure"]["sha256"] = "0" * 64
     with pytest.raises(InputError, match=r"^The trial was recorded with another procedure\.$"):

@@ -53,7 +53,7 @@ def positions(entries):
     return [tuple(entry["positionMm"]) for entry in entries]
 
 
-def test_a_stroke_cut_off_by_a_kill_keeps_its_written_points_and_the_trial_replays_bit_by_bit(
+def test_a_stroke_cut_off_by_a_kill_keeps_its_written_points_and_the_trial_replays_bit_for_bit(
     traced_in_air, airy, tmp_path
 ):
     with Server(traced_in_air, tmp_path) as server:
@@ -93,7 +93,7 @@ def test_a_stroke_cut_off_by_a_kill_keeps_its_written_points_and_the_trial_repla
     assert [point.label for point in record.points] == [each.name for each in LANDMARKS[:3]]
 
 
-def test_a_journal_cut_at_any_byte_is_resumed_with_every_traced_point_that_is_whole(
+def test_a_journal_cut_at_any_byte_is_resumed_with_every_complete_traced_point(
     traced_in_air, tmp_path
 ):
     with Server(traced_in_air, tmp_path / "original") as server:
@@ -119,7 +119,7 @@ def test_a_journal_cut_at_any_byte_is_resumed_with_every_traced_point_that_is_wh
         assert len(traced_in_air.state.training.trace.points) == len(kept)
 
 
-def test_the_journal_of_a_trial_of_fiducials_tells_of_no_method(traced_in_air, tmp_path):
+def test_the_journal_of_a_fiducial_trial_mentions_no_method(traced_in_air, tmp_path):
     with Server(traced_in_air, tmp_path) as server:
         start(server, "fiducials")
         assert server.do(CommandName.REGISTER).ok
@@ -128,10 +128,10 @@ def test_the_journal_of_a_trial_of_fiducials_tells_of_no_method(traced_in_air, t
     assert '"trace"' not in text
 
 
-def test_a_trial_by_other_landmarks_than_those_of_the_scenario_is_not_played_again(airy):
+def test_a_trial_with_landmarks_other_than_the_scenarios_is_not_replayed(airy):
     header = {"method": {"name": "surface", "landmarksSha256": "of others"}}
-    assert not airy.has_landmarks_of(header)
-    assert airy.has_landmarks_of({})
+    assert not airy.matches_landmarks(header)
+    assert airy.matches_landmarks({})
 
 
 def record_of(**changes):
@@ -182,12 +182,12 @@ LINE = [[1.0, 2.0, float(number), 2.0] for number in range(501)]
         pytest.param({"method": "fiducials", "trace": []}, "list of 15 points", id="fiducials"),
     ],
 )
-def test_a_record_that_does_not_fit_its_method_is_refused_with_a_sentence(changes, said):
+def test_a_record_that_does_not_fit_its_method_is_refused_with_a_message(changes, said):
     with pytest.raises(InputError, match=said):
         TrialRecord.from_json(record_of(**changes))
 
 
-def test_an_aborted_trial_and_an_interrupted_one_tell_their_method_and_how_much_was_traced(
+def test_aborted_and_interrupted_trials_report_their_method_and_how_much_was_traced(
     traced_in_air, tmp_path
 ):
     with Server(traced_in_air, tmp_path) as server:

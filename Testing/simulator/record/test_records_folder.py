@@ -12,7 +12,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import CommandName
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.record.journal import RecordsFolder
+from rastrainer_simulator.record.journal_writer import RecordsFolder
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.server import server
 from Testing.forked_child import in_child
@@ -28,7 +28,7 @@ def take(folder):
     return "taken"
 
 
-def test_a_second_simulator_is_refused_with_a_sentence_that_names_the_first(tmp_path):
+def test_a_second_simulator_is_refused_with_a_message_that_names_the_first(tmp_path):
     first = RecordsFolder(tmp_path)
     assert in_child(take, tmp_path) == (
         f"Another simulator (process {os.getpid()}) records in {tmp_path}: end it, or choose "
@@ -38,12 +38,12 @@ def test_a_second_simulator_is_refused_with_a_sentence_that_names_the_first(tmp_
     assert in_child(take, tmp_path) == "taken"
 
 
-def test_a_simulator_that_was_killed_leaves_the_folder_to_the_next(tmp_path):
+def test_a_killed_simulator_leaves_the_folder_to_the_next(tmp_path):
     assert in_child(take, tmp_path) == "taken"
     RecordsFolder(tmp_path).close()
 
 
-def test_rastrainer_simulator_says_that_another_one_records_there(tmp_path, capsys):
+def test_rastrainer_simulator_reports_that_another_one_records_there(tmp_path, capsys):
     records = RecordsFolder(tmp_path / "records")
     words = ["--port", "0", "--no-views", "--config", str(tmp_path / "config")]
     assert main(["simulator", "--records", str(tmp_path / "records"), *words]) == 2
@@ -53,7 +53,7 @@ def test_rastrainer_simulator_says_that_another_one_records_there(tmp_path, caps
     assert len(error.splitlines()) == 1
 
 
-def take_without_rights(folder):
+def take_without_permission(folder):
     if os.getuid() == 0:
         os.setuid(65534)
     return take(folder)
@@ -62,8 +62,8 @@ def take_without_rights(folder):
 def test_a_read_only_folder_is_reported_before_anyone_plays():
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o555)
-        said = in_child(take_without_rights, Path(folder))
-        missing = in_child(take_without_rights, Path(folder, "trials"))
+        said = in_child(take_without_permission, Path(folder))
+        missing = in_child(take_without_permission, Path(folder, "trials"))
         Path(folder).chmod(0o755)
     assert said == (
         f"Trials cannot be recorded in {folder}: Permission denied. Allow writing to it, or "
@@ -72,7 +72,7 @@ def test_a_read_only_folder_is_reported_before_anyone_plays():
     assert "Permission denied" in missing
 
 
-def test_a_file_in_the_place_of_the_folder_is_reported(tmp_path):
+def test_a_file_in_place_of_the_folder_is_reported(tmp_path):
     (tmp_path / "trials").write_text("my notes")
     with pytest.raises(InputError, match=r"cannot be recorded in .*trials: File exists"):
         RecordsFolder(tmp_path / "trials")
@@ -91,7 +91,7 @@ def journal_of_two_touches(simulation, folder):
     return path, path.read_bytes()[:size].rindex(b"\n") + 1
 
 
-def kept_beside_a_server_that_touches_until_it_leaves(path, size, config):
+def resumed_while_another_server_touches(path, size, config):
     """Start a simulator while another one adds to a journal; return what it says it resumes.
 
     The other one leaves the folder in the moment in which the new one takes it.
@@ -117,17 +117,15 @@ def kept_beside_a_server_that_touches_until_it_leaves(path, size, config):
     return next(words for words in said if words.startswith("resumes"))
 
 
-def test_a_simulator_continues_with_all_that_another_one_touched_until_it_left(
+def test_a_simulator_continues_with_all_touches_another_one_recorded_before_it_left(
     simulation, tmp_path
 ):
     path, size = journal_of_two_touches(simulation, tmp_path / "records")
-    said = in_child(
-        kept_beside_a_server_that_touches_until_it_leaves, path, size, tmp_path / "config"
-    )
+    said = in_child(resumed_while_another_server_touches, path, size, tmp_path / "config")
     assert "2 of 15 points are kept" in said
 
 
-def test_a_simulator_that_cannot_be_made_leaves_the_folder(tmp_path):
+def test_a_simulator_that_cannot_start_releases_the_folder(tmp_path):
     nowhere = server.ServerOptions(tmp_path, 1, scenario=tmp_path / "none", config=tmp_path)
     with pytest.raises(InputError, match="does not exist"):
         server.SimulatorServer(nowhere)

@@ -15,7 +15,7 @@ from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.core.setup import scenario_sha256
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.state import OperatorInput
@@ -70,7 +70,7 @@ def test_an_untouched_journal_is_intact_and_replays_to_the_last_bit(recorded, ca
     assert "equal to the last bit" in capsys.readouterr().out
 
 
-def test_the_report_as_json_contains_what_was_compared_and_the_metrics_of_measure(recorded, capsys):
+def test_the_json_report_contains_what_was_compared_and_the_metrics_of_measure(recorded, capsys):
     assert main(["replay", str(recorded), "--verify", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["identical"] is True
@@ -82,7 +82,7 @@ def test_the_report_as_json_contains_what_was_compared_and_the_metrics_of_measur
     assert json.loads(capsys.readouterr().out) == report["motion"]
 
 
-def test_cut_short_altered_and_foreign_files_are_distinguished_by_sentence_and_status(
+def test_cut_short_altered_and_foreign_files_are_distinguished_by_message_and_status(
     recorded, tmp_path, capsys
 ):
     data = recorded.read_bytes()
@@ -107,9 +107,7 @@ def test_a_journal_that_was_cut_short_replays_as_far_as_it_goes(recorded, tmp_pa
     assert main(["replay", str(cut), "--verify"]) == 0
 
 
-def test_a_journal_that_was_cut_between_the_lines_of_one_tick_replays_up_to_there(
-    recorded, tmp_path
-):
+def test_a_journal_cut_between_two_lines_of_one_tick_replays_up_to_there(recorded, tmp_path):
     lines = recorded.read_bytes().splitlines(keepends=True)
     ticks = [json.loads(line).get("tick") for line in lines]
     shared = next(n for n in range(20, len(ticks)) if ticks[n] == ticks[n - 1])
@@ -133,7 +131,7 @@ def missing_event(entries):
 
 
 @pytest.mark.parametrize("change", [moved_sample, other_stick, missing_event])
-def test_a_forgery_under_right_hashes_is_found_by_the_replay(recorded, tmp_path, change, capsys):
+def test_a_forgery_with_valid_hashes_is_detected_by_the_replay(recorded, tmp_path, change, capsys):
     path = forged(recorded, tmp_path, change)
     assert main(["verify", str(path)]) == 0
     assert main(["replay", str(path), "--verify"]) == 1
@@ -167,7 +165,7 @@ def set_in(kind, **values):
         set_in("command", arguments=None),
     ],
 )
-def test_a_hostile_journal_ends_with_one_sentence_and_status_2(recorded, tmp_path, change, capsys):
+def test_a_hostile_journal_gives_one_sentence_and_status_2(recorded, tmp_path, change, capsys):
     path = forged(recorded, tmp_path, change)
     assert main(["replay", str(path), "--verify"]) == 2
     said = capsys.readouterr().err
@@ -179,12 +177,12 @@ def header(setup):
     return {**setup.description(), "robot": setup.robot.name}
 
 
-def test_the_rule_for_touches_is_the_recorded_one(setup):
+def test_the_recorded_touch_rule_is_applied(setup):
     recorded = setup_of(header(setup)).settings.training
     assert recorded.touch_rule is TouchRule.ON_SKIN
 
 
-def test_a_journal_older_than_the_rule_is_replayed_by_that_of_the_paper(setup):
+def test_a_journal_older_than_the_touch_rule_is_replayed_with_the_papers_rule(setup):
     older = header(setup)
     del older["settings"]["training"]["touch_rule"]
     assert setup_of(older).settings.training.touch_rule is TouchRule.WITHIN_RADIUS
@@ -194,7 +192,7 @@ RECORDED_BEFORE = "8ea38ba4bfc46979ba0138ec6bce0c89536b8d9f4066b18be7c9018ccf242
 """The default scenario when it had neither volume nor skull and procedures."""
 
 
-def test_a_journal_recorded_before_the_default_head_had_volume_and_procedures_is_still_of_it(setup):
+def test_a_journal_from_before_the_default_head_had_volume_and_procedures_still_matches_it(setup):
     assert setup.scenario.volume is not None
     assert setup.scenario.procedures
     assert setup.scenario_sha256 == RECORDED_BEFORE
@@ -206,7 +204,7 @@ def hashes(folder):
     return scenario_sha256(scenario), scenario_sha256(scenario, keeps_skull=True)
 
 
-def test_a_journal_stays_of_a_scenario_whose_skull_is_older_than_its_procedures(tmp_path):
+def test_a_journal_still_matches_a_scenario_whose_skull_is_older_than_its_procedures(tmp_path):
     planned = write_planned(tmp_path / "planned")
     with_procedures = hashes(planned)
     path = planned / "scenario.json"

@@ -13,8 +13,8 @@ from rastrainer.journal.journal_file import read_journal
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.net.views.outgoing import TraceNews
-from rastrainer_simulator.net.views.presenter import TraceGuidance
+from rastrainer_simulator.net.views.outgoing import TraceUpdate
+from rastrainer_simulator.presentation.presenter import TraceGuidance
 from rastrainer_simulator.record.aborted_archive import interrupted_attempt
 from rastrainer_simulator.record.trial_archive import archived_trial
 from rastrainer_simulator.replay.resimulation import replay
@@ -48,9 +48,7 @@ def measured(simulation, tips_mm):
     return truth.in_world(truth.skin.measured(in_head, mesh))
 
 
-def test_what_is_measured_on_shifted_skin_is_not_shown_and_survives_a_kill_and_a_replay(
-    simulation, tmp_path
-):
+def test_points_on_shifted_skin_stay_hidden_and_survive_a_kill_and_a_replay(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         start(server, skin=SKIN)
         stroke(server, 40)
@@ -62,7 +60,7 @@ def test_what_is_measured_on_shifted_skin_is_not_shown_and_survives_a_kill_and_a
     assert np.linalg.norm(places[0] - tips[0]) > 0.5
     found = 1000.0 * np.array([point.position for point in before.trace.points])
     np.testing.assert_allclose(found, places, atol=1e-9)
-    shown = json.loads(TraceNews().news(latest, TraceGuidance(), 0.0))["points"]
+    shown = json.loads(TraceUpdate().news(latest, TraceGuidance(), 0.0))["points"]
     pose = latest.head_to_world
     in_head = (tips - 1000.0 * pose[:3, 3]) @ pose[:3, :3]
     np.testing.assert_allclose(shown, in_head, atol=0.011)
@@ -93,7 +91,7 @@ def test_what_is_measured_on_shifted_skin_is_not_shown_and_survives_a_kill_and_a
     assert archived_trial(reading).truth.skin == SkinShift(3.0, SEED, 0.5)
 
 
-def test_the_journal_of_a_trial_on_skin_as_in_the_images_tells_of_no_skin(simulation, tmp_path):
+def test_the_journal_of_a_trial_on_unshifted_skin_mentions_no_skin(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         start(server, skin={})
         stroke(server, 60)
@@ -102,9 +100,7 @@ def test_the_journal_of_a_trial_on_skin_as_in_the_images_tells_of_no_skin(simula
     assert simulation.truth.skin == UNMOVED
 
 
-def test_an_interrupted_trial_that_is_given_up_has_its_touches_as_they_were_measured(
-    simulation, tmp_path
-):
+def test_an_abandoned_interrupted_trial_has_its_touches_as_measured(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         start(server, skin=SKIN)
         kept = [1000.0 * np.array(touch.position) for touch in server.training.touches]
@@ -123,7 +119,7 @@ def test_an_interrupted_trial_that_is_given_up_has_its_touches_as_they_were_meas
         pytest.param(2.0, id="a number"),
     ],
 )
-def test_a_skin_that_cannot_be_is_refused_with_a_sentence(skin):
+def test_an_impossible_skin_shift_is_refused_with_a_message(skin):
     begin = {"task": "task-1", "trainee": "P01", "skin": skin}
     with pytest.raises(InputError, match="each a number from 0 to 20 mm"):
         check_arguments(CommandName.START_TASK, begin)

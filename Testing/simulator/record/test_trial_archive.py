@@ -13,7 +13,7 @@ from rastrainer.json_checks import MAX_DEPTH
 from rastrainer.protocol import CommandName
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer_simulator.ops.stamps import stamp
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import (
     SUFFIX,
     ArchivedTrial,
@@ -72,7 +72,7 @@ def write_trial(folder, *more, trial_id=TRIAL_ID):
     return journal.path
 
 
-def test_a_registered_trial_is_offered_until_it_is_acknowledged_also_after_a_restart(tmp_path):
+def test_a_registered_trial_is_offered_until_acknowledged_even_after_a_restart(tmp_path):
     path = write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
     assert archive.unacknowledged() == (RECORD,)
@@ -120,7 +120,7 @@ def test_an_older_trial_without_a_registration_is_not_scored(tmp_path):
         TrialArchive(tmp_path).answer(CommandName.TRIAL_SCORED, SCORE, NOW)
 
 
-def test_a_trial_that_was_scored_by_the_first_protocol_has_its_registration(tmp_path):
+def test_a_trial_scored_under_the_first_protocol_has_its_registration(tmp_path):
     write_trial(tmp_path, {"kind": "scored", "arguments": {**SCORE, **REGISTRATION}})
     archive = TrialArchive(tmp_path)
     data = archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
@@ -136,7 +136,7 @@ def test_a_score_whose_details_look_like_an_acknowledgment_acknowledges_nothing(
     assert TrialArchive(tmp_path).unacknowledged() == (RECORD,)
 
 
-def test_a_score_as_deep_as_a_message_may_be_leaves_a_journal_that_can_be_read(tmp_path):
+def test_a_score_nested_as_deeply_as_allowed_leaves_a_readable_journal(tmp_path):
     path = write_trial(tmp_path, {"kind": "registration", "arguments": REGISTRATION})
     levels = MAX_DEPTH - 2
     details = '{"a":' * levels + "1" + "}" * levels
@@ -151,7 +151,7 @@ def test_a_score_as_deep_as_a_message_may_be_leaves_a_journal_that_can_be_read(t
         decode_json_object(deeper)
 
 
-def test_a_trial_is_found_behind_any_number_of_later_lines(tmp_path):
+def test_a_trial_is_found_before_any_number_of_later_lines(tmp_path):
     scored = {"kind": "scored", "arguments": SCORE | {"details": {"x": "y" * 60_000}}}
     path = write_trial(tmp_path, *[scored] * 12)
     assert find_unacknowledged(tmp_path) == [path]
@@ -165,7 +165,7 @@ def test_a_trial_that_was_acknowledged_can_still_be_requested_and_scored(tmp_pat
     assert "headToWorld" in archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)
 
 
-def test_a_trial_that_is_done_takes_no_memory_and_is_answered_as_before(tmp_path):
+def test_a_completed_trial_takes_no_memory_and_is_answered_as_before(tmp_path):
     path = write_trial(tmp_path)
     archive = TrialArchive(tmp_path)
     archive.answer(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": TRIAL_ID}, NOW)
@@ -186,7 +186,7 @@ def test_a_trial_that_is_done_takes_no_memory_and_is_answered_as_before(tmp_path
         assert len(reading.of_kind(kind)) == 1
 
 
-def test_a_half_written_line_after_the_record_does_not_hide_the_trial(tmp_path):
+def test_an_incomplete_line_after_the_record_does_not_hide_the_trial(tmp_path):
     path = write_trial(tmp_path)
     with path.open("ab") as file:
         file.write(b'{"n":9999,"previous":"abc')
@@ -195,7 +195,7 @@ def test_a_half_written_line_after_the_record_does_not_hide_the_trial(tmp_path):
     assert read_journal(path).integrity is Integrity.INTACT
 
 
-def test_an_altered_journal_is_not_delivered_and_named(tmp_path):
+def test_an_altered_journal_is_named_and_not_delivered(tmp_path):
     path = write_trial(tmp_path)
     path.write_bytes(path.read_bytes().replace(b'"i":1000', b'"i":1001'))
     archive = TrialArchive(tmp_path)
@@ -216,7 +216,7 @@ def test_an_altered_journal_is_not_delivered_and_named(tmp_path):
     ],
     ids=["no record", "empty record", "no truth", "half a matrix", "one fiducial", "no target"],
 )
-def test_a_journal_of_right_hashes_and_odd_content_is_named_and_holds_up_no_other(tmp_path, odd):
+def test_a_journal_with_valid_hashes_and_odd_content_is_named_and_blocks_no_other(tmp_path, odd):
     registered = {"kind": "registered", "record": RECORD.to_json(), "truth": TRUTH.to_json()}
     path = write_trial(tmp_path, registered | odd)
     other_id = TRIAL_ID.replace("5c6f", "0000")
@@ -235,13 +235,13 @@ def test_an_invalid_registration_is_reported(tmp_path):
     assert path.name in archive.problems[0]
 
 
-def test_a_trial_that_is_missing_gets_a_sentence(tmp_path):
+def test_a_missing_trial_is_answered_with_a_message(tmp_path):
     archive = TrialArchive(tmp_path)
     with pytest.raises(InputError, match="no registered trial"):
         archive.answer(CommandName.GET_TRIAL, {"trialId": TRIAL_ID}, NOW)
 
 
-def test_a_folder_with_foreign_files_is_read_without_trouble(tmp_path):
+def test_a_folder_with_foreign_files_is_read_without_problems(tmp_path):
     (tmp_path / f"notes{SUFFIX}").write_text("hello")
     (tmp_path / f"zeros{SUFFIX}").write_bytes(bytes(1_000_000))
     (tmp_path / "notes.txt").write_text("hello")

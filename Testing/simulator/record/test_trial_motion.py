@@ -38,9 +38,7 @@ def journal(setup, tmp_path_factory):
     return play(setup, tmp_path_factory.mktemp("records"))
 
 
-def test_the_tick_of_register_leaves_the_metrics_to_the_journals_writer(
-    setup, tmp_path, monkeypatch
-):
+def test_the_register_tick_leaves_the_metrics_to_the_journal_writer(setup, tmp_path, monkeypatch):
     measured_in = []
 
     def measure(trajectory):
@@ -53,7 +51,7 @@ def test_the_tick_of_register_leaves_the_metrics_to_the_journals_writer(
     assert measured_in[0] is not threading.current_thread()
 
 
-def test_the_record_holds_the_metrics_that_the_journal_gives_to_the_last_bit(journal):
+def test_the_record_has_the_same_metrics_as_the_journal_to_the_last_bit(journal):
     (registered,) = journal.of_kind("registered")
     record = TrialRecord.from_json(registered["record"])
     assert len(record.motion) > 20
@@ -64,7 +62,7 @@ def test_the_record_holds_the_metrics_that_the_journal_gives_to_the_last_bit(jou
     assert 0.2 < record.motion["path_efficiency"] < 1.0
 
 
-def test_metrics_of_a_part_are_those_of_the_trial_until_then(journal):
+def test_metrics_of_a_part_are_those_of_the_trial_up_to_then(journal):
     half = journal.entries[: len(journal.entries) // 2]
     streamed = Recording()
     for entry in half:
@@ -75,7 +73,7 @@ def test_metrics_of_a_part_are_those_of_the_trial_until_then(journal):
     assert 0 < part["contacts"] < whole["contacts"]
 
 
-def test_what_comes_after_the_trial_changes_nothing(journal):
+def test_anything_after_the_trial_changes_nothing(journal):
     again = Recording.of([*journal.entries, {"kind": "acknowledged", "simTime": 1e6}])
     assert trial_motion(again.trajectory()) == trial_motion(
         Recording.of(journal.entries).trajectory()

@@ -12,7 +12,7 @@ from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import CommandName
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.record.beside_the_trial import DisplayReport, DisplayUse
+from rastrainer_simulator.record.trial_context import DisplayReport, DisplayUse
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.state import Event, EventKind, OperatorCommand, OperatorInput
 
@@ -49,7 +49,7 @@ DT = 0.004
 CONTACT = {"from": "proximity", "to": "contact", "clearanceMm": 0.0}
 
 
-def test_a_contact_in_the_tick_of_register_counts_in_the_record_as_in_the_journal(anywhere):
+def test_a_contact_in_the_register_tick_counts_in_the_record_as_in_the_journal(anywhere):
     simulation = Simulation(anywhere, 3)
 
     def step(name, **arguments):

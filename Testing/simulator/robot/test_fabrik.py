@@ -52,7 +52,7 @@ def target(tip, mode):
     return tip[:3, 3], direction, tip[:3, :3] if mode == "pose" else None
 
 
-def test_2000_seeded_reachable_positions_are_met_within_a_hundredth_of_a_millimeter(
+def test_2000_seeded_reachable_positions_are_reached_within_a_hundredth_of_a_millimeter(
     fabrik, robot, truth
 ):
     met = 0
@@ -66,7 +66,7 @@ def test_2000_seeded_reachable_positions_are_met_within_a_hundredth_of_a_millime
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("start", ["home", "anywhere"])
-def test_every_reachable_target_is_met_to_a_nanometer_inside_the_limits(
+def test_every_reachable_target_is_reached_to_a_nanometer_within_the_limits(
     fabrik, robot, truth, mode, start
 ):
     starts = truth.postures(2500, seed=4)
@@ -106,7 +106,7 @@ def test_the_reported_errors_are_the_true_ones(fabrik, robot, truth, mode):
         assert solution.direction_error_rad == pytest.approx(angle, abs=1e-7)
 
 
-def test_the_branch_is_the_one_nearest_to_where_the_arm_was(fabrik, truth):
+def test_the_branch_closest_to_the_previous_posture_is_chosen(fabrik, truth):
     for q in truth.postures(300, seed=7):
         goal = truth.tip(q)
         solution = fabrik.solve(*target(goal, "pose"), q_start=q + 1e-3)
@@ -123,7 +123,7 @@ def test_the_branch_is_the_one_nearest_to_where_the_arm_was(fabrik, truth):
         ([0.0, 1.0, -1.5], None),
     ],
 )
-def test_a_target_out_of_reach_is_approached_as_near_as_the_arm_gets(
+def test_a_target_out_of_reach_is_approached_as_closely_as_the_arm_can(
     fabrik, robot, truth, position, nearest
 ):
     solution = fabrik.solve(position, q_start=robot.home)
@@ -136,7 +136,7 @@ def test_a_target_out_of_reach_is_approached_as_near_as_the_arm_gets(
     np.testing.assert_allclose(truth.tip(solution.q)[:3, 3], nearest, atol=1e-9)
 
 
-def test_no_random_posture_is_nearer_to_a_target_out_of_reach(fabrik, robot, truth):
+def test_no_random_posture_comes_closer_to_a_target_out_of_reach(fabrik, robot, truth):
     tips = np.array([truth.tip(q)[:3, 3] for q in truth.postures(20_000, seed=8)])
     random = np.random.default_rng(9)
     refused = 0
@@ -148,7 +148,7 @@ def test_no_random_posture_is_nearer_to_a_target_out_of_reach(fabrik, robot, tru
     assert refused > 40
 
 
-def test_a_direction_is_kept_while_the_tool_stays_short_of_its_target(fabrik, robot, truth):
+def test_the_direction_is_kept_when_the_tool_falls_short_of_its_target(fabrik, robot, truth):
     down = [0.0, 0.0, -1.0]
     solution = fabrik.solve([0.9, 0.2, 0.3], down, q_start=robot.home)
     assert "out of reach" in solution.reason
@@ -159,7 +159,7 @@ def test_a_direction_is_kept_while_the_tool_stays_short_of_its_target(fabrik, ro
     np.testing.assert_allclose(truth.tip(solution.q)[:3, 2], down, atol=1e-9)
 
 
-def test_a_roll_that_the_limits_forbid_is_given_up_but_not_position_and_direction(truth, tmp_path):
+def test_a_roll_beyond_the_limits_is_given_up_but_not_position_and_direction(truth, tmp_path):
     text = asset_path("robots", "iiwa7", "iiwa7.urdf").read_text(encoding="utf-8")
     path = tmp_path / "stiff.urdf"
     path.write_text(text.replace("3.0543261909900767", "0.1"), encoding="utf-8")
@@ -200,7 +200,7 @@ def test_singular_postures_are_held_and_left_without_a_jump(fabrik, truth, mode,
     np.testing.assert_allclose(held.q, q, atol=1e-6)
 
 
-def test_the_same_question_has_the_same_answer_to_the_last_bit(robot, truth):
+def test_the_same_query_has_the_same_answer_to_the_last_bit(robot, truth):
     one, other = Fabrik(robot), Fabrik(load_robot())
     for q in truth.postures(50, seed=11):
         other.solve([0.4, 0.1, 0.3], q_start=robot.home)
@@ -208,7 +208,7 @@ def test_the_same_question_has_the_same_answer_to_the_last_bit(robot, truth):
         assert one.solve(goal, q_start=robot.home) == other.solve(goal, q_start=robot.home)
 
 
-def test_the_tolerance_and_the_passes_are_settings(robot):
+def test_the_tolerance_and_the_iteration_limit_are_settings(robot):
     loose = Fabrik(robot, FabrikSettings(tolerance_m=0.5, max_iterations=1))
     solution = loose.solve([1.5, 0, 0.34], q_start=robot.home)
     assert solution.converged
@@ -233,12 +233,12 @@ def test_the_tolerance_and_the_passes_are_settings(robot):
         (([0.5, 0.1, 0.3], [0, 0, -1], np.eye(3)), "not both"),
     ],
 )
-def test_what_is_no_target_is_refused_in_one_sentence(fabrik, robot, arguments, sentence):
+def test_an_invalid_target_is_refused_in_one_sentence(fabrik, robot, arguments, sentence):
     with pytest.raises(InputError, match=sentence):
         fabrik.solve(*arguments, q_start=robot.home)
 
 
 @pytest.mark.parametrize("q", [[0.0] * 6, [0.0] * 6 + [math.nan]])
-def test_what_is_no_posture_is_refused_in_one_sentence(fabrik, q):
+def test_an_invalid_posture_is_refused_in_one_sentence(fabrik, q):
     with pytest.raises(InputError, match="joint angles"):
         fabrik.solve([0.5, 0.1, 0.3], q_start=q)

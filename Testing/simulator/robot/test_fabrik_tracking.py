@@ -44,9 +44,7 @@ def track(fabrik, path, q, direction=None, rotation=None):
     return np.array(steps), solutions
 
 
-def test_in_the_clinical_box_no_joint_turns_more_than_15_hundredths_of_a_degree_a_millimeter(
-    fabrik, robot
-):
+def test_in_the_clinical_box_no_joint_turns_more_than_0_15_degrees_per_millimeter(fabrik, robot):
     path = wander(CLINICAL_BOX, 6000, seed=1)
     start = fabrik.solve(path[0], DOWN, q_start=robot.home)
     steps, solutions = track(fabrik, path, start.q)
@@ -55,7 +53,7 @@ def test_in_the_clinical_box_no_joint_turns_more_than_15_hundredths_of_a_degree_
 
 
 @pytest.mark.parametrize("mode", ["direction", "pose"])
-def test_with_the_tool_held_the_arm_follows_exactly_and_without_jumps(fabrik, robot, mode):
+def test_with_the_direction_held_the_arm_follows_exactly_and_without_jumps(fabrik, robot, mode):
     low, high = CLINICAL_BOX
     path = wander((low, [high[0], high[1], 0.42]), 3000, seed=2)
     start = fabrik.solve(path[0], DOWN, q_start=robot.home)
@@ -83,7 +81,7 @@ def test_the_wrist_passes_over_the_shoulder_smoothly(fabrik, robot, mode, beside
 
 
 @pytest.mark.parametrize("direction", [None, [1.0, 0.0, 0.0]])
-def test_the_arm_stretches_to_its_edge_stays_there_and_comes_back(fabrik, robot, direction):
+def test_the_arm_stretches_to_its_limit_stays_there_and_comes_back(fabrik, robot, direction):
     out = straight([0.95, 0.05, 0.34], [1.2, 0.05, 0.34])
     start = fabrik.solve(out[0], [1.0, 0.0, 0.0], q_start=robot.home)
     steps, solutions = track(fabrik, np.vstack((out, out[::-1])), start.q, direction)
@@ -97,7 +95,7 @@ def test_the_arm_stretches_to_its_edge_stays_there_and_comes_back(fabrik, robot,
     assert steps[~edge].max() <= 2.0
 
 
-def test_joint_speeds_keep_their_limits_on_wide_paths_past_singularities_and_edges(fabrik, robot):
+def test_joint_speeds_stay_within_limits_on_wide_paths_past_singularities_and_edges(fabrik, robot):
     path = wander(([-0.9, -0.9, -0.1], [0.9, 0.9, 1.4]), 6000, seed=3)
     q = fabrik.solve(path[0], q_start=robot.home).q
     most = robot.velocity * TICK
@@ -125,7 +123,7 @@ def test_hardly_any_step_of_a_wide_path_needs_the_limiter(fabrik, robot):
     assert (steps.max(axis=1) > 2.0).mean() <= 0.002
 
 
-def test_a_joint_at_its_limit_stops_there_and_the_others_continue(fabrik, robot):
+def test_a_joint_at_its_limit_stops_and_the_others_continue(fabrik, robot):
     start = fabrik.solve([0.5, 0.0, 0.4], DOWN, q_start=robot.home)
     q = (*start.q[:5], robot.upper[5], start.q[6])
     tip = make_kinematics(robot).tip(q)[:3, 3]
@@ -135,7 +133,7 @@ def test_a_joint_at_its_limit_stops_there_and_the_others_continue(fabrik, robot)
         assert steps.max() <= 0.5
 
 
-def test_the_limiter_slows_all_joints_alike_and_lets_short_steps_pass():
+def test_the_limiter_slows_all_joints_equally_and_lets_short_steps_pass():
     q, goal, velocity = (0.0, 1.0), (0.1, 1.02), (1.0, 1.0)
     slowed = limit_step(q, goal, velocity, 0.05)
     assert slowed.limited

@@ -62,7 +62,7 @@ def test_the_environment_variable_chooses_the_backend(robot, monkeypatch):
 URDF = asset_path("robots", "iiwa7", "iiwa7.urdf")
 
 
-def test_the_tool_is_where_the_simulators_kinematics_have_it():
+def test_the_tool_is_where_the_simulators_kinematics_place_it():
     robot = load_robot()
     kinematics, chain = make_kinematics(robot, "numpy"), readArmChain(URDF)
     postures = np.random.default_rng(5).uniform(robot.lower, robot.upper, (200, 7))
@@ -83,7 +83,7 @@ def test_the_tool_is_where_the_simulators_kinematics_have_it():
         ("<robot", "<!DOCTYPE x><robot"),
     ],
 )
-def test_what_is_no_chain_is_one_sentence(old, new, tmp_path):
+def test_an_invalid_chain_is_refused_in_one_sentence(old, new, tmp_path):
     (tmp_path / "arm.urdf").write_text(URDF.read_text().replace(old, new))
     with pytest.raises(InputError, match="URDF"):
         readArmChain(tmp_path / "arm.urdf")

@@ -138,7 +138,7 @@ def test_the_arm_has_the_published_width_height_and_reach(visuals):
     assert links["iiwa_link_7"].bounds[1, 2] - 0.035 == pytest.approx(1.231, abs=1e-6)
 
 
-def test_neighboring_links_meet_without_a_gap_that_shows(visuals):
+def test_neighboring_links_meet_without_a_visible_gap(visuals):
     names = list(LINK_ORIGINS_M)
     for inner, outer in itertools.pairwise(names):
         one, other = outstretched(visuals, inner), outstretched(visuals, outer)
@@ -177,7 +177,7 @@ def test_the_tool_is_a_slender_pointer_that_ends_at_the_tool_tip(visuals):
     assert np.hypot(shaft[:, 0], shaft[:, 1]).max() <= 0.0031
 
 
-def test_masses_are_the_published_ones_and_inertias_are_possible():
+def test_masses_are_the_published_ones_and_inertias_are_physically_possible():
     model = pinocchio.buildModelFromUrdf(str(ROBOT / "iiwa7.urdf"))
     masses = [3.394011, 4.031991, 3.394011, 4.031989, 1.529239, 2.403626, 0.259474 + 0.25]
     assert [body.mass for body in list(model.inertias)[1:]] == pytest.approx(masses)
@@ -247,7 +247,7 @@ def test_a_mesh_in_millimeters_or_without_numbers_is_refused(tmp_path, visuals, 
         load_meshes(load_robot(mesh_folder=tmp_path))
 
 
-def test_a_mesh_that_the_urdf_names_but_that_is_gone_is_named(tmp_path):
+def test_a_mesh_named_in_the_urdf_but_missing_is_named(tmp_path):
     urdf = tmp_path / "iiwa7.urdf"
     urdf.write_bytes((ROBOT / "iiwa7.urdf").read_bytes())
     with pytest.raises(InputError, match=r"mesh of iiwa_link_0 cannot be used: There is no"):

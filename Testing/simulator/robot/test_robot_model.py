@@ -47,7 +47,7 @@ def test_the_home_pose_points_the_tool_straight_down(robot):
     assert tip[0, 3] > 0.3
 
 
-def test_another_tip_can_be_named(robot):
+def test_another_tip_can_be_chosen_by_name(robot):
     shorter = load_robot(tip_link="iiwa_link_tool")
     assert shorter.geometry.tool == pytest.approx(robot.geometry.tool - 0.2)
     with pytest.raises(InputError, match="behind the last joint are iiwa_link_7"):
@@ -87,7 +87,7 @@ def test_other_meshes_replace_those_of_the_urdf(tmp_path, robot):
         ),
     ],
 )
-def test_a_file_that_is_no_urdf_is_refused_in_one_sentence(tmp_path, data, sentence):
+def test_a_file_that_is_not_a_urdf_is_refused_in_one_sentence(tmp_path, data, sentence):
     path = tmp_path / "robot.urdf"
     path.write_bytes(data)
     with pytest.raises(InputError, match=sentence):

@@ -139,7 +139,7 @@ def test_an_arm_whose_first_axis_points_down_is_solved(tmp_path):
     check_every_mode(load_robot(write_arm(tmp_path / "arm.urdf", joints, tip, limits)), 100, 1)
 
 
-def test_an_arm_written_with_frames_along_the_axes_and_rounded_angles_is_solved(tmp_path):
+def test_an_arm_with_axis_aligned_frames_and_rounded_angles_is_solved(tmp_path):
     centers, _, tip = chain_at([0.0] * 7, (0.34, 0.40, 0.40, 0.30))
     turned = Rotation.from_euler("x", -90, degrees=True).as_matrix()
     joints = []
@@ -154,7 +154,7 @@ def test_an_arm_written_with_frames_along_the_axes_and_rounded_angles_is_solved(
     check_every_mode(robot, 100, 2)
 
 
-def test_an_arm_with_endless_pans_and_a_one_sided_elbow_is_solved(tmp_path):
+def test_an_arm_with_continuous_pan_joints_and_a_one_sided_elbow_is_solved(tmp_path):
     centers, axes, tip = chain_at([0.0] * 7, (0.28, 0.42, 0.31, 0.17))
     joints = [(translation(center), axis) for center, axis in zip(centers, axes, strict=True)]
     limits = symmetric(170, 128, 170, 147, 170, 120, 170)

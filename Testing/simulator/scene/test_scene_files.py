@@ -36,7 +36,7 @@ def no_process(monkeypatch):
     monkeypatch.setattr(scene_files_module.asyncio, "create_subprocess_exec", refuse)
 
 
-def test_a_scene_is_built_by_a_process_and_named_after_its_content(built):
+def test_a_scene_is_built_in_a_separate_process_and_named_after_its_content(built):
     folder, file = built
     assert [path.suffix for path in folder.iterdir()] == [".glb"]
     content = read_scene(file)
@@ -44,7 +44,7 @@ def test_a_scene_is_built_by_a_process_and_named_after_its_content(built):
 
 
 @pytest.mark.usefixtures("no_process")
-def test_what_was_built_once_is_there_the_next_time(built, setup):
+def test_a_scene_built_once_is_available_the_next_time(built, setup):
     folder, file = built
     files = SceneFiles(folder)
     assert asyncio.run(files.scene(setup, "")) == file
@@ -52,7 +52,7 @@ def test_what_was_built_once_is_there_the_next_time(built, setup):
     assert files.find("0" * 64) is None
 
 
-def test_a_broken_file_in_the_cache_is_built_again(built, setup, monkeypatch):
+def test_a_broken_file_in_the_cache_is_rebuilt(built, setup, monkeypatch):
     folder, file = built
     content = read_scene(file)
 
@@ -65,7 +65,7 @@ def test_a_broken_file_in_the_cache_is_built_again(built, setup, monkeypatch):
     assert asyncio.run(SceneFiles(folder).scene(setup, "")) == file
 
 
-def test_who_does_not_wait_any_more_ends_the_building(setup, tmp_path, monkeypatch):
+def test_giving_up_waiting_ends_the_build(setup, tmp_path, monkeypatch):
     start, started = asyncio.create_subprocess_exec, []
 
     async def start_endless(*_words, **named):
@@ -92,7 +92,7 @@ def test_a_scene_that_cannot_be_built_is_reported_in_one_sentence(setup, tmp_pat
         asyncio.run(SceneFiles(tmp_path).scene(replace(setup, scenario=scenario), ""))
 
 
-def test_a_task_that_the_scenario_does_not_have_has_no_scene(setup, tmp_path):
+def test_a_task_missing_from_the_scenario_has_no_scene(setup, tmp_path):
     with pytest.raises(InputError, match="no such task"):
         asyncio.run(SceneFiles(tmp_path).scene(setup, "task-99"))
 
@@ -110,7 +110,7 @@ def test_the_key_changes_with_task_scenario_and_robot(setup):
     assert setup_digest(setup) == digest
 
 
-def test_the_oldest_scenes_are_forgotten(tmp_path):
+def test_the_oldest_scenes_are_deleted(tmp_path):
     for index in range(KEPT_FILES + 5):
         path = tmp_path / f"{index:03d}.glb"
         path.touch()
@@ -123,7 +123,7 @@ def _set_time(path: Path, seconds: int) -> None:
     os.utime(path, (seconds, seconds))
 
 
-def test_a_cache_that_cannot_be_written_is_replaced_for_the_time_being(tmp_path, monkeypatch):
+def test_an_unwritable_cache_is_temporarily_replaced(tmp_path, monkeypatch):
     (tmp_path / "rastrainer").write_text("in the way")
     for variable in ("XDG_CACHE_HOME", "LOCALAPPDATA"):
         monkeypatch.setenv(variable, str(tmp_path))

@@ -36,7 +36,7 @@ def test_it_is_small_enough_for_a_headset(content, glb):
     assert len(primitives) <= 100, "each is a draw call"
 
 
-def test_what_the_stream_moves_hangs_at_the_root_which_turns_z_up_into_y_up(glb):
+def test_moving_parts_are_children_of_the_root_which_turns_z_up_into_y_up(glb):
     table, *others = STANDING
     assert glb.children("world") == [*MOVED, table, "plan", *others]
     assert glb.parent("world") is None
@@ -48,7 +48,7 @@ def test_what_the_stream_moves_hangs_at_the_root_which_turns_z_up_into_y_up(glb)
         assert glb.matrix(name) == pytest.approx(np.eye(4))
 
 
-def test_the_head_carries_skin_and_all_marks_and_the_last_fiducial_no_arrow(glb):
+def test_the_head_carries_skin_and_all_marks_and_the_last_fiducial_has_no_arrow(glb):
     labels = [str(number) for number in range(1, 16)]
     marks = {f"{kind}_{label}" for kind in ("fiducial", "number", "arrow") for label in labels}
     assert set(glb.children("head")) == {"skin", "rims"} | marks - {"arrow_15"}
@@ -69,14 +69,14 @@ def test_the_skin_is_the_scenarios_head_in_meters(glb, scenario):
     assert len(vertices) < 1.05 * len(head.vertices)
 
 
-def test_fiducials_lie_around_their_places_on_the_skin(glb, scenario):
+def test_fiducials_surround_their_places_on_the_skin(glb, scenario):
     task = scenario.task("task-3")
     for label, place in zip(task.labels, task.fiducials, strict=True):
         disk = glb.vertices(f"fiducial_{label}") * MM_PER_M
         assert disk.mean(axis=0) == pytest.approx(place, abs=1.5)
 
 
-def test_the_links_stand_where_the_robots_meshes_are(glb, setup):
+def test_the_links_coincide_with_the_robots_meshes(glb, setup):
     """Posed by the stream, each node covers what the URDF's meshes cover."""
     links = make_kinematics(setup.robot).links(np.array(setup.robot.home))
     expected: dict[str, list[np.ndarray]] = {}
@@ -97,7 +97,7 @@ def test_the_links_stand_where_the_robots_meshes_are(glb, setup):
         assert posed.max(axis=0) == pytest.approx(whole.max(axis=0), abs=1e-5)
 
 
-def test_the_tools_tip_is_its_origin(glb):
+def test_the_tools_origin_is_its_tip(glb):
     marker = glb.vertices("tip_marker")
     assert np.linalg.norm(marker, axis=1).min() < 0.002
     assert marker[:, 2].max() < 0.001, "nothing of the tool is beyond its tip"
@@ -127,7 +127,7 @@ def test_the_stand_reaches_from_the_table_to_the_head_in_every_trial(glb, scenar
         assert -0.04 < top + stand[:, 2].min() < 0.0, "its end is hidden in the table top"
 
 
-def test_nothing_of_the_room_is_within_reach_of_the_robot(glb, setup):
+def test_no_part_of_the_room_is_within_reach_of_the_robot(glb, setup):
     reach = sum(np.linalg.norm(joint.origin[:3, 3]) for joint in setup.robot.joints)
     reach += np.linalg.norm(setup.robot.tip.offset[:3, 3])
     room = glb.vertices("room")
@@ -135,7 +135,7 @@ def test_nothing_of_the_room_is_within_reach_of_the_robot(glb, setup):
     assert np.linalg.norm(room - shoulder, axis=1).min() > reach - 0.34
 
 
-def test_triangles_turn_outward_as_their_normals_say(glb):
+def test_triangle_winding_agrees_with_the_outward_normals(glb):
     for vertices, normals, triangles, _ in glb.primitives("world"):
         assert np.isfinite(vertices).all()
         assert np.linalg.norm(normals, axis=1) == pytest.approx(1.0, abs=1e-3)
@@ -160,7 +160,7 @@ def test_only_marks_and_lights_glow(glb):
     assert not glows("table")
 
 
-def test_colors_are_light_as_gltf_wants_it():
+def test_colors_are_linear_as_gltf_requires():
     """sRGB 0.5 is 21.4 % of white's light (IEC 61966-2-1)."""
     linear = Material("gray", (0.5, 0.0, 1.0)).linear_color
     assert linear == pytest.approx((0.21404, 0.0, 1.0), abs=1e-5)
@@ -189,7 +189,7 @@ def test_vtk_reads_it(content, glb, tmp_path):
     assert count == sum(len(part[2]) for part in glb.primitives("world"))
 
 
-def test_the_tools_of_a_procedure_stand_on_the_axis_and_end_or_begin_at_the_tip(glb):
+def test_the_tools_of_a_procedure_lie_on_the_axis_and_end_or_begin_at_the_tip(glb):
     guide, axis = glb.vertices("guide"), glb.vertices("axis")
     assert guide[:, 2].max() == pytest.approx(0.0, abs=1e-6)
     assert axis[:, 2].min() == pytest.approx(0.0, abs=1e-6)
@@ -200,7 +200,7 @@ def test_the_tools_of_a_procedure_stand_on_the_axis_and_end_or_begin_at_the_tip(
         assert np.abs(fed[:, :2].mean(axis=0)) == pytest.approx([0.0, 0.0], abs=1e-6)
 
 
-def test_the_no_go_structures_lie_in_the_plan_and_can_be_seen_through(glb, scenario):
+def test_the_no_go_structures_are_placed_as_planned_and_transparent(glb, scenario):
     paths = {each.mesh for procedure in scenario.procedures for each in procedure.no_go}
     assert set(glb.children("plan")) == {f"no_go_{path.stem}" for path in paths}
     for path in paths:

@@ -36,7 +36,7 @@ def test_marks_lie_on_the_skin_and_follow_its_curve(ball):
             assert np.all(np.abs(heights - lift) < 0.3)
 
 
-def test_a_number_reads_from_outside_with_the_patients_superior_up(ball):
+def test_a_number_is_readable_from_outside_with_the_patients_superior_up(ball):
     points = skin_marks(ball, FRONT[:1], ("1L",))[0].number.points
     assert np.ptp(points[:, 2]) == pytest.approx(NUMBER_HEIGHT, rel=0.05)
     # Seen from in front of the face, the patient's right (+x) is on the left.
@@ -45,14 +45,14 @@ def test_a_number_reads_from_outside_with_the_patients_superior_up(ball):
     assert np.median(foot[:, 0]) < np.median(points[:, 0])
 
 
-def test_fiducials_that_touch_each_other_get_no_arrow_between_them(ball):
+def test_overlapping_fiducials_get_no_arrow_between_them(ball):
     turn = 2 * RIM_RADIUS / RADIUS
     close = RADIUS * np.array([[0.0, 1.0, 0.0], [np.sin(turn), np.cos(turn), 0.0]])
     marks = skin_marks(ball, close, ("1", "2"))
     assert [mark.arrow for mark in marks] == [None, None]
 
 
-def test_an_arrow_leads_round_the_ball_to_the_other_side(ball):
+def test_an_arrow_leads_around_the_ball_to_the_other_side(ball):
     arrow = skin_marks(ball, np.array([FRONT[0], [0.0, -RADIUS, 0.1]]), ("1", "2"))[0].arrow
     heights = np.linalg.norm(arrow.points, axis=1) - RADIUS
     assert np.all(np.abs(heights - ARROW_LIFT) < 0.3)
@@ -113,7 +113,7 @@ def test_no_number_touches_an_arrow_a_fiducial_or_another_number(marks):
             assert apart(own, places_on(other.number)) > 4.0
 
 
-def test_every_number_is_nearest_to_its_own_fiducial(marks, points):
+def test_every_number_is_closest_to_its_own_fiducial(marks, points):
     for index, mark in enumerate(marks):
         distances = np.linalg.norm(mark.number.points.mean(axis=0) - points, axis=1)
         assert np.argmin(distances) == index

@@ -71,7 +71,7 @@ def make(library):
 
 
 @pytest.mark.parametrize("may_be_anywhere", [True, False])
-def test_scenario_that_comes_with_us_is_loaded_by_its_name(make, may_be_anywhere):
+def test_bundled_scenario_is_loaded_by_its_name(make, may_be_anywhere):
     loop = Loop()
     answer = make(loop, may_be_anywhere).load("colin27").result(60)
     assert (answer.ok, answer.data) == (True, {"name": "colin27", "title": "Colin27"})
@@ -79,7 +79,7 @@ def test_scenario_that_comes_with_us_is_loaded_by_its_name(make, may_be_anywhere
 
 
 @pytest.mark.parametrize("may_be_anywhere", [True, False])
-def test_scenario_of_the_library_is_loaded_by_its_name(make, library, may_be_anywhere):
+def test_scenario_in_the_library_is_loaded_by_its_name(make, library, may_be_anywhere):
     loop = Loop()
     assert make(loop, may_be_anywhere).load("ball").result(60).ok
     assert loop.simulations[0].folder == library / "ball"
@@ -101,7 +101,7 @@ def test_any_folder_may_be_loaded_by_its_path_on_one_computer(make, tmp_path):
 
 
 @pytest.mark.parametrize("folder", ["/etc", "../colin27", "colin27/..", "."])
-def test_client_of_another_computer_reaches_no_other_folder(make, folder):
+def test_client_on_another_computer_can_load_no_other_folder(make, folder):
     loop = Loop()
     answer = make(loop, may_be_anywhere=False).load(folder).result(60)
     assert not answer.ok
@@ -109,7 +109,7 @@ def test_client_of_another_computer_reaches_no_other_folder(make, folder):
     assert loop.simulations == []
 
 
-def test_while_a_scenario_is_being_loaded_no_further_one_is(make):
+def test_no_second_scenario_is_loaded_while_one_is_being_loaded(make):
     loop = Loop()
     handover = Future()
     loop.replace_simulation = lambda _simulation: handover
@@ -122,7 +122,7 @@ def test_while_a_scenario_is_being_loaded_no_further_one_is(make):
 
 
 @pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE])
-def test_in_a_trial_nothing_is_read_of_a_scenario(make, phase):
+def test_no_scenario_is_read_during_a_trial(make, phase):
     loop = Loop()
     loop.latest.training.phase = phase
     loop.replace_simulation = None
@@ -138,7 +138,7 @@ def test_folder_that_cannot_be_used_is_refused_in_one_sentence(make, tmp_path):
     assert (answer.ok, "does not exist" in answer.message) == (False, True)
 
 
-def test_a_scenario_whose_procedure_cannot_be_carried_out_is_refused_and_nothing_changes(library):
+def test_a_scenario_with_an_infeasible_procedure_is_refused_and_nothing_changes(library):
     up_into_the_air = made_up_procedure(trajectory(target=(0, 0, 130)))
     planned = write_planned(library / "planned", up_into_the_air)
     values = json.loads((planned / "scenario.json").read_text())
@@ -156,13 +156,13 @@ def test_a_scenario_whose_procedure_cannot_be_carried_out_is_refused_and_nothing
         loader.close()
 
 
-def test_refusal_of_the_control_loop_is_passed_on(make):
+def test_refusal_by_the_control_loop_is_passed_on(make):
     loop = Loop()
     loop.answer = Answer(0, False, "A trial is running.")
     assert make(loop, may_be_anywhere=True).load("colin27").result(60) == loop.answer
 
 
-def test_the_present_scenario_is_made_again_wherever_it_came_from(make, tmp_path):
+def test_the_current_scenario_can_be_reloaded_wherever_it_came_from(make, tmp_path):
     loop = Loop()
     loop.setup = SimpleNamespace(scenario=SimpleNamespace(folder=tmp_path))
     assert make(loop, may_be_anywhere=False).reload().result(60).ok

@@ -97,7 +97,7 @@ def test_a_diagonal_stick_keeps_its_direction_and_is_not_faster():
 
 
 @pytest.mark.parametrize("broken", [math.nan, math.inf, -math.inf])
-def test_a_stick_that_reports_no_number_counts_as_released(broken):
+def test_a_stick_that_reports_nan_counts_as_released(broken):
     assert StickResponse()((broken, 0.0, 0.0)) == ZERO
 
 
@@ -128,14 +128,14 @@ def test_right_forward_and_up_are_those_of_the_camera_in_front_of_the_face():
         assert unit(Hand().step(push(*stick)).displacement) == pytest.approx(stick)
 
 
-def test_right_forward_and_up_are_those_of_the_robot_where_chosen():
+def test_right_forward_and_up_are_those_of_the_robot_if_so_configured():
     ahead = Hand(axes=ROBOT_AXES).step(push(0.0, 1.0, 0.0)).displacement
     right = Hand(axes=ROBOT_AXES).step(push(1.0, 0.0, 0.0)).displacement
     assert unit(ahead) == pytest.approx((1.0, 0.0, 0.0))
     assert unit(right) == pytest.approx((0.0, -1.0, 0.0))
 
 
-def test_a_camera_that_looks_down_still_pushes_away_level_and_up_upward():
+def test_with_a_camera_looking_down_forward_stays_horizontal_and_up_stays_vertical():
     tilted = camera_axes((0.0, 0.8, -0.6), (0.0, 0.6, 0.8))
     overhead = camera_axes((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
     assert tilted == overhead == FRONT_CAMERA
@@ -172,7 +172,7 @@ def test_a_move_ends_on_its_target_and_never_exceeds_its_speed():
     assert fastest <= 0.1 * (1 + 1e-9)
 
 
-def test_a_move_turns_the_tool_as_commanded_even_where_its_direction_is_free():
+def test_a_move_turns_the_tool_as_commanded_even_if_its_direction_is_free():
     hand = Hand()
     goal = unit((0.0, 1.0, -1.0))
     hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.45), speed=0.1, direction=goal))
@@ -180,7 +180,7 @@ def test_a_move_turns_the_tool_as_commanded_even_where_its_direction_is_free():
     assert angle(hand.tip.direction, goal) < 1e-9
 
 
-def test_a_move_that_gets_no_nearer_gives_up_and_says_that_it_was_blocked():
+def test_a_move_that_gets_no_closer_gives_up_and_reports_that_it_was_blocked():
     hand = Hand()
     hand.blocked = True
     hand.teleoperation.start(MoveCommand((0.5, 0.0, 0.3), speed=0.1))
@@ -218,7 +218,7 @@ def test_a_held_direction_stays_until_the_second_stick_turns_it():
 
 
 @pytest.mark.parametrize("choice", [choice for choice in ToolDirection if choice != "pose"])
-def test_the_tool_may_roll_in_every_mode_but_the_full_pose(choice):
+def test_the_tool_may_roll_in_every_mode_except_full_pose(choice):
     hand = Hand(steered(choice), surface=near_the_head(0.005, (0.0, -1.0, 0.5)))
     assert hand.step(push(1.0, 0.0, 0.0)).across is None
 
@@ -238,7 +238,7 @@ def test_in_pose_mode_the_tool_does_not_roll_while_it_is_moved_and_turned():
     assert length(motion_request.across) == pytest.approx(1.0)
 
 
-def test_steering_up_pitches_a_tool_that_points_down_away_from_the_viewer():
+def test_steering_up_tilts_a_downward_tool_away_from_the_viewer():
     hand = Hand(steered(ToolDirection.HELD))
     for _ in range(50):
         hand.step(OperatorInput(rotation=(0.0, 1.0)))
@@ -250,7 +250,7 @@ def near_the_head(clearance, normal, shaft_clearance=0.1, shaft_normal=(0.0, 0.0
     return NearestSurface(clearance, unit(normal), shaft_clearance, unit(shaft_normal))
 
 
-def test_near_the_head_the_tool_turns_along_the_surface_normal_where_chosen():
+def test_near_the_head_the_tool_turns_along_the_surface_normal_if_so_configured():
     normal = (0.0, -1.0, 0.5)
     near = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.005, normal))
     far = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.2, normal))
@@ -261,7 +261,7 @@ def test_near_the_head_the_tool_turns_along_the_surface_normal_where_chosen():
     assert far.tip.direction == DOWN
 
 
-def test_in_position_mode_the_tool_leans_no_farther_than_its_shaft_can_stay_off_the_skin():
+def test_in_position_mode_the_tool_tilts_only_as_far_as_its_shaft_stays_off_the_skin():
     normal = (0.0, -1.0, 0.5)
     leans = []
     for clearance in (0.2, 0.12, 0.08, 0.04, 0.01, 0.0):
@@ -274,26 +274,26 @@ def test_in_position_mode_the_tool_leans_no_farther_than_its_shaft_can_stay_off_
     assert leans[-2:] == pytest.approx([SteeringSettings().largest_lean] * 2)
 
 
-def test_the_tool_comes_from_above_even_where_the_skin_faces_down():
+def test_the_tool_approaches_from_above_even_where_the_skin_faces_down():
     hand = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.0, (0.0, -1.0, -0.4)))
     for _ in range(600):
         hand.step(push(0.2, 0.0, 0.0))
     assert hand.tip.direction[2] < -0.2
 
 
-def test_a_tool_that_leans_little_enough_is_left_alone():
+def test_a_tool_tilted_little_enough_is_left_alone():
     hand = Hand(steered(ToolDirection.CLEAR), surface=near_the_head(0.0, (0.1, 0.0, 1.0)))
     assert hand.step(push(0.2, 0.0, 0.0)).direction is None
 
 
-def test_a_shaft_that_almost_touches_turns_away_from_what_is_near_to_it():
+def test_a_shaft_that_almost_touches_turns_away_from_what_is_near_it():
     ear = near_the_head(0.002, (0.0, 0.0, 1.0), 0.0002, (0.0, -1.0, 0.0))
     hand = Hand(steered(ToolDirection.CLEAR), surface=ear)
     hand.step(push(0.2, 0.0, 0.0))
     assert hand.tip.direction[1] > 0.0
 
 
-def test_a_frozen_hand_turns_no_tool():
+def test_a_stationary_tip_does_not_turn_the_tool():
     hand = Hand(steered(ToolDirection.NORMAL), surface=near_the_head(0.005, (0.0, -1.0, 0.0)))
     for _ in range(50):
         assert hand.step().direction is None

@@ -71,7 +71,7 @@ class Hands:
 
     errors: np.ndarray
     seconds: np.ndarray
-    taken_back: int
+    undone_row: int
 
     @classmethod
     def of(cls, scenario, seed):
@@ -100,7 +100,7 @@ def score_of(scenario, hands, meanwhile=lambda _trial: None, settings=None):
 
     for row in range(len(fiducials)):
         touch(row)
-        if row == hands.taken_back:
+        if row == hands.undone_row:
             meanwhile(trial)
             if len(trial.state.touches) == row:
                 touch(row)
@@ -117,7 +117,7 @@ def hands(request, scenario):
     return Hands.of(scenario, request.param)
 
 
-def test_taking_a_touch_back_and_making_it_again_costs_its_time(scenario, hands):
+def test_undoing_and_repeating_a_touch_costs_its_time(scenario, hands):
     honest = score_of(scenario, hands)
     undone = score_of(scenario, hands, lambda trial: trial.do(CommandName.UNDO))
     assert undone.measures.completion_time_s > honest.measures.completion_time_s + 3.0
@@ -131,7 +131,7 @@ def test_waiting_in_a_pause_neither_costs_nor_gains(scenario, hands):
         trial.do(CommandName.RESUME)
 
     # After the last touch there is nothing to pause.
-    hands = replace(hands, taken_back=hands.taken_back % 14)
+    hands = replace(hands, undone_row=hands.undone_row % 14)
     honest, waited = (score_of(scenario, hands, each) for each in (lambda _trial: None, wait))
     assert waited.score == pytest.approx(honest.score, abs=1e-9)
 

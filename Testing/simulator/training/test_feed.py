@@ -47,12 +47,12 @@ def test_the_stick_feeds_down_into_the_head_within_the_limit(drive, phase, fine,
     assert drive.way(DT, phase, stick(0.1, fine)).distance == 0.0
 
 
-def test_a_broken_stick_feeds_nothing(drive):
+def test_a_stick_that_reports_nan_feeds_nothing(drive):
     for up in (math.nan, math.inf):
         assert drive.way(DT, DRILLING, stick(up)).distance == 0.0
 
 
-def test_a_commanded_feed_lasts_its_time_within_the_limit(drive):
+def test_a_commanded_feed_lasts_for_its_duration_within_the_limit(drive):
     drive.start(50.0, 0.1)
     ways = [drive.way(DT, DRILLING, HANDS_OFF).distance for _ in range(30)]
     assert sum(ways) == pytest.approx(0.005 * 0.1)
@@ -69,7 +69,7 @@ def test_the_stick_overrides_a_commanded_feed(drive):
     assert drive.way(DT, DRILLING, HANDS_OFF).distance == 0.0
 
 
-def test_the_drill_goes_from_the_guide_s_tip_to_its_length_and_its_depth_is_kept():
+def test_the_drill_moves_from_the_guides_tip_to_its_full_length_and_its_depth_is_kept():
     feed = Feed(ahead=AHEAD)
     assert feed.moved(DRILLING, -0.01).depth == 0.0
     deep = feed.moved(DRILLING, 1.0)
@@ -91,7 +91,7 @@ def test_an_axis_that_misses_the_skull_stops_no_instrument():
     assert Feed(drilled=0.001, ahead=HeadAhead(0.02)).moved(INSERTING, 1.0).depth == LONGEST_FEED_M
 
 
-def test_what_is_felt_changes_at_the_skin_and_at_both_tables():
+def test_the_feel_changes_at_the_skin_and_at_both_tables():
     feed, felt = Feed(ahead=AHEAD), []
     for _ in range(40):
         feed = feed.moved(DRILLING, 0.001)
@@ -106,13 +106,13 @@ def test_what_is_felt_changes_at_the_skin_and_at_both_tables():
     assert feed.moved(DRILLING, -0.02).layer(DRILLING) is FeedLayer.THROUGH
 
 
-def test_an_instrument_on_uncut_bone_is_felt_to_be_stopped():
+def test_an_instrument_on_uncut_bone_feels_blocked():
     feed = Feed(drilled=0.030, ahead=AHEAD)
     assert feed.moved(INSERTING, 0.02).layer(INSERTING) is FeedLayer.FREE
     assert feed.moved(INSERTING, 0.05).layer(INSERTING) is FeedLayer.BLOCKED
 
 
-def test_bone_is_cut_beyond_the_outer_table_alone():
+def test_bone_is_cut_only_beyond_the_outer_table():
     assert not Feed(drilled=0.0269, ahead=AHEAD).has_cut_bone
     assert Feed(drilled=0.0271, ahead=AHEAD).has_cut_bone
     assert not NO_FEED.has_cut_bone

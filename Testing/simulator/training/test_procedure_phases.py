@@ -44,7 +44,7 @@ def test_a_trial_without_a_procedure_has_none_of_its_phases(scenario):
     assert trial.procedure is None
 
 
-def test_an_unknown_procedure_is_refused_with_those_there_are(scenario):
+def test_an_unknown_procedure_is_refused_with_a_list_of_the_known_ones(scenario):
     reply = Trial(scenario).start(procedure="craniotomy")
     assert not reply.ok
     assert "it has dbs, plain" in reply.message
@@ -68,7 +68,7 @@ def test_a_whole_procedure_goes_through_its_phases_with_each_tool(scenario):
     assert len(trial.state.touches) == 15
 
 
-def test_the_times_of_the_phases_add_up_to_the_trial_s_without_pauses(scenario):
+def test_the_phase_times_add_up_to_the_trial_time_without_pauses(scenario):
     trial = at_procedure(scenario, Phase.ALIGNING)
     place_line(trial)
     trial.must(CommandName.PAUSE)
@@ -97,7 +97,7 @@ def test_the_answer_to_a_registration_reveals_nothing_of_the_truth(scenario):
     assert "headToWorld" not in trial.must(CommandName.GET_TRIAL).data
 
 
-def test_what_truly_lies_ahead_of_the_guide_is_recorded_and_never_answered(scenario):
+def test_true_distances_ahead_of_the_guide_are_recorded_and_never_sent_in_an_answer(scenario):
     trial = at_procedure(scenario, Phase.ALIGNING)
     reply = trial.must(CommandName.LOCK_GUIDE, (0.5, 0.0, 0.4), feed=LOCKABLE)
     assert "ahead" not in reply.data
@@ -140,7 +140,7 @@ def test_a_registration_that_is_not_rigid_is_refused(scenario, change):
     assert trial.procedure.registration is None
 
 
-def test_the_plan_is_shown_where_the_registration_has_it(scenario):
+def test_the_plan_is_shown_where_the_registration_places_it(scenario):
     shift = np.array([2.0, -1.0, 0.5])
     trial = at_procedure(scenario, Phase.ALIGNING, shift_mm=shift)
     for line, planned in zip(trial.procedure.trajectories, PROCEDURE.trajectories, strict=True):
@@ -151,7 +151,7 @@ def test_the_plan_is_shown_where_the_registration_has_it(scenario):
 
 
 @pytest.mark.parametrize("shift_mm", [0.0, 4.0])
-def test_the_error_of_a_checkpoint_is_by_the_trainee_s_own_registration(scenario, shift_mm):
+def test_the_error_at_a_checkpoint_follows_from_the_trainees_own_registration(scenario, shift_mm):
     trial = at_procedure(scenario, Phase.VERIFYING, shift_mm=(shift_mm, 0.0, 0.0))
     reply = trial.must(CommandName.CAPTURE, trial.place(VERTEX + np.array([0.0, 3.0, 0.0])))
     expected = math.hypot(shift_mm, 3.0)
@@ -170,7 +170,7 @@ def test_the_error_of_a_checkpoint_is_by_the_trainee_s_own_registration(scenario
         ((0.0, 0.0, 0.0), 2.5, "2.5 mm above the skin"),
     ],
 )
-def test_a_touch_that_is_no_check_is_refused_with_what_would_be_one(
+def test_a_touch_off_every_checkpoint_is_refused_with_what_would_be_right(
     scenario, offset_mm, above_mm, words
 ):
     trial = at_procedure(scenario, Phase.VERIFYING)
@@ -183,7 +183,7 @@ def test_a_touch_that_is_no_check_is_refused_with_what_would_be_one(
     assert [event.kind for event in reply.events] == [EventKind.REJECTED]
 
 
-def test_before_there_is_a_registration_nothing_is_checked_or_accepted(scenario):
+def test_nothing_is_checked_or_accepted_before_there_is_a_registration(scenario):
     trial = Trial(scenario)
     trial.start(procedure="dbs")
     trial.touch(15)
@@ -199,7 +199,7 @@ def test_a_procedure_without_checkpoints_says_so(scenario):
     assert trial.do(CommandName.ACCEPT_REGISTRATION).ok
 
 
-def test_who_registers_again_touches_all_again_and_the_first_attempt_stays_in_the_record(scenario):
+def test_registering_again_repeats_all_touches_and_keeps_the_first_attempt_in_the_record(scenario):
     trial = at_procedure(scenario, Phase.VERIFYING, shift_mm=(9.0, 0.0, 0.0))
     trial.must(CommandName.CAPTURE, trial.place(VERTEX))
     trial.now += 2.0
@@ -223,7 +223,7 @@ def test_who_registers_again_touches_all_again_and_the_first_attempt_stays_in_th
     assert trial.procedure.times_s == pytest.approx({Phase.RUNNING: 4.0, Phase.VERIFYING: 2.0})
 
 
-def test_so_many_attempts_and_checks_are_kept_that_a_record_can_hold_them(scenario, monkeypatch):
+def test_attempts_and_checks_are_limited_to_what_a_record_can_hold(scenario, monkeypatch):
     phases = "rastrainer_simulator.training.procedure_phases"
     monkeypatch.setattr(f"{phases}.MAX_ATTEMPTS", 2)
     monkeypatch.setattr(f"{phases}.MAX_TOUCHED_CHECKPOINTS", 3)
@@ -247,7 +247,7 @@ def test_so_many_attempts_and_checks_are_kept_that_a_record_can_hold_them(scenar
         (0.0801, "80 mm from the skin along its axis: lock it within 80 mm"),
     ],
 )
-def test_a_guide_that_cannot_be_drilled_through_is_not_locked(scenario, skin_m, words):
+def test_a_guide_through_which_nothing_can_be_drilled_is_not_locked(scenario, skin_m, words):
     trial = at_procedure(scenario, Phase.ALIGNING)
     before = trial.state
     reply = trial.do(CommandName.LOCK_GUIDE, feed=Feed(ahead=HeadAhead(skin=skin_m)))
@@ -255,7 +255,7 @@ def test_a_guide_that_cannot_be_drilled_through_is_not_locked(scenario, skin_m, 
     assert trial.state is before
 
 
-def test_the_guide_is_kept_as_it_was_locked_last(scenario):
+def test_the_most_recently_locked_guide_is_recorded(scenario):
     trial = at_procedure(scenario, Phase.DRILLING)
     trial.must(CommandName.RETRACT_DRILL, feed=Feed(0.01, 0.01, AHEAD))
     assert trial.state.phase is Phase.ALIGNING
@@ -274,14 +274,14 @@ def test_a_guide_that_lies_on_the_plan_counts_as_aligned_by_the_robot(scenario):
     assert trial.procedure.present.is_self_aligned
 
 
-def test_a_drill_that_has_cut_bone_stays_in_its_hole_however_far_it_is_drawn_back(scenario):
+def test_a_drill_that_has_cut_bone_must_stay_in_its_hole_however_far_it_is_retracted(scenario):
     trial = at_procedure(scenario, Phase.DRILLING)
     reply = trial.do(CommandName.RETRACT_DRILL, feed=Feed(0.0, 0.0271, AHEAD))
     assert "has cut bone" in reply.message
     assert trial.state.phase is Phase.DRILLING
 
 
-def test_without_a_hole_no_instrument_and_without_a_way_no_release(scenario):
+def test_no_instrument_without_a_hole_and_no_release_inside_the_guide(scenario):
     trial = at_procedure(scenario, Phase.DRILLING)
     assert "Nothing is drilled" in trial.do(CommandName.START_INSERTION, feed=LOCKABLE).message
     exchanged = trial.must(CommandName.START_INSERTION, feed=DRILLED)
@@ -294,7 +294,7 @@ def test_without_a_hole_no_instrument_and_without_a_way_no_release(scenario):
 
 
 @pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
-def test_a_pause_ends_in_the_phase_that_it_began_in(scenario, phase):
+def test_a_pause_returns_to_the_phase_in_which_it_began(scenario, phase):
     trial = at_procedure(scenario, phase)
     said = trial.state.instruction
     elapsed = trial.training.elapsed(trial.now)
@@ -329,7 +329,7 @@ def test_an_abort_ends_a_procedure_in_each_phase(scenario, phase):
         (Phase.INSERTING, CommandName.RELEASE_INSTRUMENT, Feed(0.08, 0.036, AHEAD)),
     ],
 )
-def test_what_could_not_be_written_is_undone_with_the_feed_that_was_there(
+def test_a_change_that_could_not_be_written_is_undone_including_its_feed(
     scenario, phase, command, feed
 ):
     trial = at_procedure(scenario, phase)

@@ -31,14 +31,14 @@ CONTACT = Proximity.CONTACT
         (CONTACT, 0.0, 0.0, "", TrainingState(), None, TouchStage.NEAR),
     ],
 )
-def test_each_stage_is_told_from_the_others(
+def test_each_touch_stage_is_recognized(
     proximity, clearance, depth, obstacle, training, goal, stage
 ):
     now = TouchMoment(1.0, HERE, clearance, depth)
     assert touch_stage(now, proximity, obstacle, training, goal, TrainingSettings()) is stage
 
 
-def test_a_tip_that_rests_where_it_has_just_touched_is_no_error():
+def test_a_tip_resting_where_it_has_just_touched_is_not_an_error():
     last = TouchState("1", (0.001, 0.0, 0.0), 1.0, 1.0)
     training = TrainingState(phase=Phase.RUNNING, next_point="2", touches=(last,))
     now = TouchMoment(2.0, HERE, 0.0)

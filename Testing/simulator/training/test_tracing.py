@@ -54,7 +54,7 @@ def drag(trial, count, first=0, above_mm=0.0, spacing_mm=1.01):
     return events
 
 
-def test_landmarks_are_touched_by_name_in_their_order_with_a_radius_of_their_own(landmarked):
+def test_landmarks_are_touched_by_name_in_order_with_a_radius_of_their_own(landmarked):
     trial = begun(landmarked, "landmarks")
     assert trial.state.method is RegistrationMethod.LANDMARKS
     for number, name in enumerate(NAMES):
@@ -67,7 +67,7 @@ def test_landmarks_are_touched_by_name_in_their_order_with_a_radius_of_their_own
     assert trial.must(CommandName.REGISTER).data["method"] == "landmarks"
 
 
-def test_a_surface_trial_has_three_landmarks_touched_and_then_waits_for_the_trace(landmarked):
+def test_a_surface_trial_touches_three_landmarks_and_then_waits_for_the_trace(landmarked):
     trial = begun(landmarked)
     early = trial.do(CommandName.TRACE, on=True)
     assert early.message == "0 of 3 landmarks are touched: Capture point Nasion before Trace."
@@ -78,13 +78,13 @@ def test_a_surface_trial_has_three_landmarks_touched_and_then_waits_for_the_trac
     assert "0 points are traced: Register needs 30" in trial.do(CommandName.REGISTER).message
 
 
-def test_landmarks_with_a_trace_have_all_of_them_touched_first(landmarked):
+def test_a_landmark_surface_trial_touches_all_landmarks_first(landmarked):
     trial = traced(landmarked, MIN_TRACE_POINTS, "landmarks-surface")
     assert [touch.label for touch in trial.state.touches] == NAMES
     assert trial.state.phase is Phase.COMPLETE
 
 
-def test_the_tip_leaves_a_point_each_millimeter_and_only_on_the_skin(landmarked):
+def test_the_tip_leaves_a_point_every_millimeter_and_only_on_the_skin(landmarked):
     trial = begun(landmarked)
     trial.touch(3)
     trial.must(CommandName.TRACE, on=True)
@@ -97,7 +97,7 @@ def test_the_tip_leaves_a_point_each_millimeter_and_only_on_the_skin(landmarked)
     assert len(trial.state.trace.points) == 6
 
 
-def test_a_point_does_not_raise_the_revision_and_a_stroke_does(landmarked):
+def test_a_traced_point_does_not_raise_the_revision_but_a_stroke_does(landmarked):
     trial = begun(landmarked)
     trial.touch(3)
     before = trial.state.revision
@@ -111,7 +111,7 @@ def test_a_point_does_not_raise_the_revision_and_a_stroke_does(landmarked):
     assert trial.state.revision == before + 2
 
 
-def test_from_thirty_points_on_the_trial_is_registered(landmarked):
+def test_a_trial_can_be_registered_from_thirty_points_on(landmarked):
     trial = traced(landmarked, MIN_TRACE_POINTS - 1)
     assert trial.state.phase is Phase.RUNNING
     assert not trial.do(CommandName.REGISTER).ok
@@ -131,7 +131,7 @@ def test_from_thirty_points_on_the_trial_is_registered(landmarked):
     assert trial.state.phase is Phase.REGISTERED
 
 
-def test_the_five_hundredth_point_ends_the_stroke_and_no_more_are_taken(landmarked):
+def test_the_five_hundredth_point_ends_the_stroke_and_no_more_are_accepted(landmarked):
     trial = traced(landmarked, MAX_TRACE_POINTS + 5)
     assert len(trial.state.trace.points) == MAX_TRACE_POINTS
     assert trial.state.phase is Phase.COMPLETE
@@ -141,7 +141,7 @@ def test_the_five_hundredth_point_ends_the_stroke_and_no_more_are_taken(landmark
     assert trial.must(CommandName.TRACE, on=True).ok
 
 
-def test_undo_takes_back_the_last_stroke_and_then_the_last_landmark(landmarked):
+def test_undo_removes_the_last_stroke_and_then_the_last_landmark(landmarked):
     trial = traced(landmarked, 40)
     stroke(trial, 12, first=100)
     assert trial.must(CommandName.UNDO).data == {
@@ -157,7 +157,7 @@ def test_undo_takes_back_the_last_stroke_and_then_the_last_landmark(landmarked):
     assert trial.state.next_point == NAMES[2]
 
 
-def test_undo_amid_a_stroke_ends_it(landmarked):
+def test_undo_during_a_stroke_ends_it(landmarked):
     trial = traced(landmarked, 8)
     trial.must(CommandName.TRACE, on=True)
     drag(trial, 4, first=100)
@@ -178,7 +178,7 @@ def test_a_pause_ends_the_stroke_and_keeps_its_points(landmarked):
     assert len(trial.state.trace.points) == 31
 
 
-def test_the_points_are_touched_and_traced_again_where_the_registration_is_not_accepted(landmarked):
+def test_landmarks_and_trace_are_repeated_if_the_registration_is_rejected(landmarked):
     trial = traced(landmarked, 30, procedure="dbs")
     trial.must(CommandName.REGISTER)
     trial.must(CommandName.USE_REGISTRATION, **trial.exact_registration())
@@ -195,13 +195,13 @@ def test_the_points_are_touched_and_traced_again_where_the_registration_is_not_a
         ("surface", "has 0 landmarks"),
     ],
 )
-def test_a_method_that_cannot_be_played_is_refused_with_the_reason(scenario, method, said):
+def test_a_method_the_scenario_does_not_support_is_refused_with_the_reason(scenario, method, said):
     reply = Trial(replace(scenario, landmarks=())).start(method=method)
     assert not reply.ok
     assert said in reply.message
 
 
-def test_nothing_is_traced_in_a_trial_of_fiducials(scenario):
+def test_nothing_is_traced_in_a_trial_by_fiducials(scenario):
     trial = Trial(scenario)
     trial.start(method="fiducials")
     assert "method surface" in trial.do(CommandName.TRACE, on=True).message

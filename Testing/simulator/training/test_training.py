@@ -9,9 +9,9 @@ from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.ops.texts.english import ENGLISH
-from rastrainer_simulator.ops.texts.texts import Texts
 from rastrainer_simulator.state import EventKind
+from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.rules import (
     RECORDING_FAILED,
     REFUSALS,
@@ -78,7 +78,7 @@ MOMENTS = {
 
 
 @pytest.mark.parametrize(("name", "phase"), list(itertools.product(RIGHT, Phase)))
-def test_each_command_is_carried_out_in_its_phases_and_else_refused_with_what_would_be_right(
+def test_each_command_is_carried_out_in_its_phases_and_otherwise_refused_with_advice(
     scenario, name, phase
 ):
     trial = in_phase(scenario, phase)
@@ -98,12 +98,12 @@ def test_each_command_is_carried_out_in_its_phases_and_else_refused_with_what_wo
         assert "None" not in reply.message
 
 
-def test_every_command_of_the_simulation_has_its_phases_stated():
+def test_every_command_of_the_simulation_has_its_phases_defined():
     assert set(RIGHT) <= set(REFUSALS)
     assert {key for phases in REFUSALS.values() for key in phases.values()} <= set(ENGLISH)
 
 
-def test_a_whole_trial_goes_through_its_phases_and_says_what_is_next(scenario):
+def test_a_whole_trial_goes_through_its_phases_and_says_what_comes_next(scenario):
     trial = Trial(scenario)
     trial.start()
     assert trial.state.instruction == "P01, touch point 1."
@@ -120,7 +120,7 @@ def test_a_whole_trial_goes_through_its_phases_and_says_what_is_next(scenario):
     assert "81 of 100" in trial.state.instruction
 
 
-def test_a_touch_keeps_where_the_tip_was_and_when(scenario):
+def test_a_touch_records_where_the_tip_was_and_when(scenario):
     trial = Trial(scenario)
     trial.start()
     trial.now += 2.5
@@ -156,7 +156,7 @@ def test_a_touch_above_the_skin_is_refused_with_its_height_and_the_direction_to_
     assert reply.events[0].data["clearanceMm"] == pytest.approx(3.2)
 
 
-def test_by_the_rule_of_the_paper_a_touch_counts_at_any_height_within_the_radius(scenario):
+def test_under_the_papers_rule_a_touch_counts_at_any_height_within_the_radius(scenario):
     anywhere = TrainingSettings(touch_rule=TouchRule.WITHIN_RADIUS)
     trial = Trial(scenario, settings=anywhere)
     trial.start()
@@ -164,7 +164,7 @@ def test_by_the_rule_of_the_paper_a_touch_counts_at_any_height_within_the_radius
     assert trial.do(CommandName.CAPTURE, (x, y, z + 0.009), above_mm=9.0).ok
 
 
-def test_a_touch_too_far_away_is_refused_with_the_rule_and_not_with_how_far_it_is(scenario):
+def test_a_touch_too_far_away_is_refused_with_the_rule_but_not_the_distance(scenario):
     trial = Trial(scenario)
     trial.start()
     x, y, z = trial.fiducial("1")
@@ -183,7 +183,7 @@ def test_touching_another_fiducial_is_refused_as_the_wrong_point(scenario):
     )
 
 
-def test_undo_takes_back_the_last_touch_also_after_the_fifteenth(scenario):
+def test_undo_removes_the_last_touch_even_after_the_fifteenth(scenario):
     trial = in_phase(scenario, Phase.COMPLETE)
     reply = trial.do(CommandName.UNDO)
     assert trial.state.phase is Phase.RUNNING
@@ -215,7 +215,7 @@ def test_completion_time_runs_from_the_start_to_the_last_kept_touch_without_paus
     assert trial.do(CommandName.REGISTER).data["completionTimeS"] == pytest.approx(7.0)
 
 
-def test_after_undoing_the_fifteenth_touch_the_time_has_continued(scenario):
+def test_after_undoing_the_fifteenth_touch_the_clock_has_kept_running(scenario):
     trial = in_phase(scenario, Phase.COMPLETE)
     trial.now += 5.0
     trial.do(CommandName.UNDO)
@@ -223,7 +223,7 @@ def test_after_undoing_the_fifteenth_touch_the_time_has_continued(scenario):
     assert trial.state.touches[-1].elapsed == pytest.approx(5.0)
 
 
-def test_where_the_head_is_stays_secret_until_a_registration_is_submitted(scenario):
+def test_the_head_pose_stays_secret_until_a_registration_is_submitted(scenario):
     trial = in_phase(scenario, Phase.REGISTERED)
     assert "headToWorld" not in trial.do(CommandName.GET_TRIAL).data
     answer = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION).data
@@ -240,7 +240,7 @@ def test_the_true_errors_of_a_perfect_registration_of_perfect_touches_are_zero(s
     assert max(answer["touchErrorsMm"].values()) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_the_true_errors_of_a_registration_that_is_off_by_a_shift_are_the_shift(scenario):
+def test_the_true_errors_of_a_shifted_registration_are_the_shift(scenario):
     trial = Trial(scenario)
     trial.start()
     trial.touch(14)
@@ -255,7 +255,7 @@ def test_the_true_errors_of_a_registration_that_is_off_by_a_shift_are_the_shift(
     assert answer["touchErrorsMm"]["15"] == pytest.approx(4.0)
 
 
-def test_a_registration_that_arrives_twice_is_answered_twice_and_kept_once(scenario):
+def test_a_registration_that_arrives_twice_is_answered_twice_and_stored_once(scenario):
     trial = in_phase(scenario, Phase.REGISTERED)
     first = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION)
     second = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION)
@@ -291,7 +291,7 @@ def test_a_score_that_arrives_twice_counts_once(scenario):
     assert second.events == ()
 
 
-def test_details_of_a_score_that_fit_no_journal_line_are_refused_before_they_get_here():
+def test_score_details_too_long_for_a_journal_line_are_refused_early():
     score = {"trialId": "12345678-1234-4234-8234-123456789abc", **SCORE}
     assert check_arguments(CommandName.TRIAL_SCORED, score | {"details": {"a": "x" * 60_000}})
     with pytest.raises(InputError, match="at most 65536 characters"):
@@ -317,13 +317,13 @@ def test_an_abort_that_arrives_late_does_not_end_the_next_trial(scenario):
     assert trial.do(CommandName.ABORT, trialId=trial.state.trial_id).ok
 
 
-def test_an_unknown_task_is_refused_with_the_tasks_there_are(scenario):
+def test_an_unknown_task_is_refused_with_a_list_of_the_known_ones(scenario):
     reply = Trial(scenario).start(task="task-9")
     assert not reply.ok
     assert "task-1" in reply.message
 
 
-def test_the_head_is_elsewhere_in_every_trial_and_equally_with_the_same_seed(scenario):
+def test_the_head_pose_differs_between_trials_and_repeats_with_the_same_seed(scenario):
     poses = []
     for seed in (1, 2, 1):
         trial = Trial(scenario)
@@ -354,7 +354,7 @@ def test_between_trials_the_head_is_at_its_nominal_pose(scenario):
     assert trial.state.instruction == "P01, the trial was aborted. Choose a task to start again."
 
 
-def test_every_change_that_must_last_raises_the_revision_and_nothing_else_does(scenario):
+def test_only_changes_that_must_persist_raise_the_revision(scenario):
     trial = Trial(scenario)
     revisions = [trial.state.revision]
     trial.start()
@@ -405,7 +405,7 @@ def test_a_start_that_could_not_be_written_leaves_no_trial(scenario):
     assert np.array_equal(trial.training.truth.head_to_world, scenario.head_to_world)
 
 
-def test_the_sentences_can_be_translated_and_what_is_missing_is_said_in_english(scenario):
+def test_sentences_can_be_translated_and_missing_ones_fall_back_to_english(scenario):
     texts = Texts({"start": "{trainee}, berühre Punkt {point}."})
     trial = Trial(scenario, texts=texts)
     trial.start()

@@ -50,7 +50,7 @@ def seen_in_ras(head_to_world, point):
 
 @pytest.mark.parametrize("seed", SEEDS, ids=str)
 @pytest.mark.parametrize(("made", "task"), HEADS, indirect=["made"])
-def test_every_touch_is_seen_within_60_degrees_of_the_normal(made, mesh, views, task, seed):
+def test_every_touch_is_visible_within_60_degrees_of_the_normal(made, mesh, views, task, seed):
     scenario = made.scenario
     head_to_world = pose_of(scenario, seed)
     chosen = scenario.task(task)
@@ -72,7 +72,7 @@ def degrees(a, b):
     return math.degrees(math.acos(np.dot(a, b) / np.linalg.norm(a) / np.linalg.norm(b)))
 
 
-def test_the_usual_camera_alone_leaves_many_touches_hidden(setup):
+def test_the_default_camera_alone_leaves_many_touches_hidden(setup):
     scenario = setup.scenario
     mesh = read_head_mesh(scenario.head_mesh)
     hidden = 0

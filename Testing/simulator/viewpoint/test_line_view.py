@@ -40,7 +40,7 @@ def test_the_line_runs_down_the_middle_of_the_picture_with_the_tool_above_it(nam
 
 
 @pytest.mark.parametrize("name", LINES)
-def test_it_is_looked_at_from_the_side_of_the_trainees_eye(name):
+def test_the_line_is_viewed_from_the_trainees_side(name):
     line = LINES[name]
     pose = across_line(EYE, line, line.entry)
     away = np.array(pose.position) - pose.focal_point
@@ -49,7 +49,7 @@ def test_it_is_looked_at_from_the_side_of_the_trainees_eye(name):
     assert away @ (np.array(EYE) - pose.focal_point) >= 0.0
 
 
-def test_a_tool_that_is_far_away_makes_the_line_no_smaller_than_can_be_seen():
+def test_a_faraway_tool_does_not_shrink_the_line_beyond_visibility():
     pose = across_line(EYE, LINES["sloping"], (1.5, 1.5, 1.5))
     shown = 2.0 * AWAY_M * math.tan(math.radians(pose.angle_deg) / 2.0)
     assert shown == pytest.approx(TALLEST_M)

@@ -31,20 +31,20 @@ def camera(scenario, request):
     return scenario.cameras[request.param]
 
 
-def test_a_view_that_is_not_turned_is_the_scenarios_camera_bit_by_bit(camera):
+def test_an_unturned_view_is_the_scenarios_camera_bit_for_bit(camera):
     pose = camera_pose(camera)
     assert pose.position == tuple((camera.position / MM_PER_M).tolist())
     assert pose.focal_point == tuple((camera.focal_point / MM_PER_M).tolist())
     assert pose.angle_deg == camera.view_angle_deg
 
 
-def test_an_orbit_leads_to_the_eye_it_was_made_for(camera):
+def test_an_orbit_reaches_the_eye_position_it_was_made_for(camera):
     pose = camera_pose(camera, orbit_to(camera, EYE, FIDUCIAL))
     np.testing.assert_allclose(pose.position, EYE, atol=1e-12)
     np.testing.assert_allclose(pose.focal_point, FIDUCIAL, atol=1e-12)
 
 
-def test_a_turn_to_the_right_brings_the_eye_to_the_right_of_the_picture(scenario):
+def test_turning_right_brings_the_eye_to_the_right_of_the_picture(scenario):
     camera = scenario.cameras["close-up"]
     before, after = camera_pose(camera), camera_pose(camera, Orbit(azimuth_deg=10.0))
     # This camera looks along World's y: x is to the right.
@@ -53,7 +53,7 @@ def test_a_turn_to_the_right_brings_the_eye_to_the_right_of_the_picture(scenario
     assert heading_deg(camera) == pytest.approx(90.0)
 
 
-def test_no_turn_leads_under_the_table_overhead_into_the_head_or_out_of_the_room(camera):
+def test_no_turn_goes_under_the_table_overhead_into_the_head_or_out_of_the_room(camera):
     for orbit in (Orbit(elevation_deg=-180.0, zoom=1e-6), Orbit(elevation_deg=180.0, zoom=1e6)):
         pose = camera_pose(camera, limited(camera, orbit))
         line = np.subtract(pose.position, pose.focal_point)
@@ -74,7 +74,7 @@ def test_held_buttons_turn_the_view_for_as_long_as_they_are_held(scenario):
     assert control.orbit == stopped
 
 
-def test_the_view_goes_gently_by_the_shorter_way_and_arrives(scenario):
+def test_the_view_moves_smoothly_along_the_shorter_way_and_arrives(scenario):
     camera, control = scenario.cameras["close-up"], ViewControl()
     control.turn(camera, 170.0, 0.0, 1.0)
     goal = Orbit(azimuth_deg=-170.0, zoom=0.5)
@@ -88,7 +88,7 @@ def test_the_view_goes_gently_by_the_shorter_way_and_arrives(scenario):
     assert turns[-1] == pytest.approx(20.0)
 
 
-def test_a_way_taken_by_itself_waits_while_a_stick_is_deflected(scenario):
+def test_an_automatic_view_change_waits_while_a_stick_is_deflected(scenario):
     camera, control = scenario.cameras["close-up"], ViewControl()
     control.go(Orbit(azimuth_deg=90.0), is_automatic=True)
     control.advance(0.2, camera, STILL, is_arm_still=True)
@@ -101,7 +101,7 @@ def test_a_way_taken_by_itself_waits_while_a_stick_is_deflected(scenario):
     assert control.is_automatic
 
 
-def test_a_hand_on_the_view_ends_its_way(scenario):
+def test_turning_the_view_by_hand_ends_its_automatic_motion(scenario):
     camera, control = scenario.cameras["close-up"], ViewControl()
     control.go(Orbit(azimuth_deg=90.0), is_automatic=True)
     control.turn(camera, 5.0, 0.0, 1.0)
@@ -110,7 +110,7 @@ def test_a_hand_on_the_view_ends_its_way(scenario):
     assert not control.is_automatic
 
 
-def test_another_camera_begins_as_it_is(scenario):
+def test_another_camera_starts_unturned(scenario):
     control = ViewControl()
     control.use("close-up")
     control.turn(scenario.cameras["close-up"], 30.0, 10.0, 0.8)
@@ -120,7 +120,7 @@ def test_another_camera_begins_as_it_is(scenario):
     assert control.orbit == FRONT
 
 
-def test_the_picture_along_the_skin_shows_more_the_farther_the_tip_is():
+def test_the_view_along_the_skin_widens_the_farther_the_tip_is():
     eye, normal = (0.72, 0.1, 0.25), (0.0, 1.0, 0.0)
     near, far, farther = (
         along_skin(eye, FIDUCIAL, normal, (0.5, 0.1 + away, 0.25)) for away in (0.0, 0.1, 5.0)

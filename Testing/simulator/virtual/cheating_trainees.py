@@ -66,7 +66,7 @@ def play_honestly(
     return notes.played(simulation)
 
 
-def aim_beside(
+def aim_off_target(
     setup: SimulationSetup, task: str, seed: int, bias_mm: tuple[float, float, float] | None = None
 ) -> PlayedTrial:
     """Play honestly, but aim beside every fiducial by the same vector of World, mm.
@@ -128,7 +128,7 @@ def drag(setup: SimulationSetup, task: str, seed: int) -> PlayedTrial:
 
 CHEATS: dict[str, Callable[[SimulationSetup, str, int], PlayedTrial]] = {
     "hover": hover,
-    "aim-beside": aim_beside,
+    "aim-beside": aim_off_target,
     "drag": drag,
     "press": press,
 }

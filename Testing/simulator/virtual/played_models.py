@@ -31,7 +31,7 @@ from Testing.simulator.virtual.drawn_pictures import DrawnPictures
 from Testing.simulator.virtual.looking_trainee import LookingTrainee
 from Testing.simulator.virtual.reading_trainee import ReadingTrainee
 from Testing.simulator.virtual.trained_pad import TrainedPad
-from Testing.without_tutorial import leave_tutorial_out
+from Testing.without_tutorial import skip_tutorial
 
 LIMIT_S = 300.0
 """A trial ends here: the trial run lasts five minutes, and no model has longer for a task."""
@@ -106,7 +106,7 @@ def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Ite
         is_slicer_connected=lambda: True,
         quit=lambda: None,
     )
-    leave_tutorial_out(services.config)
+    skip_tutorial(services.config)
     if model == "reads":
         # The view stays, so that directions keep their meaning to who does not see it turn.
         path = services.config / PREFERENCES_FILE
@@ -125,7 +125,7 @@ def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Ite
             yield trainee
         finally:
             trainee.close()
-            gamepad.plug_out()
+            gamepad.unplug()
             running.close()
 
 

@@ -8,9 +8,9 @@ import re
 import numpy as np
 
 from rastrainer.protocol import Phase
-from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import Trainee
-from Testing.simulator.virtual.places_of_points import PlacesOfPoints, outward, surface_at
+from Testing.simulator.virtual.candidate_points import CandidatePoints, outward, surface_at
 from Testing.simulator.virtual.trained_pad import TrainedPad
 
 READ_STEPS = 6
@@ -62,7 +62,7 @@ class ReadingTrainee:
         self._pressed_at = self._at
         self._tilt = np.zeros(3)
         self._lowered = 0
-        self._places = PlacesOfPoints()
+        self._places = CandidatePoints()
 
     def play(self, limit_s: float) -> None:
         """Go on until all points are touched, or until the trial has lasted so long."""

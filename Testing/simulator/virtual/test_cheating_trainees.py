@@ -45,7 +45,7 @@ def touch_errors(played):
     return record.positions_mm - np.array(fiducials)
 
 
-def test_honest_play_presses_well_under_a_millimeter_and_touches_what_it_means(honest):
+def test_honest_play_presses_well_under_a_millimeter_and_has_little_unintended_contact(honest):
     motion = honest.record.motion
     assert motion["pressing_depth_mm"] < 0.6
     assert motion["unintended_contact_time_s"] < 0.5
@@ -57,7 +57,7 @@ def test_the_record_has_the_metrics_of_the_trajectory(honest):
     assert honest.record.motion == trial_motion(honest.trajectory)
 
 
-def test_dragging_from_fiducial_to_fiducial_is_unintended_nearly_all_of_the_way(cheat):
+def test_dragging_from_fiducial_to_fiducial_counts_as_unintended_contact_nearly_all_the_way(cheat):
     motion = cheat("drag").record.motion
     # Five millimeters about each touch belong to it: ten on each of fourteen ways.
     expected_mm = motion["path_between_touches_mm"] - 14 * 10.0
@@ -65,14 +65,14 @@ def test_dragging_from_fiducial_to_fiducial_is_unintended_nearly_all_of_the_way(
     assert motion["unintended_contact_time_s"] > 0.4 * motion["completion_time_s"]
 
 
-def test_pressing_two_millimeters_in_at_each_touch_is_two_millimeters_deep(cheat):
+def test_pressing_in_two_millimeters_at_each_touch_is_measured_as_two_millimeters(cheat):
     played = cheat("press")
     assert played.record.motion["pressing_depth_mm"] == pytest.approx(2.0, abs=0.05)
     assert played.record.motion["unintended_contact_time_s"] == 0.0
     assert np.linalg.norm(touch_errors(played), axis=1).max() < 0.5
 
 
-def test_hovering_has_no_contact_and_one_error_for_all_touches(cheat):
+def test_hovering_makes_no_contact_and_gives_all_touches_the_same_error(cheat):
     played = cheat("hover")
     motion, errors = played.record.motion, touch_errors(played)
     assert played.record.touch_rule == TouchRule.WITHIN_RADIUS.value
@@ -81,7 +81,7 @@ def test_hovering_has_no_contact_and_one_error_for_all_touches(cheat):
     assert np.ptp(errors, axis=0).max() < 0.05
 
 
-def test_hovering_is_refused_where_a_touch_has_to_be_on_the_skin(setup, task):
+def test_hovering_is_refused_where_a_touch_must_be_on_the_skin(setup, task):
     pilot = Pilot(setup, task, SEED)
     place, normal = pilot.fiducials[0], pilot.normals[0]
     pilot.carry_to(place + 9.0 * normal, normal)
@@ -89,9 +89,7 @@ def test_hovering_is_refused_where_a_touch_has_to_be_on_the_skin(setup, task):
         pilot.touch()
 
 
-def test_a_common_bias_of_the_aim_moves_all_touches_alike_along_the_skin(
-    setup, task, honest, cheat
-):
+def test_a_common_aiming_bias_shifts_all_touches_equally_along_the_skin(setup, task, honest, cheat):
     bias = np.array(along_skin(setup, task, SEED, BIAS_MM))
     played = cheat("aim-beside")
     mean = (touch_errors(played) - touch_errors(honest)).mean(axis=0)
@@ -100,13 +98,13 @@ def test_a_common_bias_of_the_aim_moves_all_touches_alike_along_the_skin(
 
 
 @pytest.mark.parametrize("way", CHEATS)
-def test_no_cheat_has_more_than_40_points_or_passes(setup, cheat, way):
+def test_no_cheat_scores_more_than_40_points_or_passes(setup, cheat, way):
     score = score_of(setup, cheat(way))
     assert score.score <= 40.0
     assert not passes(score.score, score.acceptable, PASS_MARK)
 
 
-def test_honest_play_is_acceptable_and_worth_far_more(setup, honest):
+def test_honest_play_is_acceptable_and_scores_far_more(setup, honest):
     score = score_of(setup, honest)
     assert score.acceptable
     assert score.score > 50.0
@@ -115,7 +113,7 @@ def test_honest_play_is_acceptable_and_worth_far_more(setup, honest):
 @pytest.mark.soak
 @pytest.mark.parametrize("way", CHEATS)
 @pytest.mark.parametrize("head", planned_heads.HEADS)
-def test_no_cheat_has_more_than_40_points_or_passes_on_another_head(head, way, tmp_path):
+def test_no_cheat_scores_more_than_40_points_or_passes_on_another_head(head, way, tmp_path):
     other = planned_heads.setup_of(head, tmp_path)
     score = score_of(other, CHEATS[way](other, "task-1", SEED))
     assert score.score <= 40.0

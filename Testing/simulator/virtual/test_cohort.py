@@ -69,7 +69,7 @@ def test_the_scatter_of_the_aim_is_recovered_from_the_registrations(data):
     assert fle_of["hmd"] > 1.5 * fle_of["desktop"]
 
 
-def test_no_trainee_is_held_up_at_a_fiducial(played):
+def test_no_trainee_gets_stuck_at_a_fiducial(played):
     with Study.open(played / DATABASE) as study:
         records = [trial.record for i in (1, 2) for trial in study.history(f"V000{i}")]
     waits = [np.diff([point.sim_time_s for point in record.points]) for record in records]
@@ -77,7 +77,7 @@ def test_no_trainee_is_held_up_at_a_fiducial(played):
     assert np.max(waits) < STUCK_AFTER_S
 
 
-def test_the_truth_is_stored_beside_the_study(played):
+def test_the_ground_truth_is_stored_beside_the_study(played):
     truth = json.loads((played / TRUTH).read_text())
     assert truth["seed"] == 7
     assert truth["population"]["modes"]["hmd"]["aim"] == AIM_FACTOR
@@ -98,7 +98,7 @@ def test_equal_jobs_give_equal_trials_whatever_was_played_before_and_in_which_pr
 @pytest.mark.parametrize(
     ("engine", "workers"), [("processes", 2), pytest.param("dask", 1, marks=pytest.mark.soak)]
 )
-def test_every_engine_gives_the_results_in_the_order_of_the_jobs(engine, workers):
+def test_every_engine_returns_the_results_in_job_order(engine, workers):
     found = list(run_jobs(squared, range(20), engine, workers))
     assert found == [number * number for number in range(20)]
 
@@ -117,14 +117,14 @@ def test_a_scheduler_that_is_missing_is_reported():
         list(run_jobs(squared, [1], "dask", address="tcp://127.0.0.1:1"))
 
 
-def test_a_folder_that_holds_something_is_not_touched(protocol, population, tmp_path):
+def test_a_folder_that_is_not_empty_is_left_alone(protocol, population, tmp_path):
     (tmp_path / "thesis.txt").write_text("mine")
     with pytest.raises(InputError, match="is not empty"):
         simulate_cohort(protocol, population, 2, 0, tmp_path, PlaySettings(), workers=1)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
-def test_trials_that_are_not_registered_by_fiducials_are_not_played(protocol, population, tmp_path):
+def test_trials_not_registered_by_fiducials_are_not_played(protocol, population, tmp_path):
     by_trace = replace(protocol, methods={"task-1": "surface"})
     with pytest.raises(InputError, match="Virtual trainees touch fiducials: leave the protocol's"):
         simulate_cohort(by_trace, population, 2, 0, tmp_path / "study", PlaySettings(), workers=1)
@@ -160,7 +160,7 @@ def test_power_grows_with_the_repetitions_of_the_protocol(capsys, tmp_path):
     assert float(shares[1]) > float(shares[0]) + 15
 
 
-def test_what_is_true_of_drawn_trainees_can_be_said_by_options(capsys):
+def test_properties_of_simulated_trainees_can_be_set_by_options(capsys):
     """Haste that costs accuracy makes errors scatter: the same effect is found less often."""
     shares = []
     for haste in ([], ["--tempo-spread", "0.5", "--trade-off", "1", "--interaction", "0.2"]):
@@ -187,7 +187,7 @@ def test_what_is_true_of_drawn_trainees_can_be_said_by_options(capsys):
         (["-o", "x", "--protocol", "missing.json"], "missing.json"),
     ],
 )
-def test_bad_arguments_are_one_sentence(words, sentence, capsys, tmp_path, monkeypatch):
+def test_bad_arguments_give_a_one_sentence_error(words, sentence, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["simulate-cohort", *words]) == 2
     printed = capsys.readouterr().err

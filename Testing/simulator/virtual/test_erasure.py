@@ -11,8 +11,8 @@ from rastrainer.study.study_data import read_study_data
 from rastrainer.study.trainee_data import erase_trainee
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.flow.session.trainee_history import FinishedTutorials
-from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
-from rastrainer_simulator.record.journal import Journal
+from rastrainer_simulator.record.journal_writer import Journal
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.virtual.cohort import DATABASE, RECORDS
 
 
@@ -45,7 +45,7 @@ def test_no_byte_of_the_trainee_is_left(copied, tmp_path, capsys):
     assert len(journals(copied / RECORDS)) == 2
 
 
-def test_damaged_and_unfinished_journals_of_the_trainee_go_too(copied):
+def test_damaged_and_unfinished_journals_of_the_trainee_are_deleted_too(copied):
     folder = copied / RECORDS
     first = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
     content = first.read_bytes()
@@ -55,7 +55,7 @@ def test_damaged_and_unfinished_journals_of_the_trainee_go_too(copied):
     assert b"V0001" not in bytes_below(folder)
 
 
-def test_a_journal_whose_first_line_is_damaged_goes_by_its_trial_or_is_named(copied, capsys):
+def test_a_journal_with_a_damaged_first_line_is_deleted_by_its_trial_or_named(copied, capsys):
     folder = copied / RECORDS
     own = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
     unknown = folder / "20260101T000000Z_00000000-0000-0000-0000-000000000000.journal"
@@ -84,7 +84,7 @@ def test_journals_that_would_be_left_elsewhere_are_named(copied, tmp_path, capsy
     assert all(f"*_{trial_id}.journal" in printed for trial_id in ids)
 
 
-def test_a_journal_that_is_being_written_stops_the_deletion_before_it_starts(copied):
+def test_a_journal_being_written_stops_the_deletion_before_it_starts(copied):
     folder = copied / RECORDS
     path = next(p for p in journals(folder) if read_journal(p).header["trainee"] == "V0001")
     journal = Journal.reopened(read_journal(path))

@@ -49,7 +49,7 @@ def test_the_bids_validator_finds_no_error(exported):
     assert len(list(exported.glob("bids/sub-*/motion/*_motion.tsv"))) == 4
 
 
-def test_the_bids_samples_are_those_of_the_journal(played, exported):
+def test_the_bids_samples_match_those_of_the_journal(played, exported):
     (path,) = exported.glob("bids/sub-V0001/motion/*acq-hmd*_motion.tsv")
     values = np.loadtxt(path, delimiter="\t")
     trial = next(
@@ -63,7 +63,7 @@ def test_the_bids_samples_are_those_of_the_journal(played, exported):
     assert trial_motion(trajectory)["sparc"] == trial.values["sparc"]
 
 
-def test_a_tidy_table_has_a_row_a_trial_and_units_in_its_columns(exported):
+def test_a_tidy_table_has_one_row_per_trial_and_units_in_its_columns(exported):
     rows = list(csv.DictReader((exported / "csv" / "trials.csv").open()))
     assert len(rows) == 4
     assert {"trainee", "mode", "task", "completion_time_s", "rmse_mm", "ctps", "score"} <= set(
@@ -150,25 +150,25 @@ def points_of(markups):
     return np.array([markups.GetNthControlPointPosition(i) for i in range(count)])
 
 
-def test_itk_text_is_in_lps_and_from_the_parent():
+def test_itk_text_is_in_lps_and_maps_from_the_parent():
     assert transform_text(transforms.rigid(np.eye(3), [1.0, 2.0, 3.0])).splitlines()[3] == (
         "Parameters: 1.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 1.0 1.0 2.0 -3.0"
     )
 
 
-def test_labels_of_participants_are_plain_and_differ():
+def test_participant_labels_are_plain_and_distinct():
     labels = participant_labels(("T-1", "T1", "../..", "Ä", "t1"))
     assert len({label.lower() for label in labels.values()}) == 5
     assert all(label.isascii() and label.isalnum() for label in labels.values())
 
 
-def test_exports_never_mix_with_what_is_there(played, exported, capsys):
+def test_exports_never_mix_with_existing_files(played, exported, capsys):
     words = ["export", played / DATABASE, "-o", exported, "--format", "csv"]
     assert main([str(word) for word in words]) == 2
     assert "is not empty" in capsys.readouterr().err
 
 
-def test_motion_bids_without_journals_is_refused(played, tmp_path, capsys):
+def test_exporting_motion_bids_without_journals_is_refused(played, tmp_path, capsys):
     words = ["export", played / DATABASE, "-o", tmp_path / "x", "--format", "bids"]
     assert main([str(word) for word in words]) == 2
     assert "give their folder with --records" in capsys.readouterr().err

@@ -101,7 +101,7 @@ def is_worker(pid):
 
 
 @pytest.mark.soak
-def test_a_job_that_kills_every_worker_of_dask_is_named_too(tmp_path):
+def test_a_job_that_kills_every_dask_worker_is_named_too(tmp_path):
     """It is alone: Dask blames all jobs that were at a worker when it died."""
     function = functools.partial(squared_by_mortals, tmp_path, {1}, ATTEMPTS + 1)
     with pytest.raises(WorkerDiedError, match=r"job 1 cannot be played.* at the same worker"):
@@ -109,18 +109,18 @@ def test_a_job_that_kills_every_worker_of_dask_is_named_too(tmp_path):
 
 
 @pytest.mark.soak
-def test_a_worker_of_dask_that_is_killed_once_is_replaced(tmp_path):
+def test_a_dask_worker_that_is_killed_once_is_replaced(tmp_path):
     function = functools.partial(squared_by_mortals, tmp_path, {1}, 1)
     assert list(run_jobs(function, range(3), "dask", workers=1)) == [0, 1, 4]
 
 
-def test_an_error_in_a_worker_is_raised_with_its_place_and_no_worker_is_left():
+def test_an_error_in_a_worker_is_raised_with_its_location_and_no_worker_is_left():
     with pytest.raises(RuntimeError, match="not 0"):
         list(run_jobs(refused, range(3), workers=2))
     assert not any(map(is_worker, started_by(os.getpid())))
 
 
-def test_all_workers_have_jobs_and_end_with_the_run():
+def test_all_workers_get_jobs_and_end_with_the_run():
     pids = set(run_jobs(own_process, range(12), workers=2))
     assert len(pids) == 2
     assert os.getpid() not in pids
@@ -142,7 +142,7 @@ def test_a_cohort_whose_workers_are_killed_is_the_same_to_the_last_bit(
 
 
 @pytest.mark.parametrize("missing", [1, pytest.param(3, marks=pytest.mark.soak)])
-def test_a_resumed_cohort_is_the_uninterrupted_one_to_the_last_bit(
+def test_a_resumed_cohort_equals_an_uninterrupted_one_to_the_last_bit(
     missing, played, copied, protocol, population
 ):
     without_last_trials(copied, missing)
@@ -174,7 +174,7 @@ def test_trials_of_a_deleted_trainee_are_not_played_again(copied, protocol, popu
 @pytest.mark.parametrize(
     ("seed", "step_s", "different"), [(8, 0.05, "seed"), (7, 0.04, "step"), (8, 0.04, "seed, step")]
 )
-def test_a_cohort_is_resumed_with_its_own_options_only(
+def test_a_cohort_is_resumed_only_with_its_own_options(
     seed, step_s, different, copied, protocol, population
 ):
     settings = PlaySettings(step_s=step_s)
@@ -203,7 +203,7 @@ def test_an_incomplete_cohort_is_neither_reported_nor_exported(copied, tmp_path,
         assert not (tmp_path / command).exists()
 
 
-def test_an_incomplete_cohort_is_reported_when_asked_for_and_the_page_says_so(copied, tmp_path):
+def test_an_incomplete_cohort_is_reported_on_request_and_the_page_says_so(copied, tmp_path):
     without_last_trials(copied, 1)
     words = ["report", str(copied / DATABASE), "-o", str(tmp_path / "page"), "--incomplete"]
     assert main(words) == 0
@@ -211,7 +211,7 @@ def test_an_incomplete_cohort_is_reported_when_asked_for_and_the_page_says_so(co
     assert "3 of 4 trials are stored. What follows is about these trials alone." in page
 
 
-def test_a_cohort_without_any_trial_yet_is_reported_too(tmp_path):
+def test_a_cohort_without_any_trials_yet_is_reported_too(tmp_path):
     with Study.open(tmp_path / DATABASE) as study:
         CohortStore(study).start({"seed": 1}, 40)
     with pytest.raises(IncompleteStudyError, match="0 of 40 trials"):
@@ -244,7 +244,7 @@ def whole(tmp_path_factory):
 
 @pytest.mark.soak
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGKILL])
-def test_a_command_that_is_stopped_leaves_a_study_that_the_same_command_resumes(
+def test_a_stopped_command_leaves_a_study_that_the_same_command_resumes(
     stop, whole, tmp_path, capsys
 ):
     """The signal reaches the process group, as Ctrl-C in a terminal does."""

@@ -10,7 +10,7 @@ from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, RangeCame
 from Testing.domain.registration.traces import colin27
 
 
-def test_every_scanned_point_lies_on_skin_that_nothing_hides():
+def test_every_scanned_point_lies_on_unoccluded_skin():
     head = colin27()
     camera = RangeCamera(head.middle + np.array([250.0, 400.0, 50.0]), 1.0, spacing_mm=16.0)
     seen = camera.seen(head)
@@ -31,7 +31,7 @@ def test_the_noise_of_a_scan_lies_along_its_rays():
     assert np.std(along) == pytest.approx(1.0, abs=0.15)
 
 
-def test_a_camera_that_sees_too_little_gets_a_sentence():
+def test_a_camera_that_sees_too_little_is_refused_with_a_message():
     head = colin27()
     with pytest.raises(InputError, match="range camera sees"):
         RangeCamera(head.middle + np.array([0.0, 500.0, 0.0]), 1.0, spacing_mm=90.0).seen(head)
@@ -53,7 +53,7 @@ def test_noise_is_stated_with_its_source_for_every_method_and_screws_are_off_the
     assert markers.is_on_skin
 
 
-def test_a_ray_beside_the_surface_meets_nothing():
+def test_a_ray_that_misses_the_surface_hits_nothing():
     corners = np.array([[0.0, 0, 0], [100, 0, 0], [0, 100, 0], [0, 0, 100]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     seen = RangeCamera(np.array([300.0, 300.0, 300.0]), 0.0, 4.0).seen(HeadMesh(corners, faces))

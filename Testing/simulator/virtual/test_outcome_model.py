@@ -87,7 +87,7 @@ def test_with_an_effect_intervals_cover_and_power_is_as_computed():
 
 
 @pytest.mark.parametrize("alternating", [False, True])
-def test_the_quick_rates_are_those_of_the_report(alternating):
+def test_the_fast_rejection_rates_match_those_of_the_report(alternating):
     truth = model(mode_time={"hmd": 1.05}, carries_practice=True)
     orders = [MODES[:: -1 if place % 2 and alternating else 1] for place in range(9)]
     quick = rejection_rates(truth, 9, MODES, 12, seed=9, orders=orders)
@@ -114,7 +114,7 @@ def test_orders_that_no_rank_test_can_compare_are_never_rejected_by_one():
 
 
 @pytest.mark.soak
-def test_practice_that_continues_over_the_modes_biases_a_fixed_order_and_not_a_balanced_one():
+def test_practice_carried_over_between_modes_biases_a_fixed_order_but_not_a_balanced_one():
     truth = model(mode_time={"hmd": 1.05}, learning=0.2, carries_practice=True)
     fixed = rejection_rates(truth, 16, MODES, 300, seed=4)[0]
     balanced = rejection_rates(truth, 16, MODES, 300, seed=4, orders=[MODES, MODES[::-1]] * 8)[0]
@@ -123,7 +123,7 @@ def test_practice_that_continues_over_the_modes_biases_a_fixed_order_and_not_a_b
     assert fixed.true_difference == balanced.true_difference > 0
 
 
-def test_the_expected_outcomes_are_those_of_very_many_trainees():
+def test_the_expected_outcomes_match_those_of_very_many_trainees():
     truth = model(mode_time={"hmd": 0.9}, mode_fle={"hmd": 1.2}, learning=0.25)
     drawn = draw_outcomes(truth, 20_000, MODES, np.random.default_rng(3))
     for expected, values in zip(expected_outcomes(truth, MODES), drawn, strict=True):
@@ -152,7 +152,7 @@ def test_the_same_seed_gives_the_same_trainees_however_many():
     assert population.skill_of(4, "desktop", 1, seed=4) != desktop
 
 
-def test_the_population_is_typically_what_it_says():
+def test_the_median_and_spread_of_the_population_are_as_specified():
     population = Population(skill=Skill(speed_mm_s=100.0, aim_sd_mm=1.0))
     skills = [population.skill_of(i, "desktop", 1, seed=0) for i in range(2000)]
     for values, typical in (
@@ -167,7 +167,7 @@ def hands(population, mode="desktop", trials=(1,), trainees=2000):
     return [population.skill_of(i, mode, n, seed=0) for i in range(trainees) for n in trials]
 
 
-def test_practice_makes_speed_gain_and_pauses_better_alike_and_the_scatter_by_its_own_exponent():
+def test_practice_improves_speed_gain_and_pauses_alike_and_scatter_by_its_own_exponent():
     first, later = hands(Population(learning=0.2, accuracy_learning=0.1), trials=(1, 8), trainees=1)
     for name in ("speed_mm_s", "gain_per_s"):
         assert getattr(later, name) / getattr(first, name) == pytest.approx(8**0.2)
@@ -177,7 +177,7 @@ def test_practice_makes_speed_gain_and_pauses_better_alike_and_the_scatter_by_it
         assert getattr(first, name) / getattr(later, name) == pytest.approx(8**0.1)
 
 
-def test_a_mode_scales_everything_that_makes_the_pace_and_everything_that_makes_the_scatter():
+def test_a_mode_scales_all_speed_parameters_and_all_scatter_parameters():
     population = Population(modes={"hmd": ModeEffect(speed=0.8, aim=1.5)}, interaction=0.0)
     (desktop,), (hmd,) = (hands(population, mode, trainees=1) for mode in MODES)
     for name in ("speed_mm_s", "gain_per_s"):
@@ -188,7 +188,7 @@ def test_a_mode_scales_everything_that_makes_the_pace_and_everything_that_makes_
         assert getattr(hmd, name) / getattr(desktop, name) == pytest.approx(1.5)
 
 
-def test_modes_suit_trainees_differently_only_where_there_is_an_interaction():
+def test_modes_suit_trainees_differently_only_with_an_interaction():
     for sd in (0.0, 0.1):
         population = Population(interaction=sd)
         ratios = [
@@ -200,7 +200,7 @@ def test_modes_suit_trainees_differently_only_where_there_is_an_interaction():
         assert np.std(np.log(ratios)) == pytest.approx(np.sqrt(2) * sd, rel=0.1, abs=1e-12)
 
 
-def test_a_hasty_trial_scatters_more_by_the_exponent_of_the_trade_off():
+def test_a_hasty_trial_scatters_more_by_the_trade_off_exponent():
     population = Population(
         speed_spread=0.0, aim_spread=0.0, learning=0.0, tempo_spread=0.1, trade_off=0.7
     )
@@ -210,13 +210,13 @@ def test_a_hasty_trial_scatters_more_by_the_exponent_of_the_trade_off():
     assert np.polyfit(speed, aim, 1)[0] == pytest.approx(0.7)
 
 
-def test_lapses_come_in_their_share_of_trials():
+def test_lapses_occur_in_their_share_of_trials():
     slips = [skill.slip_at is not None for skill in hands(Population(lapses=0.3))]
     assert np.mean(slips) == pytest.approx(0.3, abs=0.03)
     assert {skill.slip_at for skill in hands(Population(), trainees=9)} == {Skill().slip_at}
 
 
-def test_a_view_misleads_the_aim_in_its_mode_only():
+def test_a_misleading_view_biases_the_aim_only_in_its_mode():
     population = Population(modes={"hmd": ModeEffect(bias_mm=(0.0, 2.0, 0.0))})
     assert hands(population, "hmd", trainees=1)[0].aim_bias_mm == (0.0, 2.0, 0.0)
     assert hands(population, "desktop", trainees=1)[0].aim_bias_mm == (0.0, 0.0, 0.0)
@@ -233,6 +233,6 @@ def test_a_view_misleads_the_aim_in_its_mode_only():
         ({"modes": {"hmd": ModeEffect(bias_mm=(9.0, 0.0, 0.0))}}, "at most 5 mm"),
     ],
 )
-def test_what_no_trainee_is_like_is_refused(changes, sentence):
+def test_impossible_trainees_are_refused(changes, sentence):
     with pytest.raises(InputError, match=sentence):
         Population(**changes)

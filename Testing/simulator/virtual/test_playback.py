@@ -20,8 +20,8 @@ from rastrainer.journal.recording import read_track
 from rastrainer.protocol import Phase, Proximity
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.net.views.presenter import Feedback
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.presenter import Feedback
+from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.replay import recorded_trial
 from rastrainer_simulator.replay.playback import Playback
@@ -75,7 +75,7 @@ def viewer(trial, setup):
     return Viewer(trial, setup)
 
 
-def test_at_each_sample_the_arm_is_seen_as_it_was_recorded(track, trial):
+def test_at_each_sample_the_arm_is_shown_as_it_was_recorded(track, trial):
     trajectory = track.trajectory
     samples = zip(
         trajectory.times_s, track.q, trajectory.tip_mm, trajectory.clearance_mm, strict=True
@@ -93,7 +93,7 @@ def test_between_two_samples_the_joints_are_interpolated(track, trial):
     np.testing.assert_allclose(state.q, 0.25 * track.q[row] + 0.75 * track.q[row + 1], atol=1e-12)
 
 
-def test_touches_phases_and_contact_are_those_of_the_journal(journal, track, trial):
+def test_touches_phases_and_contact_match_those_of_the_journal(journal, track, trial):
     for event in track.events:
         state, entry = trial.state_at(event.time_s), event.entry
         if entry["kind"] == "touch":
@@ -120,7 +120,7 @@ def trial_phase_at(track, time_s):
     return Phase(phases[-1]["phase"])
 
 
-def test_it_plays_in_its_own_time_and_stops_at_its_end(viewer, trial):
+def test_playback_runs_in_real_time_and_stops_at_its_end(viewer, trial):
     viewer.playback.advance(10.0)
     assert viewer.playback.latest.q == trial.state_at(10.0).q
     viewer.press("Space")
@@ -135,7 +135,7 @@ def test_it_plays_in_its_own_time_and_stops_at_its_end(viewer, trial):
     assert (viewer.playback.time_s, viewer.playback.is_playing) == (0.0, True)
 
 
-def test_it_is_sought_and_looked_at_through_both_cameras(viewer):
+def test_playback_can_be_sought_and_viewed_through_both_cameras(viewer):
     viewer.playback.advance(12.0)
     viewer.press("ArrowLeft")
     assert viewer.playback.time_s == 7.0
@@ -167,7 +167,7 @@ def test_the_worst_touch_is_shown_at_half_speed_up_to_the_touch(viewer, trial):
     assert any(isinstance(one, Screen) for one in viewer.messages)
 
 
-def test_the_worst_touch_is_looked_at_from_its_best_view_until_the_camera_changes(
+def test_the_worst_touch_is_shown_in_its_best_view_until_the_camera_changes(
     viewer,
 ):
     label, begin, _end = viewer.playback.trial.worst
@@ -196,7 +196,7 @@ def test_the_worst_touch_is_looked_at_from_its_best_view_until_the_camera_change
     assert off_middle() > 0.001
 
 
-def test_the_simulator_loads_the_same_trial_in_a_thread_and_only_reads_the_journal(
+def test_the_simulator_loads_the_same_trial_in_a_thread_without_changing_the_journal(
     journal, setup, trial
 ):
     before = journal.read_bytes()
@@ -207,7 +207,7 @@ def test_the_simulator_loads_the_same_trial_in_a_thread_and_only_reads_the_journ
     assert journal.read_bytes() == before
 
 
-def test_what_cannot_be_loaded_is_one_sentence(setup, tmp_path):
+def test_an_unloadable_trial_is_reported_in_one_sentence(setup, tmp_path):
     (tmp_path / "no.journal").write_text("nothing")
     with pytest.raises(InputError, match=r"is not a trial's journal"):
         load_trial(tmp_path / "no.journal", setup).loaded.result(60)
@@ -219,13 +219,13 @@ def test_a_trial_of_another_scenario_is_not_shown(track, setup):
 
 
 @pytest.mark.parametrize("damage", ["mode", "seed", "before"])
-def test_a_header_without_what_is_needed_is_one_sentence(track, setup, damage):
+def test_an_incomplete_header_is_reported_in_one_sentence(track, setup, damage):
     header = {key: value for key, value in track.header.items() if key != damage}
     with pytest.raises(InputError, match="is not as it should be"):
         RecordedTrial(replace(track, header=header), setup)
 
 
-def test_loading_that_is_canceled_ends(journal, setup, monkeypatch):
+def test_canceled_loading_ends(journal, setup, monkeypatch):
     started, may_go_on = threading.Event(), threading.Event()
 
     def read(path, rest):
@@ -271,7 +271,7 @@ def test_the_program_serves_it_to_views_until_escape(journal, tmp_path, loop_thr
         process.stdout.close()
 
 
-def test_what_cannot_be_shown_is_one_sentence(tmp_path, journal, capsys):
+def test_an_unplayable_recording_is_reported_in_one_sentence(tmp_path, journal, capsys):
     (tmp_path / "no.journal").write_text("nothing")
     assert main(["replay", str(tmp_path / "no.journal")]) == 2
     assert "is not a trial's journal" in capsys.readouterr().err

@@ -31,19 +31,19 @@ def exponent(learning, numbers, seeds):
     return -np.polyfit(np.log(numbers), np.log(times).mean(axis=1), 1)[0]
 
 
-def test_the_given_exponent_of_practice_is_played():
+def test_the_given_learning_exponent_is_played():
     """Hands whose gain stayed as it was gave 0.02 to 0.04 of 0.15."""
     assert exponent(0.3, (FIRST, LATER), (1,)) == pytest.approx(0.3, abs=0.04)
 
 
 @pytest.mark.soak
 @pytest.mark.parametrize("learning", [0.1, 0.15, 0.3])
-def test_the_given_exponent_of_practice_is_played_over_many_trials(learning):
+def test_the_given_learning_exponent_is_played_over_many_trials(learning):
     found = exponent(learning, (1, 2, 4, 8, 16), range(1, 7))
     assert found == pytest.approx(learning, abs=0.015)
 
 
-def test_a_view_that_misleads_moves_the_target_more_than_the_residuals():
+def test_a_misleading_view_moves_the_target_more_than_the_residuals():
     modes = {"hmd": ModeEffect(bias_mm=(0.0, 0.0, 3.0))}
     population = Population(BRISK, 0.0, 0.0, 0.0, modes)
     errors = np.array(
@@ -64,7 +64,7 @@ TRAINEES = 20
 
 
 @pytest.mark.soak
-def test_the_effect_of_a_mode_is_found_where_it_is_and_of_its_size(tmp_path):
+def test_the_effect_of_a_mode_is_found_where_it_exists_and_with_its_size(tmp_path):
     """Minutes on two cores; each trainee plays one task in both modes."""
     protocol = StudyProtocol("soak", "Soak", ("desktop", "hmd"), "balanced", ("task-1",), "fixed")
     effect = {"hmd": ModeEffect(aim=AIM_FACTOR)}
@@ -80,7 +80,7 @@ def test_the_effect_of_a_mode_is_found_where_it_is_and_of_its_size(tmp_path):
 
 
 @pytest.mark.soak
-def test_two_hundred_trainees_give_back_what_is_true_of_them(tmp_path):
+def test_the_true_properties_of_two_hundred_trainees_are_recovered(tmp_path):
     """An hour on two cores: ten tasks in both modes each, 4,000 trials."""
     tasks = tuple(f"task-{number}" for number in range(1, 6))
     modes = ("desktop", "hmd")

@@ -19,8 +19,8 @@ from rastrainer.study.database.study import STUDY_FILE, Study
 from rastrainer.study.ratings import GEARS, OSATS, RatingStore
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.net.views.presenter import Feedback, Hello, Seat
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.presenter import Feedback, Hello, Seat
+from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
 from rastrainer_simulator.server.replay_server import ReplayLoader, trials_to_show
@@ -100,7 +100,7 @@ def rater(copied, study, loader):
     return Rater(copied, study, loader)
 
 
-def test_a_replay_is_watched_and_marked_by_keys_one_domain_after_the_other(rater):
+def test_a_replay_is_watched_and_rated_by_keys_one_domain_after_the_other(rater):
     assert rater.menu is None
     assert rater.presenter.screen.instruction.text == "Replay 1 of 3: watch it, then rate it"
     rater.key("Escape")
@@ -116,7 +116,7 @@ def test_a_replay_is_watched_and_marked_by_keys_one_domain_after_the_other(rater
     assert rater.work.rated == 1
 
 
-def test_marks_are_given_by_clicks_and_the_three_sentences_are_there(rater):
+def test_marks_are_given_by_clicks_and_the_three_anchor_sentences_are_shown(rater):
     rater.click("rate")
     labels = [item.label for item in rater.menu.items if item.name.startswith("mark")]
     assert labels[0] == "1: Misjudges depth repeatedly; far off or pressed in"
@@ -149,7 +149,7 @@ def test_marks_are_given_by_a_gamepad_and_by_controllers(rater):
     assert rater.menu is None
 
 
-def test_a_key_or_button_that_is_held_is_taken_once(rater):
+def test_a_held_key_or_button_counts_once(rater):
     for _ in range(3):
         rater.presenter.on_key(VIEW, "Escape", True, "")
     assert rater.menu.name == "rating"
@@ -174,7 +174,7 @@ def rate_all(rater, mark=3):
             rater.presenter.advance(0.01)
 
 
-def test_after_a_replay_comes_the_next_and_after_the_last_the_thanks(rater):
+def test_each_replay_is_followed_by_the_next_and_the_last_by_thanks(rater):
     first = rater.presenter.shown.playback
     rate_all(rater)
     assert rater.presenter.shown.playback is not first
@@ -193,7 +193,7 @@ def test_after_a_replay_comes_the_next_and_after_the_last_the_thanks(rater):
     assert len(rater.store.ratings()) == 5
 
 
-def test_work_that_was_left_begins_at_the_replay_and_domain_where_it_was(
+def test_interrupted_rating_resumes_at_the_replay_and_domain_where_it_stopped(
     copied, study, loader, rater
 ):
     rate_all_but = [f"Digit{mark}" for mark in (1, 2, 3, 4, 5, 1, 2, 3)]
@@ -207,12 +207,12 @@ def test_work_that_was_left_begins_at_the_replay_and_domain_where_it_was(
     assert again.menu.title == "GEARS: Efficiency"
 
 
-def test_who_has_rated_all_is_told_so(copied, study, loader, rater):
+def test_a_rater_who_has_rated_everything_is_told_so(copied, study, loader, rater):
     rate_all(rater)
     assert Rater(copied, study, loader).menu.title == "All 3 replays are rated"
 
 
-def everything_told(rater):
+def everything_shown(rater):
     """Return all that a view could have been sent."""
     presenter = rater.presenter
     told = [outgoing.screen(m) for m in rater.messages if isinstance(m, Screen)]
@@ -225,7 +225,7 @@ def everything_told(rater):
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
-def test_nothing_tells_whose_trial_it_is_when_how_good_and_in_which_mode(
+def test_nothing_reveals_whose_trial_it_is_when_it_was_how_good_or_in_which_mode(
     copied, study, loader, language
 ):
     rater = Rater(copied, study, loader, language=language)
@@ -237,7 +237,7 @@ def test_nothing_tells_whose_trial_it_is_when_how_good_and_in_which_mode(
     rater.presenter.shown.playback.play_from(1e6)
     rater.presenter.shown.playback.advance(1.0)
     rate_all(rater)
-    told = everything_told(rater)
+    told = everything_shown(rater)
     for trial_id in rater.work.trial_ids:
         record = study.trial(trial_id).record
         for secret in (record.trial_id, record.trainee, record.started_utc[:10]):
@@ -262,7 +262,7 @@ def test_a_replay_whose_journal_is_damaged_says_so_without_naming_it(rater):
     assert rater.left == [True]
 
 
-def test_a_mark_that_cannot_be_stored_is_told_and_given_again(rater, study):
+def test_a_mark_that_cannot_be_stored_is_reported_and_can_be_given_again(rater, study):
     rater.key("Escape")
     other = sqlite3.connect(study.database.path, isolation_level=None)
     other.execute("BEGIN IMMEDIATE")
@@ -343,7 +343,7 @@ def titled(text):
 @pytest.mark.parametrize(
     "is_killed", [False, pytest.param(True, marks=pytest.mark.soak)], ids=["left", "killed"]
 )
-def test_the_program_takes_marks_and_goes_on_where_it_was_even_if_killed(
+def test_the_program_accepts_marks_and_resumes_where_it_was_even_if_killed(
     copied, loop_thread, tmp_path, is_killed
 ):
     rating = RatingProcess(copied, loop_thread, tmp_path)
@@ -389,6 +389,6 @@ def test_the_program_takes_marks_and_goes_on_where_it_was_even_if_killed(
         (["--records", "nowhere"], "There is nothing to rate"),
     ],
 )
-def test_what_cannot_be_rated_is_one_sentence(copied, capsys, words, sentence):
+def test_an_unratable_study_is_reported_in_one_sentence(copied, capsys, words, sentence):
     assert main(["rate", str(copied / STUDY_FILE), "--rater", "R1", *words]) == 2
     assert sentence in capsys.readouterr().err

@@ -22,7 +22,7 @@ DT = 0.05
     ],
     ids=["way under the head", "shaft at the skin"],
 )
-def test_all_fiducials_are_reached_and_the_tip_never_gets_under_the_head(head, task, tmp_path):
+def test_all_fiducials_are_reached_and_the_tip_never_goes_under_the_head(head, task, tmp_path):
     setup, heights = setup_of(head, tmp_path), []
 
     def note(_simulation, _before, _operator_input, result):
@@ -36,7 +36,7 @@ def test_all_fiducials_are_reached_and_the_tip_never_gets_under_the_head(head, t
     assert min(heights) > fiducials[:, 2].min() - 2 * LIFT_MM
 
 
-def test_hands_that_travel_slowly_touch_only_where_they_arrive(setup):
+def test_slow_moving_hands_touch_only_once_they_have_arrived(setup):
     """The way over the head takes them longer than they would aim."""
     skill = Skill(speed_mm_s=54.0, gain_per_s=1.35, slip_at=None)
     refused = []

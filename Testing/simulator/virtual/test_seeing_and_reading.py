@@ -5,21 +5,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from Testing.simulator.virtual.places_of_points import CENTER, PlacesOfPoints, surface_at
+from Testing.simulator.virtual.candidate_points import CENTER, CandidatePoints, surface_at
 from Testing.simulator.virtual.played_models import MODELS, play
 
 TASKS = ("trial-run", "task-1", "task-2", "task-3", "task-4", "task-5")
 SEEDS = (11, 12, 13)
 
 
-def test_who_only_looks_touches_exactly_in_the_trial_run(setup):
+def test_looking_alone_touches_exactly_in_the_trial_run(setup):
     looks = play(setup, "looks", "trial-run", 11, 10.0)
     assert looks.touches > 0
     assert looks.error_mm < 1.0
 
 
-def test_distances_and_directions_leave_the_point_alone_to_who_reads():
-    places, point = PlacesOfPoints(), surface_at(CENTER + np.array([0.03, -0.06, 0.06]))
+def test_distances_and_directions_alone_narrow_the_search_down_to_the_point():
+    places, point = CandidatePoints(), surface_at(CENTER + np.array([0.03, -0.06, 0.06]))
     for start in ((0.0, -0.2, 0.1), (0.15, -0.1, 0.1), (0.0, -0.05, 0.2)):
         at = CENTER + np.array(start)
         places.is_away(at, float(np.linalg.norm(point - at)), np.sign(point - at))
@@ -28,8 +28,8 @@ def test_distances_and_directions_leave_the_point_alone_to_who_reads():
     assert min(np.linalg.norm(place - point) for place in left) < 0.006
 
 
-def test_who_reads_searches_on_from_place_to_place_and_comes_back_to_none():
-    places, at, seen = PlacesOfPoints(), CENTER + np.array([0.0, 0.0, 0.1]), []
+def test_reading_alone_searches_new_places_and_revisits_none():
+    places, at, seen = CandidatePoints(), CENTER + np.array([0.0, 0.0, 0.1]), []
     for _ in range(100):
         at = places.nearest(at)
         seen.append(at)
@@ -39,8 +39,8 @@ def test_who_reads_searches_on_from_place_to_place_and_comes_back_to_none():
     assert np.median(steps) < 0.02
 
 
-def test_who_reads_that_the_tip_is_off_the_path_looks_elsewhere():
-    places = PlacesOfPoints()
+def test_a_reader_told_that_the_tip_is_off_the_path_looks_elsewhere():
+    places = CandidatePoints()
     last = surface_at(CENTER + np.array([0.0, -0.1, 0.05]))
     places.has_touched(last, "2")
     beside = surface_at(CENTER + np.array([0.08, -0.02, 0.04]))
@@ -53,7 +53,7 @@ def test_who_reads_that_the_tip_is_off_the_path_looks_elsewhere():
 @pytest.mark.soak
 @pytest.mark.parametrize("task", TASKS)
 @pytest.mark.parametrize("seed", SEEDS)
-def test_who_only_looks_finishes_every_task_and_who_only_reads_does_worse(setup, task, seed):
+def test_looking_alone_finishes_every_task_and_reading_alone_does_worse(setup, task, seed):
     looks, reads = (play(setup, model, task, seed) for model in MODELS)
     assert looks.touches == 15
     assert looks.error_mm < 1.0

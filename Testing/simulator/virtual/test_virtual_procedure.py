@@ -44,7 +44,7 @@ def analyzed(meshes, hands, seed=1):
     return done, analyze_procedure(done, SEEG, meshes, TRUTH)
 
 
-def test_steady_hands_leave_the_error_of_the_registration_alone(meshes):
+def test_steady_hands_leave_only_the_registration_error(meshes):
     hands = ProcedureHands(0.0, 0.0, 0.0, 0.0, 0.0)
     done, analysis = analyzed(meshes, hands)
     for errors in analysis.trajectories:
@@ -55,7 +55,7 @@ def test_steady_hands_leave_the_error_of_the_registration_alone(meshes):
     assert [check.error_mm for check in attempt.checkpoints] == pytest.approx([1.0] * 3, abs=1e-6)
 
 
-def test_the_scatter_of_hands_is_that_of_their_skill(meshes):
+def test_the_scatter_of_hands_follows_from_their_skill(meshes):
     hands = ProcedureHands.of(replace(Skill(), aim_sd_mm=2.0 * Skill().aim_sd_mm))
     assert hands.depth_sd_mm == pytest.approx(2.0 * ProcedureHands().depth_sd_mm)
     found = [analyzed(meshes, hands, seed)[1] for seed in range(12)]
@@ -65,7 +65,7 @@ def test_the_scatter_of_hands_is_that_of_their_skill(meshes):
     assert np.mean(plunges) == pytest.approx(hands.plunge_mm, rel=0.35)
 
 
-def test_a_cohort_whose_protocol_names_a_procedure_is_reported_with_the_split(
+def test_a_cohort_whose_protocol_has_a_procedure_is_reported_with_the_split(
     protocol, population, tmp_path
 ):
     asked = replace(protocol, modes=("desktop",), procedures={"task-1": "dbs"})

@@ -60,7 +60,7 @@ ENDS = plain(END_OF_ITEM) + plain(END_OF_SEQUENCE)
         pytest.param(SLICE[:-2], id="pixels"),
     ],
 )
-def test_what_announces_more_than_the_file_has_is_refused_unread(content, tmp_path, monkeypatch):
+def test_a_file_that_claims_more_than_it_holds_is_refused_unread(content, tmp_path, monkeypatch):
     path = tmp_path / "a.dcm"
     path.write_bytes(content)
     monkeypatch.setattr(volume_files.slicer, "vtkITKArchetypeImageSeriesScalarReader", None)
@@ -90,7 +90,7 @@ def test_what_announces_more_than_the_file_has_is_refused_unread(content, tmp_pa
         pytest.param(with_first(HUGE, b"1.2.840.10008.1.2.2\0"), id="big-endian, not followed"),
     ],
 )
-def test_what_fits_is_not_called_cut(content, tmp_path):
+def test_a_complete_file_is_not_called_truncated(content, tmp_path):
     path = tmp_path / "a.dcm"
     path.write_bytes(content)
     assert not isCutDicom(path)

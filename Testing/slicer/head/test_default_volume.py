@@ -59,7 +59,7 @@ def test_the_skin_in_the_mri_is_within_a_millimeter_of_the_head(volume, skin):
     assert np.percentile(distances, 95) < 2.0
 
 
-def test_across_the_head_s_surface_the_mri_goes_from_dark_to_bright(volume, skin):
+def test_across_the_heads_surface_the_mri_goes_from_dark_to_bright(volume, skin):
     mesh = read_head_mesh(SCENARIO.head_mesh)
     vertices = mesh.vertices.astype(float)
     low, high = np.array(COVERED_MM).T
@@ -76,13 +76,13 @@ def test_across_the_head_s_surface_the_mri_goes_from_dark_to_bright(volume, skin
     assert len(places) > 0.8 * len(skin)
 
 
-def test_the_wheel_carries_it(built_wheel):
+def test_the_wheel_includes_it(built_wheel):
     with zipfile.ZipFile(built_wheel) as wheel:
         packed = wheel.read("rastrainer_simulator/assets/scenarios/colin27/volume.nrrd")
     assert packed == SCENARIO.volume.path.read_bytes()
 
 
-def test_it_is_small_of_1_mm_and_shown_from_air_to_the_brightest_tissue(volume):
+def test_it_is_small_has_1_mm_voxels_and_a_window_from_air_to_the_brightest_tissue(volume):
     assert SCENARIO.volume.path.stat().st_size < 6_000_000
     assert np.array_equal(volume.ijkToRas[:3, :3], np.eye(3))
     white = SCENARIO.volume.level + SCENARIO.volume.window / 2

@@ -107,7 +107,7 @@ def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_d
         pytest.param(SAGITTAL, (1.2, 1.2, 1.5), id="stored slice by slice from the left"),
     ],
 )
-def test_the_skin_is_found_however_the_scan_lies_and_is_stored(directions, spacing):
+def test_the_skin_is_found_however_the_scan_is_oriented_and_stored(directions, spacing):
     mesh = skin_in(stored_along(directions, spacing))
     # Below, the neck goes straight on where the tilted lowest slice leaves some of it out.
     errors = skin_errors(mesh, above=LOWEST + 14.0)
@@ -118,7 +118,7 @@ def test_the_skin_is_found_however_the_scan_lies_and_is_stored(directions, spaci
     assert mesh.vertices[:, 2].min() == pytest.approx(LOWEST + 1.0, abs=0.5)
 
 
-def test_a_nose_cut_by_the_image_ends_rounded_a_few_millimeters_beyond_it():
+def test_a_nose_cut_off_by_the_image_ends_rounded_a_few_millimeters_beyond_it():
     shape = (80, 60, 60)
     volume = phantom(around_head(axes((1, 1, 1)), shape), shape)
     edge = volume.ijkToRas[1, 3] + shape[1] - 1
@@ -153,13 +153,13 @@ def test_progress_is_reported_and_may_cancel():
     assert told[0] == 0.0
 
 
-def test_a_volume_without_a_head_is_refused_with_a_sentence():
+def test_a_volume_without_a_head_is_refused_with_a_message():
     empty = Volume(np.zeros((40, 40, 40), np.float32), np.eye(4))
     with pytest.raises(InputError, match="No head was found"):
         skin_in(empty)
 
 
-def test_a_grid_along_ras_is_kept_as_it_is():
+def test_a_grid_aligned_with_ras_is_kept_as_it_is():
     values = ndimage.gaussian_filter(np.random.default_rng(1).normal(size=(12, 14, 10)), 1)
     matrix = np.eye(4)
     matrix[:3, 3] = [-3, 5, 7]

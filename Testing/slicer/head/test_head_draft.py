@@ -54,7 +54,7 @@ def test_the_skin_of_a_ct_is_found(ct):
     assert np.percentile(errors, 95) < 1.0
 
 
-def test_the_draft_has_the_images_unless_they_are_not_wanted(mri, ct):
+def test_the_draft_has_the_images_unless_declined(mri, ct):
     assert mri[0].volume is not None
     assert "Images: MRI, 1 mm" in mri[0].method
     assert ct[0].volume is None

@@ -33,7 +33,7 @@ def depths(volume):
     [((2.0, 2.0, 2.0), None), ((1.5, 2.0, 3.0), DOUBLE_OBLIQUE)],
     ids=["RAS", "oblique"],
 )
-def test_mri_lies_on_a_grid_of_1_mm_where_the_head_is(spacing, axes):
+def test_mri_lies_on_a_1_mm_grid_where_the_head_is(spacing, axes):
     made, told, _head = images(phantom(spacing=spacing, axes=axes, size=SIZE))
     assert np.array_equal(made.ijk_to_ras[:3, :3], np.eye(3))
     assert made.values.dtype == np.uint8
@@ -46,7 +46,7 @@ def test_mri_lies_on_a_grid_of_1_mm_where_the_head_is(spacing, axes):
     assert made.level == made.window / 2
 
 
-def test_mri_whose_values_are_bytes_keeps_them():
+def test_mri_with_8_bit_values_keeps_them():
     scan = phantom(size=SIZE)
     scan = Volume(np.rint(scan.values), scan.ijkToRas)
     made, told, _head = images(scan)
@@ -65,7 +65,7 @@ def test_ct_keeps_its_hounsfield_units_within_their_usual_range():
     assert told == "Images: CT, 1 mm, Hounsfield units from -1024 to 3071."
 
 
-def test_what_is_far_from_the_head_is_air():
+def test_anything_far_from_the_head_becomes_air():
     scan = phantom(noise=2.0, size=SIZE)
     scan.values[2:8, 2:8, 20:90] = 60.0
     made, _told, head = images(scan)

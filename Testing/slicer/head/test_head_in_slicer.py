@@ -24,7 +24,7 @@ def test_slicer_reads_the_head_in_ras(scene):
     assert np.array_equal(vertices_in_slicer(scene, HEAD), mesh.vertices)
 
 
-def test_it_is_the_comment_in_the_file_that_says_ras(scene, tmp_path):
+def test_the_comment_in_the_file_declares_ras(scene, tmp_path):
     lps = tmp_path / "head.ply"
     lps.write_bytes(HEAD.read_bytes().replace(b"SPACE=RAS", b"SPACE=LPS"))
     turned = read_head_mesh(HEAD).vertices * [-1, -1, 1]

@@ -21,7 +21,7 @@ def test_depths_are_exact_within_the_requested_distance(body):
     assert (depth[exact > 4.0] > 4.0).all()
 
 
-def test_a_closing_fills_what_no_ball_outside_reaches():
+def test_a_closing_fills_whatever_no_ball_outside_can_reach():
     closed = mask.closedByBall(BODY, 3.0)
     padded = np.pad(BODY, [(9, 9), (9, 9), (0, 9)])
     padded = np.pad(padded, [(0, 0), (0, 0), (9, 0)], mode="edge")
@@ -57,7 +57,7 @@ def test_a_tunnel_is_closed_by_one_thin_membrane(width):
     assert not (wanted & ~result).any()
 
 
-def test_a_membrane_stays_where_the_tunnel_is_narrow():
+def test_a_membrane_lies_where_the_tunnel_is_narrow():
     wanted = ball(11)
     wanted[:, 12:19, 12:19] = False
     wanted[9:12] |= ball(11)[9:12]

@@ -74,13 +74,13 @@ def test_a_head_comes_back_from_its_segment_with_the_base_that_was_shown(node, f
     assert ball_errors(mesh).mean() < 0.5
 
 
-def test_the_cut_that_is_wished_counts_more_than_the_base_that_was_shown(node, found):
+def test_a_requested_cut_overrides_the_base_that_was_shown(node, found):
     segment = showSegment(node, found)
     mesh = skin_of(node, segment, baseMm=-10.0)
     assert mesh.vertices[:, 2].min() == pytest.approx(-10.0, abs=0.001)
 
 
-def test_hardly_more_is_shown_than_what_is_above_the_base(node, found):
+def test_hardly_anything_below_the_base_is_shown(node, found):
     showSegment(node, found)
     bounds = [0.0] * 6
     node.GetSegmentation().GetBounds(bounds)
@@ -96,19 +96,19 @@ def oblique(axes, center):
     return to_ras
 
 
-def assert_stands_on_the_whole_neck(mesh):
+def assert_rests_on_the_whole_neck(mesh):
     base = mesh.vertices[:, 2].min()
     rim = mesh.vertices[mesh.vertices[:, 2] < base + 0.001]
     np.testing.assert_allclose(np.ptp(rim[:, :2], axis=0), 2 * NECK, atol=2.5)
 
 
 @pytest.mark.parametrize("axes", [(0, 1, 2), (1, 2, 0)], ids=["axial", "sagittal"])
-def test_the_base_stays_where_an_edit_lays_the_segment_on_an_oblique_grid(node, found, axes):
+def test_the_base_stays_when_an_edit_moves_the_segment_to_an_oblique_grid(node, found, axes):
     segment = showSegment(node, found)
     lay_on_grid(node, segment, oblique(axes, [35.0, 35.0, 35.0]), (70, 70, 70))
     mesh = skin_of(node, segment)
     assert mesh.vertices[:, 2].min() == pytest.approx(BASE, abs=0.51)
-    assert_stands_on_the_whole_neck(mesh)
+    assert_rests_on_the_whole_neck(mesh)
     assert ball_errors(mesh).mean() < 0.5
 
 
@@ -117,17 +117,17 @@ def test_a_neck_cut_by_an_oblique_scan_continues_to_a_flat_base(node, found):
     lay_on_grid(node, segment, oblique((0, 1, 2), [35.0, 35.0, 23.0]), (70, 70, 58))
     mesh = skin_of(node, segment)
     assert BASE < mesh.vertices[:, 2].min() < BASE + 5.0
-    assert_stands_on_the_whole_neck(mesh)
+    assert_rests_on_the_whole_neck(mesh)
 
 
-def test_a_neck_that_is_erased_is_not_in_the_head(node, found):
+def test_an_erased_neck_is_not_in_the_head(node, found):
     found.body[:, :, : round(-33.0 - found.origin[2])] = False
     segment = showSegment(node, found)
     mesh = skin_of(node, segment)
     assert mesh.vertices[:, 2].min() == pytest.approx(-32.0, abs=1.0)
 
 
-def test_a_segment_that_is_moved_moves_its_head(scene, node, found):
+def test_a_moved_segment_moves_its_head(scene, node, found):
     segment = showSegment(node, found)
     node.SetAndObserveTransformNodeID(add_transform(scene, [5.0, -7.0, 11.0]).GetID())
     mesh = skin_of(node, segment)
@@ -136,7 +136,7 @@ def test_a_segment_that_is_moved_moves_its_head(scene, node, found):
     assert ball_errors(mesh).mean() < 0.5
 
 
-def test_an_empty_segment_is_answered_with_a_sentence(node, found):
+def test_an_empty_segment_is_refused_with_a_message(node, found):
     with pytest.raises(InputError, match="segment of the head does not exist"):
         volumeOfSegment(readSegment(node, "Segment_1"))
     found.body[:] = False
@@ -145,7 +145,7 @@ def test_an_empty_segment_is_answered_with_a_sentence(node, found):
         volumeOfSegment(readSegment(node, segment))
 
 
-def test_a_segment_of_the_neck_alone_is_answered_with_a_sentence(node, found):
+def test_a_segment_of_the_neck_alone_is_refused_with_a_message(node, found):
     found.body[:, :, round(BASE - found.origin[2]) :] = False
     segment = showSegment(node, found)
     with pytest.raises(InputError, match="empty above its base"):

@@ -9,7 +9,7 @@ from rastrainer_headless.volume_files import readVolume
 from Testing.slicer.head.placed import add_transform, add_volume
 
 
-def test_a_voxel_is_found_where_slicer_says_that_it_is(scene):
+def test_a_voxel_is_found_where_slicer_places_it(scene):
     values = np.zeros((5, 6, 7), np.int16)
     values[1, 2, 3] = 100
     image = vtk.vtkImageData()
@@ -33,7 +33,7 @@ def test_a_volume_lies_where_its_transforms_place_it(scene):
     assert (volumeFromNode(node).ijkToRas @ [1, 1, 1, 1])[:3].tolist() == [12, 3, 4]
 
 
-def test_a_transform_that_is_not_linear_is_refused_with_a_sentence(scene):
+def test_a_nonlinear_transform_is_refused_with_a_message(scene):
     node = add_volume(scene, Volume(np.zeros((5, 6, 7), np.float32), np.eye(4)), "MRI")
     bent = scene.AddNewNodeByClass("vtkMRMLGridTransformNode", "Bent")
     bent.SetAndObserveTransformToParent(vtk.vtkThinPlateSplineTransform())
@@ -47,7 +47,7 @@ def test_a_missing_volume_is_named(tmp_path):
         readVolume(tmp_path / "none.nii.gz")
 
 
-def test_a_file_that_is_no_volume_is_refused_with_a_sentence(tmp_path):
+def test_a_file_that_is_not_a_volume_is_refused_with_a_message(tmp_path):
     path = tmp_path / "noise.nii.gz"
     path.write_bytes(b"not an image" * 100)
     with pytest.raises(InputError, match="could not be read as a volume"):

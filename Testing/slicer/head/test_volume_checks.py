@@ -23,7 +23,7 @@ UNPLACED = {
 
 
 @pytest.mark.parametrize("name", [*UNUSABLE, *UNPLACED])
-def test_a_broken_volume_is_refused_with_a_sentence(name):
+def test_a_broken_volume_is_refused_with_a_message(name):
     broken, sentence = (UNUSABLE | UNPLACED)[name]
     with pytest.raises(InputError, match=sentence) as caught:
         checkVolume(broken)
@@ -31,7 +31,7 @@ def test_a_broken_volume_is_refused_with_a_sentence(name):
 
 
 @pytest.mark.parametrize("name", [pytest.param("noise", marks=pytest.mark.soak), "a block"])
-def test_a_volume_without_a_head_is_refused_with_a_sentence(name):
+def test_a_volume_without_a_head_is_refused_with_a_message(name):
     none, sentence = HEADLESS[name]
     with pytest.raises(InputError, match=sentence):
         makeDraft(none, hasSkull=False)
@@ -53,7 +53,7 @@ def test_a_dicom_series_is_read_by_position_whatever_its_files_are_called(tmp_pa
     assert np.allclose(read.ijkToRas[:3, 3], [10, 20, -30])
 
 
-def test_a_series_that_lacks_a_slice_is_refused(tmp_path):
+def test_a_series_with_a_missing_slice_is_refused(tmp_path):
     values = np.zeros((20, 20, 12), np.int16)
     write_series(tmp_path, values, (1.0, 1.0, 2.0))
     sorted(tmp_path.iterdir())[4].unlink()

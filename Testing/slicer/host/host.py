@@ -163,7 +163,7 @@ class Host(User):
             node = self.scene.GetNodeByID(node_id)
             if node is not None and node.GetSingletonTag() is None:
                 self.scene.RemoveNode(node)
-                self.let_pass(0.12)
+                self.idle_for(0.12)
 
     def reload(self) -> Any:
         """Press Reload; return the new widget.

@@ -139,7 +139,7 @@ class User:
             f"{bool(self.scene.IsBatchProcessing())}. Clicks: {self.clicks}."
         )
 
-    def let_pass(self, seconds: float) -> None:
+    def idle_for(self, seconds: float) -> None:
         """Let some time pass, as a user does who waits."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:

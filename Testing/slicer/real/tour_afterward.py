@@ -38,7 +38,7 @@ def keep_trajectory(tour: Tour) -> str:
         line.AddControlPoint(*place)
     interaction = slicer.app.applicationLogic().GetInteractionNode()
     interaction.SetCurrentInteractionMode(interaction.ViewTransform)
-    hands.let_pass(0.5)
+    hands.idle_for(0.5)
     hands.find("planTitleLineEdit").text = "Plan of the tour"
     hands.click("keepPlanButton")
     combo = hands.find("scenarioComboBox")
@@ -109,7 +109,7 @@ def save_and_load_scene(tour: Tour) -> str:
     hands, path = tour.hands, tour.fresh("scene.mrb")
     hands.must(slicer.util.saveScene(str(path)), "The scene is not saved.")
     slicer.mrmlScene.Clear(0)
-    hands.let_pass(0.5)
+    hands.idle_for(0.5)
     slicer.util.loadScene(str(path))
     hands.wait_until(lambda: hands.text("linkText") == "Connected", "it is connected again")
     hands.must(slicer.util.getNodes("*fiducials"), "The fiducials are not in the scene.")

@@ -93,7 +93,7 @@ def delete_every_node(tour: Tour) -> str:
         node = slicer.mrmlScene.GetNodeByID(node_id)
         if node is not None and not node.GetSingletonTag():
             slicer.mrmlScene.RemoveNode(node)
-            hands.let_pass(0.05)
+            hands.idle_for(0.05)
             count += 1
     hands.wait_until(lambda: hands.text("linkText") == "Connected", "it is connected again")
     return f"{count} nodes"

@@ -44,7 +44,7 @@ class Hands:
         """Open sections and groups, from without to within."""
         for name in names:
             self.find(name).collapsed = False
-        self.let_pass(0.1)
+        self.idle_for(0.1)
 
     def click(self, name: str) -> None:
         """Click a button or a check box, which must be usable."""
@@ -53,8 +53,8 @@ class Hands:
             raise TourError(f"{name} is disabled: {widget.toolTip}")
         self.clicked.add(name)
         widget.click()
-        self.let_pass(0.1)
-        self._heed_dialogs()
+        self.idle_for(0.1)
+        self._handle_dialogs()
 
     def unused_buttons(self) -> list[str]:
         """Return the names of the buttons of the module's forms that were not clicked."""
@@ -81,9 +81,9 @@ class Hands:
             raise TourError(f"{name} offers no “{part}”, only: {', '.join(texts)}.")
         combo.setCurrentIndex(found[0])
         combo.activated.emit(found[0])
-        self.let_pass(0.1)
+        self.idle_for(0.1)
 
-    def let_pass(self, seconds: float) -> None:
+    def idle_for(self, seconds: float) -> None:
         """Let Slicer do what is due for some time."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
@@ -105,12 +105,12 @@ class Hands:
         timeout_s = max(at_least_s, self.patience_s)
         end = time.monotonic() + timeout_s
         while not condition():
-            self._heed_dialogs()
+            self._handle_dialogs()
             if time.monotonic() > end:
                 raise TourError(f"In {timeout_s:g} s it did not happen: {what}.")
-            self.let_pass(0.02)
+            self.idle_for(0.02)
 
-    def _heed_dialogs(self) -> None:
+    def _handle_dialogs(self) -> None:
         """Raise `TourError` where a dialog has opened that nobody has expected."""
         said = self._unexpected[self._known :]
         self._known = len(self._unexpected)

@@ -55,7 +55,7 @@ def _place_line(tour: Tour) -> None:
         line.AddControlPoint(*place)
     interaction = slicer.app.applicationLogic().GetInteractionNode()
     interaction.SetCurrentInteractionMode(interaction.ViewTransform)
-    tour.hands.let_pass(0.2)
+    tour.hands.idle_for(0.2)
 
 
 def start(tour: Tour) -> str:

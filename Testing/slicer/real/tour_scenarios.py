@@ -77,4 +77,4 @@ def _choose_volume(tour: Tour) -> None:
     (volume,) = slicer.util.getNodesByClass("vtkMRMLScalarVolumeNode")
     hands.find("scanComboBox").setCurrentNode(volume)
     hands.find("titleLineEdit").text = "Head of the tour"
-    hands.let_pass(0.1)
+    hands.idle_for(0.1)

@@ -52,7 +52,7 @@ class Tour:
         self.dialogs.close()
         for name, attribute, value in self._former:
             setattr(self.hands.find(name), attribute, value)
-        self.hands.let_pass(0.3)
+        self.hands.idle_for(0.3)
 
     def _choices(self) -> list[tuple[str, str, object]]:
         kept = (
@@ -66,7 +66,7 @@ class Tour:
     def choose_study(self, path: Path) -> None:
         """Continue with a study in the tour's folder."""
         self.hands.find("studyPathLineEdit").currentPath = str(path)
-        self.hands.let_pass(0.2)
+        self.hands.idle_for(0.2)
 
     def fresh(self, name: str) -> Path:
         """Return the path of a file in the tour's folder, which is not there yet."""

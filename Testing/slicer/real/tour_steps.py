@@ -14,7 +14,7 @@ from tour_stage import Tour
 
 STEPS: tuple[tuple[str, Callable[[Tour], str | None]], ...] = (
     ("Open the module", tour_trial.open_module),
-    ("Connect to a web page", tour_trial.meet_web_page),
+    ("Connect to a web page", tour_trial.connect_to_web_page),
     ("Start and connect", tour_trial.start_and_connect),
     ("Create a trainee", tour_trial.create_trainee),
     ("Show scenario and robot", tour_trial.show_scenario),
@@ -22,9 +22,9 @@ STEPS: tuple[tuple[str, Callable[[Tour], str | None]], ...] = (
     ("Start task 1", tour_trial.start_task),
     ("Touch points 1 to 7", tour_trial.touch_some),
     ("Pause and resume", tour_trial.pause_and_resume),
-    ("Close the scene in mid-trial", tour_trial.close_scene_in_mid_trial),
+    ("Close the scene in mid-trial", tour_trial.close_scene_during_trial),
     ("Touch points 8 to 15", tour_trial.touch_the_others),
-    ("Mend the registration", tour_trial.mend_registration),
+    ("Mend the registration", tour_trial.fix_registration),
     ("Register and score", tour_trial.score),
     ("Plan a target", tour_afterward.plan),
     ("Keep a trajectory", tour_afterward.keep_trajectory),

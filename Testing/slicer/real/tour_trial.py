@@ -32,7 +32,7 @@ def open_module(tour: Tour) -> str:
     return hands.text("nextStepText")
 
 
-def meet_web_page(tour: Tour) -> str:
+def connect_to_web_page(tour: Tour) -> str:
     """Connect to a port that speaks HTTP, which once ended Slicer."""
     hands = tour.hands
     hands.open("simulatorCollapsibleButton", "advancedGroupBox")
@@ -52,7 +52,7 @@ def meet_web_page(tour: Tour) -> str:
         hands.click("connectButton")
         hands.wait_until(lambda: hands.text("linkText") == "No simulator", "it is told")
         told = hands.text("stateText")
-        hands.let_pass(3.0)
+        hands.idle_for(3.0)
         hands.click("connectButton")
         hands.wait_until(lambda: hands.text("linkText") == "Not connected", "it is given up")
     finally:
@@ -104,7 +104,7 @@ def abort_trial_run(tour: Tour) -> str:
     hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial run runs")
     tour.dialogs.answer("Abort the trial", "No")
     hands.click("abortButton")
-    hands.let_pass(1.0)
+    hands.idle_for(1.0)
     hands.must(hands.text("nextStepButton") == "Pause", "It was aborted against the answer.")
     tour.dialogs.answer("Abort the trial", "Yes")
     hands.click("abortButton")
@@ -132,7 +132,7 @@ def pause_and_resume(tour: Tour) -> None:
     hands.wait_until(lambda: hands.text("nextStepButton") == "Pause", "the trial is resumed")
 
 
-def close_scene_in_mid_trial(tour: Tour) -> str:
+def close_scene_during_trial(tour: Tour) -> str:
     hands = tour.hands
     slicer.mrmlScene.Clear(0)
     hands.wait_until(lambda: hands.text("linkText") == "Connected", "it is connected again")
@@ -148,7 +148,7 @@ def touch_the_others(tour: Tour) -> str:
     return told
 
 
-def mend_registration(tour: Tour) -> str:
+def fix_registration(tour: Tour) -> str:
     hands = tour.hands
     hands.open("registrationCollapsibleButton", "residualsGroupBox", "pointListsGroupBox")
     told = hands.text("warning0Text")

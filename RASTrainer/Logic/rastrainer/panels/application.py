@@ -62,7 +62,7 @@ def callSoon(work: Callable[[], None]) -> None:
     qt.QTimer.singleShot(0, work)
 
 
-def isSomethingSeen(isEntered: bool, inSlices: bool = False) -> bool:
+def isAnythingVisible(isEntered: bool, inSlices: bool = False) -> bool:
     """Return whether the module is entered or a view shown, in a window that is not minimized.
 
     The parts of a minimized window still call themselves visible.

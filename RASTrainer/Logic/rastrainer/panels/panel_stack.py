@@ -11,7 +11,6 @@ from rastrainer.panels.curriculum_panel import CurriculumPanel
 from rastrainer.panels.landmarks_panel import LandmarksPanel
 from rastrainer.panels.new_scenario_panel import NewScenarioPanel
 from rastrainer.panels.next_step_panel import NextStepPanel
-from rastrainer.panels.plan_panel import PlanPanel
 from rastrainer.panels.procedure_panel import ProcedurePanel
 from rastrainer.panels.procedure_plan_panel import ProcedurePlanPanel
 from rastrainer.panels.registration_panel import RegistrationPanel
@@ -20,6 +19,7 @@ from rastrainer.panels.score_panel import ScorePanel
 from rastrainer.panels.setup_panel import SetupPanel
 from rastrainer.panels.simulator_panel import RunningSimulatorPanel, SimulatorPanel
 from rastrainer.panels.study_panel import StudyPanel
+from rastrainer.panels.target_plan_panel import PlanPanel
 from rastrainer.panels.trainees_panel import TraineesPanel
 from rastrainer.panels.training_panel import TrainingPanel
 from rastrainer.slicer.logic.module_session import ModuleSession

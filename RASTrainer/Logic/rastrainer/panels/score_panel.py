@@ -24,7 +24,7 @@ from rastrainer.panels.widgets import (
 from rastrainer.report.report import write_report
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.scene.score_board import (
+from rastrainer.slicer.scene.score_tables import (
     GroupComparison,
     ctpsRows,
     motionRows,

@@ -65,7 +65,7 @@ class SelfTestFixture:
     def process(self) -> None:
         """Do what the module's timers do, until nothing is left to be done."""
         self.session.process()
-        while self.session.giveTimeToWork():
+        while self.session.yieldTimeToWork():
             pass
         self._panels.showState()
 

@@ -133,7 +133,7 @@ class StudyPanel:
             setSentence(
                 self._ui.stepTimeText,
                 _("{over} of {minutes:g} min have passed.").format(
-                    over=_clock(self._logic.minutesOver(progress)), minutes=step.minutes
+                    over=_clock(self._logic.minutesElapsed(progress)), minutes=step.minutes
                 ),
             )
         self._showButtons()

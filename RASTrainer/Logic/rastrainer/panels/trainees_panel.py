@@ -131,7 +131,7 @@ class TraineesPanel:
             self._ui.archivedCheckBox.checked = True
             self._logic.setArchived(True)
 
-    def bringBack(self) -> None:
+    def unarchive(self) -> None:
         """Show the chosen trainee in the list again, who was archived."""
         with slicer.util.tryWithErrorDisplay(_("The trainee was not restored.")):
             self._logic.setArchived(False)
@@ -230,7 +230,7 @@ class TraineesPanel:
         setChecked(self._ui.calibrationButton, purpose == CALIBRATION)
 
     def _archiving(self) -> Callable[[], None]:
-        return self.bringBack if self._isArchived else self.archive
+        return self.unarchive if self._isArchived else self.archive
 
     def _fold(self, isFolded: bool) -> None:
         if isFolded:

@@ -82,7 +82,7 @@ def _of_form(form: RatingForm, marks: Marks, data: StudyData) -> str:
         parts.append(paragraph(few, "warning"))
     else:
         parts += _agreement(form, marks, names, shared)
-    return "".join([*parts, *_beside_the_score(form, marks, data)])
+    return "".join([*parts, *_compared_with_score(form, marks, data)])
 
 
 def _agreement(
@@ -157,7 +157,7 @@ def agreement_text(agreement: Agreement) -> str:
     return f"{value} [{low}, {high}]"
 
 
-def _beside_the_score(form: RatingForm, marks: Marks, data: StudyData) -> list[str]:
+def _compared_with_score(form: RatingForm, marks: Marks, data: StudyData) -> list[str]:
     """Return how the mean total of the raters relates to the computed score of the same trials."""
     scores = {
         trial.trial_id: trial.values["score"] for trial in data.trials if "score" in trial.values

@@ -22,13 +22,13 @@ from rastrainer.report.comparisons import (
 from rastrainer.report.learning import learning
 from rastrainer.report.markup import bullets, page, paragraph, section
 from rastrainer.report.method_comparison import method_comparison, shifted_skin
-from rastrainer.report.methods import limits, methods
 from rastrainer.report.mode_comparison import distributions, mode_comparison, motion
 from rastrainer.report.paired_statistics import findings, order_caveat, paired_statistics
 from rastrainer.report.passing import passing, started_trials
 from rastrainer.report.procedures import procedures
 from rastrainer.report.published_tables import paper_notes, published_tables, with_ctps
 from rastrainer.report.raters import raters
+from rastrainer.report.statistical_methods import limits, methods
 from rastrainer.report.trainees import curricula, groups, questionnaires
 from rastrainer.report.variation import variation
 from rastrainer.statistics.few_subjects import FEW_SUBJECTS

@@ -4,8 +4,8 @@ It touches no node, no widget and no connection to the study but its own. Its re
 delivered on the main thread, which then shows it.
 
 Slicer starts PythonQt without support of threads: its main thread keeps Python's lock while Qt
-waits for events, and a worker cannot run. `giveTime` lets it run for moments too short to notice; a
-timer calls it often while there is work. Only Python's own code and numpy's release the lock in
+waits for events, and a worker cannot run. `yieldTime` lets it run for moments too short to notice;
+a timer calls it often while there is work. Only Python's own code and numpy's release the lock in
 between: VTK's filters keep it to their end and belong in another process.
 """
 
@@ -95,7 +95,7 @@ class Job(Generic[T]):
             self.leave()
         return isDone
 
-    def giveTime(self, seconds: float = TIME_S) -> None:
+    def yieldTime(self, seconds: float = TIME_S) -> None:
         """Let the thread run, and return when it has ended or the time is over."""
         self._thread.join(seconds)
 
@@ -174,10 +174,10 @@ class BackgroundWork:
         if not wasBusy:
             self.began.emit()
 
-    def giveTime(self) -> None:
+    def yieldTime(self) -> None:
         """Let running work continue for a moment, unless functions are postponed."""
         if self._underWay is not None and not self._slices:
-            self._underWay[0].giveTime()
+            self._underWay[0].yieldTime()
 
     def process(self) -> None:
         """Call one postponed function, or deliver a finished result."""
@@ -199,7 +199,7 @@ class BackgroundWork:
     def checkWanted(self, _step: str = "", _share: float = 0.0) -> None:
         """End running work, which calls this in its thread, once nobody waits for it any more."""
         if self._isLeft.is_set():
-            raise BrokenOffError
+            raise AbandonedWorkError
 
     def close(self) -> None:
         """Wait briefly for running work, deliver it, and do nothing more."""
@@ -209,11 +209,11 @@ class BackgroundWork:
         if self._underWay is None:
             return
         job = self._underWay[0]
-        job.giveTime(CLOSING_S)
+        job.yieldTime(CLOSING_S)
         self.process()
         if self._underWay is not None:
             self._isLeft.set()
-            job.giveTime(LEAVING_S)
+            job.yieldTime(LEAVING_S)
             job.leave()
             self._underWay = None
 
@@ -247,13 +247,13 @@ def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
     def report(step: str, share: float) -> None:
         reported.append((step, share))
         if isCanceled.is_set():
-            raise BrokenOffError
+            raise AbandonedWorkError
 
     job = Job(lambda: work(report))
     try:
         while not job.isDone:
             progress(*reported[-1])
-            job.giveTime()
+            job.yieldTime()
     except BaseException:
         isCanceled.set()
         job.leave()
@@ -272,7 +272,7 @@ class CancelableUntilBegun:
     def begin(self) -> None:
         """Note, in the worker, that from now on nothing is canceled; raise where it has been."""
         if not self._decision.acquire(blocking=False):
-            raise BrokenOffError
+            raise AbandonedWorkError
 
     def progress(self, step: str, share: float) -> None:
         """Report to `progress`; what it raises is passed on only before `begin`."""
@@ -283,5 +283,5 @@ class CancelableUntilBegun:
                 raise
 
 
-class BrokenOffError(Exception):
+class AbandonedWorkError(Exception):
     """Nobody waits for the work any more."""

@@ -10,7 +10,7 @@ from rastrainer.files.writing import write_json
 from rastrainer.journal.folder import SUFFIX, erase_journals
 from rastrainer.study.curriculum.curriculum_store import CurriculumStore
 from rastrainer.study.database.aborted_trials import AbortedTrials
-from rastrainer.study.database.database import beside_study
+from rastrainer.study.database.database import path_beside_study
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.platform_links import PlatformLinks
@@ -27,7 +27,7 @@ def export_trainee(study: Study, pseudonym: str, path: Path | str) -> int:
         InputError: an unknown trainee, or the file cannot be written.
     """
     trainee, trials = study.trainee(pseudonym), study.history(pseudonym)
-    links = PlatformLinks(beside_study(study.database.place))
+    links = PlatformLinks(path_beside_study(study.database.place))
     document = {
         "format": FORMAT,
         "trainee": asdict(trainee),
@@ -131,5 +131,5 @@ def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure
     names = [path.name for path in erased if path.suffix == SUFFIX]
     missing = [one for one in ids if not any(name.endswith(f"_{one}{SUFFIX}") for name in names)]
     trials = study.delete_trainee(pseudonym)
-    PlatformLinks(beside_study(study.database.place)).forget(pseudonym)
+    PlatformLinks(path_beside_study(study.database.place)).forget(pseudonym)
     return Erasure(trials, len(names), tuple(missing), tuple(unreadable))

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rastrainer.errors import RASTrainerError
-from rastrainer.python_environment import python_words
+from rastrainer.python_environment import python_command
 from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
 from rastrainer_simulator.ops.chinese_font import chinese_font
 
@@ -23,13 +23,13 @@ class _Names:
         self.known: list[str] = []
         self.unknown: list[str] = []
 
-    def gamepad_came(self, _number: int, name: str) -> None:
+    def gamepad_added(self, _number: int, name: str) -> None:
         self.known.append(name)
 
     def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
         """Ignore the sticks."""
 
-    def gamepad_went(self, number: int, name: str) -> None:
+    def gamepad_removed(self, number: int, name: str) -> None:
         """Keep the name of a gamepad that is just unplugged."""
 
     def gamepad_unknown(self, name: str) -> None:
@@ -106,7 +106,7 @@ def check_graphics(probe: Sequence[str] = ()) -> Iterator[CheckResult]:
         return
     try:
         done = subprocess.run(
-            probe or python_words(PROBE),
+            probe or python_command(PROBE),
             capture_output=True,
             text=True,
             timeout=LONGEST_PROBE_S,

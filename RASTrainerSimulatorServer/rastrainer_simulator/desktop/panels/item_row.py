@@ -8,7 +8,7 @@ from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.theme import Color
-from rastrainer_simulator.net.views.screen import ItemKind, MenuItem, ScoreTrend, Tone
+from rastrainer_simulator.presentation.screen import ItemKind, MenuItem, ScoreTrend, Tone
 
 _VALUE_SHARE = 0.52
 

@@ -18,7 +18,7 @@ from rastrainer_simulator.desktop.panels.item_row import (
     trend_height,
 )
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
-from rastrainer_simulator.net.views.screen import Menu
+from rastrainer_simulator.presentation.screen import Menu
 
 SHRINK = 0.94
 SMALLEST = 0.84

@@ -12,8 +12,8 @@ import numpy as np
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
-from rastrainer_simulator.net.views.screen import DepthRuler, Tone
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.presentation.screen import DepthRuler, Tone
+from rastrainer_simulator.texts.texts import Texts
 
 EYE_WIDTH, EYE_HEIGHT = 360, 420
 RADIUS = 156

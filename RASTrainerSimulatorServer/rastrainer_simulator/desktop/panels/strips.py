@@ -10,7 +10,7 @@ from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
 from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
-from rastrainer_simulator.net.views.screen import Hint, ScreenMessage
+from rastrainer_simulator.presentation.screen import Hint, ScreenMessage
 from rastrainer_simulator.scene.nodes import COVERED
 
 LEAST_TARGET_PX = 24

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rastrainer_simulator.net.views.screen import Tone
+from rastrainer_simulator.presentation.screen import Tone
 
 REFERENCE_SIZE = (1920, 1080)
 LEAST_SCALE = 0.55

@@ -13,7 +13,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import IN_MENUS, OF_VIEW, STICKS, ControlName, InputDevice
 from rastrainer_simulator.input.presets import preset_name, presets_of
-from rastrainer_simulator.net.views.screen import Menu, MenuItem
+from rastrainer_simulator.presentation.screen import Menu, MenuItem
 
 GROUPS = {
     "work": tuple(name for name in ControlName if name not in (STICKS | OF_VIEW | {*IN_MENUS})),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
-from rastrainer_simulator.net.views.screen import (
+from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Hint,
     Menu,

@@ -29,7 +29,7 @@ from rastrainer_simulator.flow.session.chosen_trial import (
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.net.views.screen import ItemKind, Menu, MenuItem, ScoreTrend
+from rastrainer_simulator.presentation.screen import ItemKind, Menu, MenuItem, ScoreTrend
 
 LONGEST_ID = 32
 
@@ -164,7 +164,7 @@ class ExperimentPage(SessionPage):
 
     def _assignments(self) -> tuple[MenuItem, ...]:
         """Return the button of the curriculum; none for who has none."""
-        told, words = self.session.curriculum, self.session.assignment_words
+        told, words = self.session.curriculum, self.session.assignment_texts
         if told is None:
             return ()
         return (self.button("assignments", value=words.summary(told), help=words.advice(told)),)
@@ -295,7 +295,7 @@ class AssignmentsPage(SessionPage):
         back = self.button("back")
         if told is None:
             return Menu(self.name, self.say("assignments.title"), items=(back,))
-        said = (told.title, self.session.assignment_words.advice(told))
+        said = (told.title, self.session.assignment_texts.advice(told))
         items = tuple(self._item(each) for each in told.assignments)
         return Menu(self.name, self.say("assignments.title"), said, items=(*items, back))
 
@@ -316,7 +316,7 @@ class AssignmentsPage(SessionPage):
             self.back()
 
     def _item(self, each: AssignmentMessage) -> MenuItem:
-        words = self.session.assignment_words
+        words = self.session.assignment_texts
         reason = assignment_obstacle(self.session, each)
         return MenuItem(
             _ASSIGNMENT + each.name,

@@ -7,8 +7,8 @@ from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ROTATION, TRANSLATION, ControlName, InputDevice
-from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
-from rastrainer_simulator.net.views.screen import Fact, ItemKind, Menu, MenuItem
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
+from rastrainer_simulator.presentation.screen import Fact, ItemKind, Menu, MenuItem
 
 SHEETS = 3
 

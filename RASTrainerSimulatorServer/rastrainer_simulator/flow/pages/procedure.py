@@ -26,7 +26,7 @@ from rastrainer_simulator.flow.session.plan_marks import (
     placed_line,
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.net.views.screen import (
+from rastrainer_simulator.presentation.screen import (
     ErrorArrow,
     Fact,
     Menu,

@@ -9,8 +9,8 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage, clickable_
 from rastrainer_simulator.flow.session.plan_marks import plan_marks
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
-from rastrainer_simulator.net.views.feedback_event import feedback_event
-from rastrainer_simulator.net.views.screen import Hint, Menu, Screen
+from rastrainer_simulator.presentation.feedback_event import feedback_event
+from rastrainer_simulator.presentation.screen import Hint, Menu, Screen
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.replay.replay_presenter import ACTIONS, Player, PlayerAction

@@ -23,10 +23,10 @@ from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem, Tone
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.presentation.screen import Fact, Menu, MenuItem, Tone
 from rastrainer_simulator.replay.recorded_trial import TrialLoading
 from rastrainer_simulator.state import TrialResult
+from rastrainer_simulator.texts.texts import Texts
 
 POOR_SCORE = 40.0
 LONGEST_SENTENCE = 300
@@ -37,7 +37,7 @@ class FinishedPage(SessionPage):
 
     def items(self) -> tuple[MenuItem, ...]:
         """Return where one can go from here."""
-        best, words = self.session.next_assignment, self.session.assignment_words
+        best, words = self.session.next_assignment, self.session.assignment_texts
         following = self._following()
         title = self.session.task_title(following) if best is None else words.label(best)
         label = self.say("result.next", task=title)

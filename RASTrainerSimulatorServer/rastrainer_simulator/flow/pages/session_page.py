@@ -8,7 +8,7 @@ from rastrainer_simulator.flow.session.open_pages import Page
 from rastrainer_simulator.flow.session.operator_device import SHOW, TILT
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
-from rastrainer_simulator.net.views.screen import PRESS, Hint, ItemKind, MenuItem
+from rastrainer_simulator.presentation.screen import PRESS, Hint, ItemKind, MenuItem
 
 
 class SessionPage(Page):

@@ -17,10 +17,10 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import InputDevice
-from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
-from rastrainer_simulator.net.views.screen import Menu, MenuItem
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, SHORTEST_PIN
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
+from rastrainer_simulator.presentation.screen import Menu, MenuItem
+from rastrainer_simulator.texts.texts import LANGUAGES
 
 
 class StartPage(SessionPage):

@@ -8,7 +8,7 @@ from rastrainer.study.protocol.questionnaires import QuestionnaireItem, find_que
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.net.views.screen import Fact, Menu
+from rastrainer_simulator.presentation.screen import Fact, Menu
 
 ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
 MAX_KNOWN = 5

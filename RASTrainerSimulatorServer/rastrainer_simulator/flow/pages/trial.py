@@ -20,7 +20,7 @@ from rastrainer_simulator.flow.pages.start import SettingsPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
 from rastrainer_simulator.loop.timing import raise_thread_priority
-from rastrainer_simulator.net.views.screen import Fact, Menu, Tone
+from rastrainer_simulator.presentation.screen import Fact, Menu, Tone
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.training.replies import given
 

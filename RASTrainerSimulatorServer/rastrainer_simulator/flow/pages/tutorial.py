@@ -9,8 +9,8 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.chosen_trial import obstacle, start_task, tutorial_rule
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName
-from rastrainer_simulator.net.views.screen import Fact, Menu
-from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
+from rastrainer_simulator.presentation.screen import Fact, Menu
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 
 
 class TutorialPage(SessionPage):

@@ -101,7 +101,7 @@ def obstacle(session: TrainingSession, task: str) -> str:
     head = session.scenario.name
     own = [each for each in assigned if each.is_played_as(head, task, *played_as)]
     if told is not None and own and all(each.is_locked for each in own):
-        return session.assignment_words.gate(told, own[0])
+        return session.assignment_texts.gate(told, own[0])
     return _missing_before(session, task, is_assigned=bool(own))
 
 
@@ -111,7 +111,7 @@ def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> st
     if unready or told is None:
         return unready
     if each.is_locked:
-        return session.assignment_words.gate(told, each)
+        return session.assignment_texts.gate(told, each)
     scenario = session.scenario
     is_on_head = (
         each.scenario in ("", scenario.name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.texts.texts import Texts
 
 MAX_TRAINEES = 1000
 """Of whom curricula are kept; the oldest is forgotten first."""
@@ -52,7 +52,7 @@ def newly_reached(
             yield each
 
 
-class AssignmentWords:
+class AssignmentTexts:
     """Says what assignments are, in the trainee's language."""
 
     def __init__(self, texts: Texts, task_title: Titles, procedure_title: Titles) -> None:

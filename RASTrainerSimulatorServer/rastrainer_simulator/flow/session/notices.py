@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rastrainer_simulator.net.views.screen import ScreenMessage, Tone
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.presentation.screen import ScreenMessage, Tone
+from rastrainer_simulator.texts.texts import Texts
 
 NOTICE_S = 5.0
 

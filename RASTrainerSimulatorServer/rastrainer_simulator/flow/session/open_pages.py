@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import ClassVar
 
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
-from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
-from rastrainer_simulator.net.views.screen import ItemKind, Menu, MenuItem, Screen
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
+from rastrainer_simulator.presentation.screen import ItemKind, Menu, MenuItem, Screen
 
 _STEPS = {ControlName.LEFT: -1, ControlName.RIGHT: 1}
 _MOVES = {ControlName.UP: -1, ControlName.DOWN: 1}

@@ -12,8 +12,8 @@ from rastrainer.protocol import Mode
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
-from rastrainer_simulator.ops.texts.texts import Texts, input_label, pair_label
 from rastrainer_simulator.state import OperatorInput
+from rastrainer_simulator.texts.texts import Texts, input_label, pair_label
 
 _OWN_LABELS = {SourceKind.XR: "headset", SourceKind.TOUCH_SCREEN: "touch screen"}
 _BY_MOUSE = "mouse"

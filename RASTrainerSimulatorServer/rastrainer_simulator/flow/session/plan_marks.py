@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rastrainer.procedure.geometry import BoneAhead
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.net.views.screen import DepthRuler, ErrorArrow, Tone
+from rastrainer_simulator.presentation.screen import DepthRuler, ErrorArrow, Tone
 from rastrainer_simulator.trial_state import PlannedLine, ProcedureState, TrajectoryState
 from rastrainer_simulator.vectors import Vector, add, dot, scale, subtract
 

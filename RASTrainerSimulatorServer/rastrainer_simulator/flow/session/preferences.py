@@ -15,8 +15,8 @@ from rastrainer.json_checks import accepted, text
 from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, TouchRule, TutorialRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from rastrainer_simulator.teleoperation.steering import AxesChoice, ToolDirection
+from rastrainer_simulator.texts.texts import LANGUAGES
 
 PREFERENCES_FILE = "preferences.json"
 MAX_BYTES = 2**14

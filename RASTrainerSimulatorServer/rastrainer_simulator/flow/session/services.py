@@ -12,8 +12,8 @@ from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.flow.session.curricula import Curricula
 from rastrainer_simulator.flow.session.study_steps import StudySteps
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
 from rastrainer_simulator.state import Answer
+from rastrainer_simulator.texts.texts import LANGUAGES
 
 SET_UP_AFTER_S = 1.0
 """A simulation takes a second to make: who steps through the options shall not wait for each."""

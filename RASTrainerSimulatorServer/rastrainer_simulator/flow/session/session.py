@@ -17,7 +17,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.flow.session.curricula import AssignmentWords, newly_reached
+from rastrainer_simulator.flow.session.curricula import AssignmentTexts, newly_reached
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.flow.session.notices import Notices
 from rastrainer_simulator.flow.session.open_pages import OpenPages
@@ -45,13 +45,13 @@ from rastrainer_simulator.input.bindings import (
 )
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.net.views.feedback_event import FeedbackEvent
-from rastrainer_simulator.net.views.screen import Tone
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts
-from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
+from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
+from rastrainer_simulator.presentation.screen import Tone
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
 from rastrainer_simulator.state import Answer, OperatorInput, SimulationState, TrainingState
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from rastrainer_simulator.vectors import Vector, in_meters
 from rastrainer_simulator.viewpoint.view_control import Orbit
 
@@ -200,9 +200,9 @@ class TrainingSession:
         return None if told is None else told.find(told.next)
 
     @property
-    def assignment_words(self) -> AssignmentWords:
+    def assignment_texts(self) -> AssignmentTexts:
         """What says of assignments what trainees read."""
-        return AssignmentWords(self.texts, self.task_title, self.procedure_title)
+        return AssignmentTexts(self.texts, self.task_title, self.procedure_title)
 
     def advance(self, dt: float, state: SimulationState) -> None:
         """Take the newest state, and what has been answered within `dt` seconds."""
@@ -332,7 +332,7 @@ class TrainingSession:
         """Say which assignment the trainee has reached since Slicer told of it before."""
         before, self._told = self._told, self.curriculum
         for each in newly_reached(before, self._told):
-            title = self.assignment_words.title(each)
+            title = self.assignment_texts.title(each)
             said = self.texts.say("assignments.just reached", assignment=title)
             self.notices.add(said, Tone.GOOD, REACHED_S)
 

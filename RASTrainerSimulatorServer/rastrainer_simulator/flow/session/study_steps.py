@@ -9,7 +9,7 @@ from dataclasses import replace
 from rastrainer.protocol import FREE, StepKind
 from rastrainer.study.protocol.questionnaires import QUESTIONNAIRES
 from rastrainer.study.protocol.steps import StepAnswers, StudyStep
-from rastrainer_simulator.ops.texts.texts import Texts
+from rastrainer_simulator.texts.texts import Texts
 
 MAX_TRAINEES = 1000
 """Of whom steps are kept; the oldest is forgotten first."""

@@ -16,7 +16,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.touch_registration import trace_guide
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
-from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.trial_state import TraceState

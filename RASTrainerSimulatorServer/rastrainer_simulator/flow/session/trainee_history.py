@@ -30,7 +30,7 @@ from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.ops.stamps import file_stamp, iso
-from rastrainer_simulator.record.beside_the_trial import TutorialOutcome
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 
 _REGISTERED = b'"kind":"registered"'
 _PRACTICED = (

@@ -58,7 +58,7 @@ class TrialView:
         self._best.forget()
         self._went_for, self._is_wanted = None, False
 
-    def has_gone_to(self, label: str | None) -> bool:
+    def has_moved_to(self, label: str | None) -> bool:
         """Return whether the view has arrived at the best view of a point."""
         is_there = not self._is_wanted and not self.control.is_traveling
         return label is not None and label == self._went_for and is_there

@@ -10,7 +10,7 @@ from enum import Enum
 from rastrainer.protocol import Mode
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.record.beside_the_trial import GUIDED_TOUCHES
+from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES
 from rastrainer_simulator.state import TouchStage
 from rastrainer_simulator.teleoperation.steering import Axes
 from rastrainer_simulator.vectors import Vector, distance, dot, subtract
@@ -172,7 +172,7 @@ class LookedAround(StepMeasure):
             self.done = max(self.done, abs(turn))
 
 
-class Became(StepMeasure):
+class BecameTrue(StepMeasure):
     """Something is true that was not."""
 
     def __init__(self, condition: Callable[[TutorialObservation], bool]) -> None:
@@ -210,11 +210,11 @@ MEASURES: Mapping[TutorialStep, Callable[[], StepMeasure]] = {
     TutorialStep.SLOW: TipMovedSlowly,
     TutorialStep.TURN_VIEW: ViewTurned,
     TutorialStep.LOOK_AROUND: LookedAround,
-    TutorialStep.BEST_VIEW: lambda: Became(lambda now: now.has_best_view),
-    TutorialStep.LOWER: lambda: Became(_is_lowered),
+    TutorialStep.BEST_VIEW: lambda: BecameTrue(lambda now: now.has_best_view),
+    TutorialStep.LOWER: lambda: BecameTrue(_is_lowered),
     TutorialStep.TOUCH: lambda: PointsTouched(1),
-    TutorialStep.UNDO: lambda: Became(lambda now: now.undone > 0),
-    TutorialStep.PAUSE: lambda: Became(lambda now: now.has_paused),
+    TutorialStep.UNDO: lambda: BecameTrue(lambda now: now.undone > 0),
+    TutorialStep.PAUSE: lambda: BecameTrue(lambda now: now.has_paused),
     TutorialStep.GUIDED: lambda: PointsTouched(GUIDED_TOUCHES),
 }
 """For each step what measures it, made anew when the step begins."""

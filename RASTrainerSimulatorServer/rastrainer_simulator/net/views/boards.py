@@ -18,10 +18,10 @@ from rastrainer.json_checks import accepted, one_of, text
 from rastrainer.protocol import OPEN_PHASES
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.views import outgoing
-from rastrainer_simulator.net.views.gate import ROLE, ViewRole, refuse_for
-from rastrainer_simulator.net.views.presenter import InstructorOrder, Presenter, Seat
+from rastrainer_simulator.net.views.access_control import ROLE, ViewRole, refuse_for
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, PinGuesses
+from rastrainer_simulator.presentation.presenter import InstructorOrder, Presenter, Seat
 from rastrainer_simulator.state import SimulationState
 
 NEWS_HZ = 5.0

@@ -18,7 +18,7 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.loop.timing import AsyncRateLimiter
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import Listener
-from rastrainer_simulator.net.views.gate import (
+from rastrainer_simulator.net.views.access_control import (
     Gate,
     PairingCode,
     Sessions,
@@ -35,11 +35,11 @@ def http_log() -> logging.Logger:
     """Return a log of our own mistakes only: what strangers send is not written down."""
     log = logging.getLogger(f"{__name__}.http")
     if not log.filters:
-        log.addFilter(_is_own_mistake)
+        log.addFilter(_is_our_own_error)
     return log
 
 
-def _is_own_mistake(record: logging.LogRecord) -> bool:
+def _is_our_own_error(record: logging.LogRecord) -> bool:
     error = record.exc_info[1] if record.exc_info else None
     return not isinstance(error, HttpProcessingError)
 

@@ -12,11 +12,11 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_VIEW_PORT
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.state_feed import StateSource
-from rastrainer_simulator.net.views.gate import LONGEST_KEY, SHORTEST_KEY
-from rastrainer_simulator.net.views.presenter import Presenter
+from rastrainer_simulator.net.views.access_control import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
+from rastrainer_simulator.presentation.presenter import Presenter
 
 
 async def open_views(
@@ -49,11 +49,11 @@ async def open_views(
             kept, or the keys of boards cannot be read.
     """
 
-    def tell_new_code(code: str) -> None:
+    def announce_new_code(code: str) -> None:
         announce(f"has a new pairing code for views: {code}")
 
     server = ViewServer(
-        source, presenter, tell_new_code, robot_meshes, limits, scenario_picture, config, pin
+        source, presenter, announce_new_code, robot_meshes, limits, scenario_picture, config, pin
     )
     agreed = os.environ.get(VIEW_KEY_VARIABLE)
     if agreed is not None:

@@ -15,9 +15,9 @@ from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import Pacer
-from rastrainer_simulator.net.views.messages import PROTOCOL, Worn
-from rastrainer_simulator.net.views.presenter import Control, Feedback, TraceGuidance
-from rastrainer_simulator.net.views.screen import Screen, screen_to_json
+from rastrainer_simulator.net.views.incoming import PROTOCOL, Worn
+from rastrainer_simulator.presentation.presenter import Control, Feedback, TraceGuidance
+from rastrainer_simulator.presentation.screen import Screen, screen_to_json
 from rastrainer_simulator.scene.nodes import no_go_name
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
@@ -245,7 +245,7 @@ def quaternion(rows: Sequence[Sequence[float]]) -> tuple[float, float, float, fl
     return x / 2, y / 2, z / 2, w / 2
 
 
-class TraceNews:
+class TraceUpdate:
     """The trace as all views know it; each message has only what they do not know."""
 
     def __init__(self) -> None:

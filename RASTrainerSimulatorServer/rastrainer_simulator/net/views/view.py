@@ -14,8 +14,8 @@ from aiohttp import WSCloseCode, WSMsgType, web
 from rastrainer.errors import InputError
 from rastrainer_simulator.loop.timing import RateLimit
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views import messages
-from rastrainer_simulator.net.views.messages import Received, Worn, check_message
+from rastrainer_simulator.net.views import incoming
+from rastrainer_simulator.net.views.incoming import Received, Worn, check_message
 from rastrainer_simulator.net.views.outgoing import (
     CONTROL,
     PAIRING,
@@ -26,14 +26,14 @@ from rastrainer_simulator.net.views.outgoing import (
     WELCOME,
     Mirror,
 )
-from rastrainer_simulator.net.views.presenter import Frames, Hello, Presenter
+from rastrainer_simulator.presentation.presenter import Frames, Hello, Presenter
 
 _log = logging.getLogger(__name__)
 
 TOO_MANY_MESSAGES = "The view has sent more messages than a trainee's inputs can produce."
 TOO_MANY_EVENTS = "The view has not read its events; it may come back."
 NOT_TEXT = "Messages must be text."
-ONLY_WATCHES = f"A spectator drives nothing: it may send {messages.ALIVE} and nothing else."
+ONLY_WATCHES = f"A spectator drives nothing: it may send {incoming.ALIVE} and nothing else."
 MAX_KEYS = 32
 CLOSE_S = 3.0
 """How long a view has to read what waits for it, and to agree that it ends."""
@@ -78,12 +78,12 @@ class View:
     @property
     def is_spectator(self) -> bool:
         """Whether it only watches: the flow, which counts who sees a trial, never hears of it."""
-        return self.hello.kind in messages.ONLY_WATCH
+        return self.hello.kind in incoming.ONLY_WATCH
 
     @property
     def is_board(self) -> bool:
         """Whether it is sent news of the seat only, and of no pose."""
-        return self.hello.kind == messages.BOARD
+        return self.hello.kind == incoming.BOARD
 
     async def serve(self) -> None:
         """Send and receive until either side ends it."""
@@ -152,20 +152,20 @@ class View:
             """A sign of life needs no more than to have arrived."""
 
         if self.is_spectator:
-            return {messages.ALIVE: nothing}
-        worn = {messages.WORN: self._take_worn} if self.hello.kind == messages.HEADSET else {}
+            return {incoming.ALIVE: nothing}
+        worn = {incoming.WORN: self._take_worn} if self.hello.kind == incoming.HEADSET else {}
         return {
             **worn,
-            messages.KEY: self.held.key,
-            messages.PAD: self.held.pad,
-            messages.STICKS: self.held.sticks,
-            messages.ORBIT: to_presenter(presenter.on_orbit),
-            messages.PRESS: to_presenter(presenter.on_press),
-            messages.ITEM: to_presenter(presenter.on_item),
-            messages.TEXT: to_presenter(presenter.on_text),
-            messages.FRAMES: lambda *values: self._take_frames(Frames(*values)),
-            messages.VISIBILITY: to_presenter(presenter.on_visibility),
-            messages.ALIVE: nothing,
+            incoming.KEY: self.held.key,
+            incoming.PAD: self.held.pad,
+            incoming.STICKS: self.held.sticks,
+            incoming.ORBIT: to_presenter(presenter.on_orbit),
+            incoming.PRESS: to_presenter(presenter.on_press),
+            incoming.ITEM: to_presenter(presenter.on_item),
+            incoming.TEXT: to_presenter(presenter.on_text),
+            incoming.FRAMES: lambda *values: self._take_frames(Frames(*values)),
+            incoming.VISIBILITY: to_presenter(presenter.on_visibility),
+            incoming.ALIVE: nothing,
         }
 
     def _take_frames(self, frames: Frames) -> None:

@@ -18,14 +18,20 @@ from rastrainer_simulator.assets import NOT_BUILT, asset_path, page_folder
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.net.state_feed import StateFeed, StateSource
+from rastrainer_simulator.net.views.access_control import (
+    BOARDS_FILE,
+    ROLE,
+    PairingCode,
+    Sessions,
+    ViewRole,
+)
 from rastrainer_simulator.net.views.boards import InstructorOrders
-from rastrainer_simulator.net.views.gate import BOARDS_FILE, ROLE, PairingCode, Sessions, ViewRole
+from rastrainer_simulator.net.views.incoming import HELLO, ONLY_WATCH, SUBPROTOCOL, check_message
 from rastrainer_simulator.net.views.limited_server import GuardedServer
-from rastrainer_simulator.net.views.messages import HELLO, ONLY_WATCH, SUBPROTOCOL, check_message
-from rastrainer_simulator.net.views.presenter import Hello, Presenter
 from rastrainer_simulator.net.views.view import View
 from rastrainer_simulator.net.views.views import Views
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
+from rastrainer_simulator.presentation.presenter import Hello, Presenter
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
 
 FOREVER = "private, max-age=31536000, immutable"
@@ -120,7 +126,7 @@ class ViewServer:
     def announce(self, *addresses: str) -> None:
         """Send this computer's views where else browsers find the page."""
         self.addresses += addresses
-        self._views.tell_pairing(self.code.code, self.addresses)
+        self._views.announce_pairing(self.code.code, self.addresses)
 
     async def close(self) -> None:
         """Close the views and stop listening."""
@@ -131,7 +137,7 @@ class ViewServer:
 
     def _renewed(self, code: str) -> None:
         self._on_new_code(code)
-        self._views.tell_pairing(code, self.addresses)
+        self._views.announce_pairing(code, self.addresses)
 
     def _routes(self) -> list[web.RouteDef]:
         return [
@@ -192,13 +198,13 @@ class ViewServer:
             raise web.HTTPBadRequest(text=f"Ask for a WebSocket with {SUBPROTOCOL}.")
         role = request[ROLE]
         if self._streams[role] >= (
-            self._limits.spectators if role.only_watches else self._limits.views
+            self._limits.spectators if role.is_watch_only else self._limits.views
         ):
             raise web.HTTPServiceUnavailable(text=FULL)
         self._streams[role] += 1
         try:
             await stream.prepare(request)
-            self._keep_little_waiting(request)
+            self._limit_buffering(request)
             await self._serve(stream, role, is_loopback(request.remote or ""))
         finally:
             self._streams[role] -= 1
@@ -225,11 +231,11 @@ class ViewServer:
         if received.type != HELLO:
             raise InputError(HELLO_FIRST)
         hello = Hello(*received.values)
-        if role.only_watches and hello.kind not in ONLY_WATCH:
+        if role.is_watch_only and hello.kind not in ONLY_WATCH:
             raise InputError(ONLY_WATCHES)
         return hello
 
-    def _keep_little_waiting(self, request: web.Request) -> None:
+    def _limit_buffering(self, request: web.Request) -> None:
         transport = request.transport
         if transport is None:
             return

@@ -15,11 +15,11 @@ from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.boards import Boards
-from rastrainer_simulator.net.views.messages import DESKTOP, HEADSET
-from rastrainer_simulator.net.views.outgoing import Mirror, TraceNews
-from rastrainer_simulator.net.views.presenter import Control, Feedback, Presenter, ViewUpdate
-from rastrainer_simulator.net.views.screen import Screen, without_secrets
+from rastrainer_simulator.net.views.incoming import DESKTOP, HEADSET
+from rastrainer_simulator.net.views.outgoing import Mirror, TraceUpdate
 from rastrainer_simulator.net.views.view import View
+from rastrainer_simulator.presentation.presenter import Control, Feedback, Presenter, ViewUpdate
+from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.scene.scene_files import SceneFiles
 from rastrainer_simulator.state import SimulationState
 
@@ -52,7 +52,7 @@ class Views:
         self._task = ""
         self._scene = ""
         self._pairing = ""
-        self._trace = TraceNews()
+        self._trace = TraceUpdate()
         self.mirror = Mirror()
         self._loading: asyncio.Task[None] | None = None
         self._watching: asyncio.Task[None] | None = None
@@ -83,7 +83,7 @@ class Views:
             if not view.is_spectator:
                 self._presenter.view_left(view.number)
 
-    def tell_pairing(self, code: str, addresses: Sequence[str]) -> None:
+    def announce_pairing(self, code: str, addresses: Sequence[str]) -> None:
         """Send the views of this computer how others are paired, now and whenever one joins."""
         self._pairing = outgoing.pairing(code, addresses)
         for view in self._views.values():

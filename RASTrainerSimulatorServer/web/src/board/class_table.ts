@@ -5,28 +5,28 @@ import { standingMark, type StandingState } from "./standing_mark";
 import { date, say } from "./texts";
 
 /** What the board sends of a class; docs/views.md says what each member is. */
-export interface ClassNews {
+export interface ClassUpdate {
   hasStudy: boolean;
   problem: string;
   asOf: string;
-  curricula: readonly CurriculumNews[];
+  curricula: readonly CurriculumUpdate[];
   without: readonly string[];
 }
 
-export interface CurriculumNews {
+export interface CurriculumUpdate {
   title: string;
   assignments: readonly { name: string; label: string; goal: string }[];
-  trainees: readonly TraineeNews[];
+  trainees: readonly TraineeUpdate[];
 }
 
-export interface TraineeNews {
+export interface TraineeUpdate {
   trainee: string;
   reached: number;
   next: string;
-  cells: readonly CellNews[];
+  cells: readonly CellUpdate[];
 }
 
-export interface CellNews {
+export interface CellUpdate {
   state: StandingState;
   progress: string;
   done: number;
@@ -47,7 +47,7 @@ export class ClassTable {
   private seats: ReadonlyMap<string, string> = new Map();
 
   constructor(
-    private news: CurriculumNews,
+    private news: CurriculumUpdate,
     number: number,
   ) {
     const caption = document.createElement("caption");
@@ -74,7 +74,7 @@ export class ClassTable {
   }
 
   /** Show news of the same assignments; return false for another curriculum, which needs another table. */
-  show(news: CurriculumNews): boolean {
+  show(news: CurriculumUpdate): boolean {
     const { title, assignments } = this.news;
     if (JSON.stringify([title, assignments]) !== JSON.stringify([news.title, news.assignments])) return false;
     if (JSON.stringify(this.news) !== JSON.stringify(news)) {
@@ -125,11 +125,11 @@ export class ClassTable {
 }
 
 /** How far a trainee is: assignments that are reached, and shares of the open ones. */
-function progressOf({ cells }: TraineeNews): number {
+function progressOf({ cells }: TraineeUpdate): number {
   return cells.reduce((sum, { state, done, needed }) => sum + (state === "locked" ? 0 : done / needed), 0);
 }
 
-function rowOf({ trainee, reached, next, cells }: TraineeNews): HTMLTableRowElement {
+function rowOf({ trainee, reached, next, cells }: TraineeUpdate): HTMLTableRowElement {
   const row = document.createElement("tr");
   const name = element("th", trainee);
   name.scope = "row";
@@ -138,7 +138,7 @@ function rowOf({ trainee, reached, next, cells }: TraineeNews): HTMLTableRowElem
   return row;
 }
 
-function cellOf({ state, progress, done, needed, reachedUtc }: CellNews): HTMLTableCellElement {
+function cellOf({ state, progress, done, needed, reachedUtc }: CellUpdate): HTMLTableCellElement {
   const cell = document.createElement("td");
   cell.dataset.state = state;
   cell.append(standingMark(state, done / needed), element("span", progress));

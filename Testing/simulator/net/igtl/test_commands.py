@@ -58,7 +58,7 @@ def test_simulation_gets_checked_arguments_and_the_name_of_the_client(client, li
     assert arguments == {"velocityMmS": (1.0, 2.0, 3.0), "frame": "world", "durationS": 0.1}
 
 
-def test_refusal_of_the_simulation_comes_back_in_its_words(client, link_server):
+def test_refusal_by_the_simulation_is_returned_in_its_words(client, link_server):
     link_server.simulated.answer = lambda *_: Answer(0, False, "Begin one with StartTask.")
     reply = client.send_command("Capture")
     assert (reply.ok, reply.error) == (False, "Begin one with StartTask.")
@@ -90,14 +90,14 @@ def test_wrong_command_is_answered_with_what_would_be_right(client, name, argume
     ],
     ids=lambda body: body[:20],
 )
-def test_body_that_is_no_json_object_is_refused(link_server, body):
+def test_body_that_is_not_a_json_object_is_refused(link_server, body):
     command = pack(Message("command", Command(77, "Jog", body)))
     reply = answer_to(link_server.port, command)
     assert reply.metadata["Status"] == "FAIL"
     assert "must be one JSON object with finite numbers" in reply.metadata["ErrorMessage"]
 
 
-def test_name_that_cannot_be_repeated_is_answered_without_it(link_server):
+def test_name_that_cannot_be_echoed_is_answered_without_it(link_server):
     body = Command(5, "Fly").pack().replace(b"Fly", b"\xff\x01\x02")
     header = struct.pack(">H12s20sIIQQ", 1, b"COMMAND", b"command", 0, 0, len(body), crc64(body))
     reply = answer_to(link_server.port, header + body).content
@@ -111,7 +111,7 @@ def test_hello_of_another_protocol_version_is_refused_with_ours(client):
     assert reply.data["protocolVersion"] == PROTOCOL_VERSION
 
 
-def test_only_a_client_that_says_so_counts_as_slicer(client, link_server):
+def test_only_a_client_that_declares_it_counts_as_slicer(client, link_server):
     def is_slicer_connected(**hello):
         client.send_command("Hello", {**HELLO, **hello})
         return link_server.link.is_slicer_connected
@@ -123,7 +123,7 @@ def test_only_a_client_that_says_so_counts_as_slicer(client, link_server):
     assert is_slicer_connected(scores=True)
 
 
-def test_commands_of_a_client_are_carried_out_in_their_order(client, link_server):
+def test_commands_of_a_client_are_carried_out_in_order(client, link_server):
     count = 300
     for number in range(count):
         body = json.dumps({"velocityMmS": [number, 0, 0]})
@@ -133,7 +133,7 @@ def test_commands_of_a_client_are_carried_out_in_their_order(client, link_server
     assert [given["velocityMmS"][0] for given in jogs] == list(range(count))
 
 
-def test_simulation_is_given_few_commands_of_one_client_at_once(start):
+def test_simulation_is_given_only_a_few_commands_of_one_client_at_once(start):
     server = start(LinkServer, commands_at_once=4)
     given = []
 

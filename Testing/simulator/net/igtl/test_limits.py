@@ -35,7 +35,7 @@ def ended(peer: socket.socket) -> bool:
     return True
 
 
-def test_a_page_in_a_browser_commands_nothing(link_server):
+def test_a_page_in_a_browser_cannot_send_commands(link_server):
     with socket.create_connection((HOST, link_server.port), 60) as peer:
         peer.sendall(FROM_A_PAGE % len(ABORT) + ABORT)
         assert ended(peer)
@@ -44,7 +44,7 @@ def test_a_page_in_a_browser_commands_nothing(link_server):
     assert [name for name, *_ in link_server.simulated.commands] == ["ListTasks"]
 
 
-def test_bytes_now_and_then_do_not_keep_a_half_message_alive(start):
+def test_occasional_bytes_do_not_keep_a_half_sent_message_alive(start):
     server = start(PlainServer, half_message_s=0.1)
     with socket.create_connection((HOST, server.port), 60) as peer:
         peer.sendall(pack(Message("Note", String("x" * 60_000)))[:70])
@@ -62,7 +62,7 @@ def test_bytes_now_and_then_do_not_keep_a_half_message_alive(start):
             pytest.fail("the connection was kept")
 
 
-def test_a_message_that_comes_slowly_but_steadily_is_taken(start):
+def test_a_message_that_arrives_slowly_but_steadily_is_accepted(start):
     server = start(PlainServer, half_message_s=0.05, slowest_bytes_per_s=1.0)
     note = pack(Message("Note", String("x" * 1000), timestamp=1))
     with socket.create_connection((HOST, server.port), 60) as peer:
@@ -72,7 +72,7 @@ def test_a_message_that_comes_slowly_but_steadily_is_taken(start):
         assert server.handler.wait_for_messages(1)[0].content == String("x" * 1000)
 
 
-def test_who_asks_for_echoes_and_does_not_read_them_is_dropped_before_they_pile_up(start):
+def test_a_client_that_requests_echoes_without_reading_them_is_dropped_before_they_pile_up(start):
     server = start(LinkServer, slow_client_s=60.0, waiting_bytes=300_000)
     metadata = {f"key-{number}": "x" * 10_000 for number in range(6)}
     with Client(port=server.port) as good, socket.socket() as peer:
@@ -87,7 +87,7 @@ def test_who_asks_for_echoes_and_does_not_read_them_is_dropped_before_they_pile_
         assert good.wait_for("Probe").content == PROBE.content
 
 
-def test_commands_wait_only_up_to_so_many_bytes(start):
+def test_waiting_commands_are_limited_in_bytes(start):
     server = start(LinkServer, commands_at_once=0, waiting_command_bytes=100_000)
     server.simulated.answer = lambda _name, _arguments: Answer(0, True)
     details = {"text": "x" * 30_000}
@@ -115,7 +115,7 @@ def served_socket(plain_server):
         yield connection._transport.get_extra_info("socket")
 
 
-def test_the_system_is_asked_to_notice_a_machine_that_has_gone(plain_server):
+def test_the_system_is_asked_to_detect_a_machine_that_has_gone(plain_server):
     with served_socket(plain_server) as peer:
         assert peer.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
         seconds = plain_server.server.limits.silent_peer_s
@@ -128,12 +128,12 @@ def test_the_system_is_asked_to_notice_a_machine_that_has_gone(plain_server):
         assert timeout_ms == 1000 * seconds
 
 
-def test_small_messages_are_sent_at_once(plain_server):
+def test_small_messages_are_sent_without_delay(plain_server):
     with served_socket(plain_server) as peer:
         assert peer.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
 
 
-def test_connections_are_taken_in_turn_however_many_want_one(monkeypatch):
+def test_connections_are_accepted_in_turn_however_many_are_waiting(monkeypatch):
     waits = []
 
     async def note(seconds):
@@ -150,7 +150,7 @@ def test_connections_are_taken_in_turn_however_many_want_one(monkeypatch):
     assert waits == pytest.approx([0.1, 0.2, 0.3])
 
 
-def test_a_flood_of_connections_keeps_nobody_from_being_served(start):
+def test_a_flood_of_connections_does_not_keep_anybody_from_being_served(start):
     server = start(LinkServer, new_clients_per_s=1000.0, clients=20)
     with Client(port=server.port) as good:
         good.send(PROBE)
@@ -162,11 +162,11 @@ def test_a_flood_of_connections_keeps_nobody_from_being_served(start):
         assert good.wait_for("Again").content == PROBE.content
 
 
-def test_every_limit_is_above_zero():
+def test_every_limit_must_be_above_zero():
     assert all(value > 0 for value in vars(LinkLimits()).values())
 
 
-def test_new_client_waits_for_what_its_first_bytes_have_cost():
+def test_new_client_waits_for_the_cost_of_its_first_bytes():
     assert ReadingBudget(now=0.0).charge(0.003, share=0.1, now=0.0) == pytest.approx(0.03)
 
 
@@ -184,12 +184,12 @@ def test_client_above_its_share_gets_its_share_and_no_more():
     assert read == pytest.approx(1.0, rel=0.02)
 
 
-def test_long_silence_saves_up_little():
+def test_long_silence_accumulates_little_credit():
     budget = ReadingBudget(now=0.0)
     assert budget.charge(0.05, 0.1, now=3600.0) == pytest.approx(0.3)
 
 
-def test_flood_is_read_slowly_but_wholly_and_in_order(start):
+def test_flood_is_read_slowly_but_completely_and_in_order(start):
     server = start(PlainServer, reading_share=0.05)
     with Client(port=server.port) as flood, Client(port=server.port) as other:
         for number in range(300):

@@ -77,7 +77,7 @@ def moving(sim_time):
     return at_rest(sim_time=sim_time, tool_tip_to_world=pose, link_to_world=(pose,) * 8)
 
 
-def test_tip_comes_60_times_and_each_link_30_times_a_simulated_second(publisher, receiver):
+def test_tip_is_sent_60_times_and_each_link_30_times_per_simulated_second(publisher, receiver):
     run(publisher, 10, moving)
     counts = Counter(message.device for message in receiver.messages)
     assert counts["ToolTipToWorld"] == pytest.approx(600, abs=1)
@@ -85,7 +85,7 @@ def test_tip_comes_60_times_and_each_link_30_times_a_simulated_second(publisher,
         assert counts[f"Link{link}ToWorld"] == pytest.approx(300, abs=1)
 
 
-def test_each_client_has_the_rates_that_it_asked_for(publisher, receiver):
+def test_each_client_gets_the_rates_that_it_requested(publisher, receiver):
     fast, silent = Receiver(), Receiver()
     publisher.subscribe(fast, PoseSubscription(250, 10))
     publisher.subscribe(silent, PoseSubscription(0, 0))
@@ -101,7 +101,7 @@ def test_at_rest_nothing_is_sent(publisher, receiver):
     assert receiver.messages == []
 
 
-def test_a_link_that_stands_is_not_sent_with_one_that_moves(publisher, receiver):
+def test_a_link_at_rest_is_not_sent_along_with_a_moving_one(publisher, receiver):
     def elbow(sim_time):
         return replace(moving(sim_time), link_to_world=(*[np.eye(4)] * 7, np.eye(4) * sim_time))
 
@@ -110,14 +110,14 @@ def test_a_link_that_stands_is_not_sent_with_one_that_moves(publisher, receiver)
     assert not any(receiver.of(f"Link{link}ToWorld") for link in range(7))
 
 
-def test_poses_that_are_equal_in_32_bits_have_not_changed(publisher, receiver):
+def test_poses_that_are_equal_in_32_bits_count_as_unchanged(publisher, receiver):
     pose = np.eye(4) * (1 + 1e-12)
     run(publisher, 1, lambda t: at_rest(sim_time=t, link_to_world=(pose,) * 8))
     assert receiver.messages == []
 
 
 @pytest.mark.parametrize("times", [1, 2])
-def test_who_has_just_subscribed_gets_every_pose_once(publisher, times):
+def test_a_new_subscriber_gets_every_pose_once(publisher, times):
     late = Receiver()
     for _ in range(times):
         publisher.subscribe(late, PoseSubscription())
@@ -127,7 +127,7 @@ def test_who_has_just_subscribed_gets_every_pose_once(publisher, times):
     assert counts == dict.fromkeys([*DeviceName.LINK_TO_WORLD, DeviceName.TOOL_TIP_TO_WORLD], times)
 
 
-def test_a_steady_client_gets_its_poses_at_rest_too(publisher, receiver):
+def test_a_steady_client_gets_poses_even_at_rest(publisher, receiver):
     steady = Receiver()
     publisher.subscribe(steady, PoseSubscription(is_steady=True))
     run(publisher, 2)
@@ -135,24 +135,24 @@ def test_a_steady_client_gets_its_poses_at_rest_too(publisher, receiver):
     assert receiver.of("ToolTipToWorld") == []
 
 
-def test_a_gap_in_the_numbers_is_never_left_by_what_was_not_new(publisher, receiver):
+def test_unchanged_poses_leave_no_gap_in_the_sequence_numbers(publisher, receiver):
     run(publisher, 1)
     run(publisher, 1, moving, start=3.0)
     numbers = [int(m.metadata["seq"]) for m in receiver.messages]
     assert set(np.diff(numbers)) == {0, 1}
 
 
-def test_state_comes_only_when_it_changes(publisher, receiver):
+def test_state_is_sent_only_when_it_changes(publisher, receiver):
     run(publisher, 5)
     assert receiver.of("SimState") == []
 
 
-def test_state_that_changes_at_every_tick_comes_at_most_30_times_a_second(publisher, receiver):
+def test_state_that_changes_at_every_tick_is_sent_at_most_30_times_a_second(publisher, receiver):
     run(publisher, 10, lambda t: at_rest(sim_time=t, q=(t,) * 7))
     assert len(receiver.of("SimState")) == pytest.approx(300, abs=1)
 
 
-def test_tip_travels_in_millimeters_with_its_number_and_time(publisher, receiver):
+def test_tip_is_sent_in_millimeters_with_its_number_and_time(publisher, receiver):
     pose = np.array([[0, -1, 0, 0.5], [1, 0, 0, -0.25], [0, 0, 1, 0.125], [0, 0, 0, 1]])
     publisher.publish(at_rest(sim_time=2.5, tool_tip_to_world=pose))
     moved = pose + np.array([0, 0, 0, 1e-3]) * np.array([[1], [1], [1], [0]])
@@ -200,7 +200,7 @@ def test_state_is_ascii_json_with_the_agreed_keys(publisher, receiver):
     }
 
 
-def test_a_trace_tells_how_far_it_is_and_whether_it_is_guided(publisher, receiver):
+def test_a_trace_reports_its_progress_and_whether_it_is_guided(publisher, receiver):
     trace = TraceState((TracedPoint((0.0, 0.0, 0.0), 1.0, 1.0),), (0,), is_on=True)
     traced = replace(RUNNING, trace=trace)
     publisher.publish(at_rest(sim_time=3.0, training=traced))
@@ -226,7 +226,7 @@ def aligning(feed=0.0, phase=Phase.ALIGNING, **others):
     return at_rest(tool_tip_to_world=pose, training=training, feed=feed, **others)
 
 
-def test_a_procedure_is_reported_by_the_registration_in_use_in_mm_and_degrees(publisher, receiver):
+def test_a_procedure_is_reported_by_the_current_registration_in_mm_and_degrees(publisher, receiver):
     publisher.publish(aligning(sim_time=1.0))
     (message,) = receiver.of("SimState")
     assert json.loads(message.content.text)["procedure"] == {
@@ -244,9 +244,7 @@ def test_a_procedure_is_reported_by_the_registration_in_use_in_mm_and_degrees(pu
 
 
 @pytest.mark.parametrize("phase", [Phase.DRILLING, Phase.INSERTING])
-def test_the_instrument_s_tip_is_on_the_guide_s_axis_as_deep_as_it_is_fed(
-    publisher, receiver, phase
-):
+def test_the_instruments_tip_is_on_the_guides_axis_at_the_fed_depth(publisher, receiver, phase):
     publisher.publish(aligning(sim_time=1.0, phase=phase, feed=0.0125))
     (message,) = receiver.of("InstrumentTipToWorld")
     np.testing.assert_allclose(np.array(message.content.matrix)[:3, 3], (500, 0, 387.5), atol=1e-4)
@@ -256,7 +254,7 @@ def test_the_instrument_s_tip_is_on_the_guide_s_axis_as_deep_as_it_is_fed(
     assert len(receiver.of("InstrumentTipToWorld")) == 2
 
 
-def test_nothing_is_in_the_guide_while_it_is_aligned(publisher, receiver):
+def test_nothing_is_in_the_guide_while_it_is_being_aligned(publisher, receiver):
     publisher.publish(aligning(sim_time=1.0))
     assert receiver.of("InstrumentTipToWorld") == []
 
@@ -266,7 +264,7 @@ def test_clearance_without_a_head_is_reported_as_null(publisher, receiver):
     assert json.loads(receiver.of("SimState")[0].content.text)["clearanceMm"] is None
 
 
-def test_points_come_whole_at_every_touch_and_undo_and_at_once(publisher, receiver):
+def test_points_are_sent_completely_and_immediately_at_every_touch_and_undo(publisher, receiver):
     steps = [(FIRST,), (FIRST, SECOND), (FIRST,), ()]
     for number, touches in enumerate(steps):
         state = at_rest(sim_time=5.0, training=replace(RUNNING, revision=number, touches=touches))
@@ -278,7 +276,7 @@ def test_points_come_whole_at_every_touch_and_undo_and_at_once(publisher, receiv
     assert lists[0].points[0].position == (500, -250, 125)
 
 
-def test_empty_list_carries_the_metadata_with_which_slicer_clears_its_own(publisher, receiver):
+def test_empty_list_carries_the_metadata_that_makes_slicer_clear_its_own(publisher, receiver):
     with_point = replace(RUNNING, touches=(FIRST,))
     publisher.publish(at_rest(sim_time=5.0, training=with_point))
     publisher.publish(at_rest(sim_time=5.1, training=replace(RUNNING, trial_id="id-2")))
@@ -287,7 +285,7 @@ def test_empty_list_carries_the_metadata_with_which_slicer_clears_its_own(publis
     assert last.metadata == {"count": "0", "trialId": "id-2"}
 
 
-def test_late_client_gets_the_present_state(publisher):
+def test_late_client_gets_the_current_state(publisher):
     state = at_rest(training=replace(RUNNING, touches=(FIRST, SECOND)))
     late = Receiver()
     publisher = Publisher(lambda: state)
@@ -301,7 +299,7 @@ def test_nothing_is_due_while_nobody_listens(publisher, receiver):
     assert not publisher.is_due(at_rest(sim_time=9.0, training=RUNNING))
 
 
-def test_pacer_keeps_its_rate_on_a_clock_that_starts_again():
+def test_pacer_keeps_its_rate_on_a_clock_that_restarts():
     pacer = Pacer(10)
     assert sum(pacer.is_due(t * TICK_S) for t in range(250)) == 10
     assert sum(pacer.is_due(t * TICK_S) for t in range(250)) == 10
@@ -313,7 +311,7 @@ def test_pacer_makes_no_burst_after_a_gap():
     assert [pacer.is_due(t) for t in (50.0, 50.001, 50.002, 50.11)] == [True, False, False, True]
 
 
-def test_event_loop_gets_only_the_newest_of_the_states_that_came_while_it_was_busy(loop_thread):
+def test_event_loop_gets_only_the_newest_state_after_being_busy(loop_thread):
     delivered = []
     feed = StateFeed(lambda _state: True, delivered.append, loop_thread.loop)
 

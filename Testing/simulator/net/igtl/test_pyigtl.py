@@ -119,7 +119,7 @@ def test_pyigtl_gets_the_echo_of_its_transform(link_server, connected):
 
 
 @pytest.mark.parametrize("header_version", [1, 2])
-def test_what_pyigtl_sends_is_read(plain_server, connected, header_version):
+def test_messages_sent_by_pyigtl_are_read(plain_server, connected, header_version):
     client = connected(plain_server.port)
     sent = [
         pyigtl.TransformMessage(MATRIX, device_name="Probe"),
@@ -140,7 +140,7 @@ def test_what_pyigtl_sends_is_read(plain_server, connected, header_version):
     ]
 
 
-def test_pyigtl_reads_all_that_is_published(link_server, connected):
+def test_pyigtl_reads_everything_that_is_published(link_server, connected):
     training = TrainingState(trial_id="id-1", touches=TOUCHES)
     link_server.simulated.latest = at_rest(tool_tip_to_world=TIP, training=training)
     client = connected(link_server.port)
@@ -182,7 +182,7 @@ def test_our_client_and_a_pyigtl_server_understand_each_other(pyigtl_server):
         assert client.wait_for("Note", timeout=60).content == String("hello")
 
 
-def test_what_pyigtl_sends_and_we_cannot_use_costs_nobody_the_connection(link_server, connected):
+def test_unusable_messages_from_pyigtl_do_not_end_the_connection(link_server, connected):
     hostile, good = connected(link_server.port), connected(link_server.port)
     while len(link_server.server.clients) < 2:
         time.sleep(0.01)
@@ -209,7 +209,7 @@ def test_what_pyigtl_sends_and_we_cannot_use_costs_nobody_the_connection(link_se
     assert {*link_server.server.clients} == clients
 
 
-def test_a_pyigtl_server_that_sends_what_we_cannot_use_is_not_left(pyigtl_server, start):
+def test_a_pyigtl_server_that_sends_unusable_messages_is_not_disconnected(pyigtl_server, start):
     server = start(PlainServer, reconnect_s=0.05)
     connecting = server.server.keep_connected_to("127.0.0.1", pyigtl_server.port)
     task = asyncio.run_coroutine_threadsafe(connecting, server.thread.loop)

@@ -89,7 +89,7 @@ def exchange(reference_client, loop_thread, request):
         ("command", Command(4711, "Hello", '{"protocolVersion": 1, "client": "reference"}')),
     ],
 )
-def test_what_the_reference_library_sends_is_read(exchange, device, content):
+def test_messages_sent_by_the_reference_library_are_read(exchange, device, content):
     assert exchange[0][device].content == content
 
 

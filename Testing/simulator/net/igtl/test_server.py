@@ -154,7 +154,7 @@ def test_client_that_lets_too_many_answers_wait_is_dropped_at_once(start):
         server.handler.wait_until(lambda: server.handler.left == [connection])
 
 
-def test_state_of_a_client_that_reads_slowly_is_replaced_not_piled_up(start):
+def test_state_of_a_slowly_reading_client_is_replaced_instead_of_piling_up(start):
     server = start(PlainServer, slow_client_s=600, silent_peer_s=600, waiting_bytes=200_000)
     with connect(server.port, receive_buffer=4096) as peer, peer.makefile("rb") as stream:
         server.handler.wait_until(lambda: server.handler.connections)
@@ -170,14 +170,14 @@ def test_state_of_a_client_that_reads_slowly_is_replaced_not_piled_up(start):
         assert read == sorted(read)
 
 
-def test_message_left_half_sent_ends_the_connection(start):
+def test_half_sent_message_ends_the_connection(start):
     server = start(PlainServer, half_message_s=0.1)
     with connect(server.port) as peer:
         peer.sendall(pack(PROBE)[:70])
         assert read_to_end(peer) == b""
 
 
-def test_one_client_too_many_is_turned_away(start):
+def test_client_beyond_the_limit_is_turned_away(start):
     server = start(PlainServer, clients=2)
     with connect(server.port) as first, connect(server.port) as second:
         for peer in (first, second):
@@ -189,7 +189,7 @@ def test_one_client_too_many_is_turned_away(start):
         server.handler.wait_for_messages(3)
 
 
-def test_the_oldest_client_that_never_said_a_word_yields_when_its_place_is_needed(start):
+def test_the_oldest_silent_client_yields_when_its_place_is_needed(start):
     server = start(PlainServer, clients=3)
     with connect(server.port) as talking, contextlib.ExitStack() as stack:
         talking.sendall(pack(PROBE))
@@ -228,7 +228,7 @@ def test_mutated_messages_end_at_worst_their_own_connection(link_server):
                     peer.sendall(data)
 
 
-def test_trouble_is_logged_once_a_second_at_most(plain_server, caplog):
+def test_problems_are_logged_at_most_once_a_second(plain_server, caplog):
     with caplog.at_level(logging.WARNING, "rastrainer.igtl"), connect(plain_server.port) as peer:
         for _ in range(500):
             peer.sendall(header(b"IMAGE", 0))
@@ -250,7 +250,7 @@ def test_invalid_host_is_reported_in_one_sentence(link_server):
         link_server.thread.run(link_server.server.listen("256.1.1.1", 0))
 
 
-def test_server_connects_to_a_listening_slicer_and_comes_back(start, loop_thread: LoopThread):
+def test_server_connects_to_a_listening_slicer_and_reconnects(start, loop_thread: LoopThread):
     server = start(LinkServer, reconnect_s=0.05)
     with socket.create_server((HOST, 0)) as slicer:
         slicer.settimeout(60)

@@ -26,21 +26,21 @@ class Collector(Client):
         self.names = names or ("TrialCompleted",)
         self.server = server
         super().__init__(port=server.port, on_message=self._keep)
-        self._say_hello()
+        self._send_hello()
 
     def _keep(self, message):
         if message.device == "command":
             assert message.content.name in self.names
             self.offers.append(message.content)
 
-    def _say_hello(self):
+    def _send_hello(self):
         """What was sent before the answer has then arrived."""
         self.send_command("Hello", {"protocolVersion": PROTOCOL_VERSION, "client": "collector"})
 
     def after(self, action) -> list[str]:
         """Return the trials that were offered up to now, once `action` has been carried out."""
         self.server.thread.call(action)
-        self._say_hello()
+        self._send_hello()
         offered = [json.loads(offer.body)["trialId"] for offer in self.offers]
         self.offers.clear()
         return offered
@@ -59,7 +59,7 @@ def test_trial_is_offered_the_moment_it_is_registered(collector, link_server):
     assert collector.after(lambda: link_server.link.publish(registered)) == []
 
 
-def test_aborted_trials_are_offered_before_one_that_was_finished_later(link_server):
+def test_aborted_trials_are_offered_before_one_finished_later(link_server):
     """A client that has just connected would otherwise count a repeat before it knows of both."""
     aborted = AbortedTrial.from_json(make_aborted())
     link_server.simulated.unacknowledged = (aborted, record("old"), record("repeat"))

@@ -11,11 +11,11 @@ import aiohttp
 
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.views.gate import ViewRole
-from rastrainer_simulator.net.views.presenter import Control, Seat, TraceGuidance
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.net.views.access_control import ViewRole
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
+from rastrainer_simulator.presentation.presenter import Control, Seat, TraceGuidance
+from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures
 from Testing.free_port import free_port
 from Testing.simulator.net.igtl.servers import HOST, PATIENCE_S, LoopThread
@@ -32,7 +32,7 @@ class RecordingPresenter:
         self.screen = Screen()
         self.control = Control()
         self.guidance = TraceGuidance()
-        self.told_of_seat = Seat()
+        self.reported_seat = Seat()
         self.problem = ""
         self.calls = []
         self._listeners = []
@@ -52,7 +52,7 @@ class RecordingPresenter:
         return self.guidance
 
     def seat(self):
-        return self.told_of_seat
+        return self.reported_seat
 
     def instruct(self, order, text):
         """Note what a teacher wants, and do it unless there is a `problem`."""

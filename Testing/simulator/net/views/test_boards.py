@@ -7,9 +7,9 @@ import stat
 
 import pytest
 
-from rastrainer_simulator.net.views.gate import BOARDS_FILE, Sessions, ViewRole
-from rastrainer_simulator.net.views.presenter import Seat
+from rastrainer_simulator.net.views.access_control import BOARDS_FILE, Sessions, ViewRole
 from rastrainer_simulator.ops.instructor_pin import PIN_FILE, GuessLimit, InstructorPin
+from rastrainer_simulator.presentation.presenter import Seat
 from Testing.simulator.net.views.served import request
 
 PIN = "271828"
@@ -33,21 +33,21 @@ def guarded(serve, tmp_path):
     return serve(config=tmp_path)
 
 
-def test_a_board_is_told_of_the_seat_only_and_only_when_it_has_changed(served, connect):
-    served.presenter.told_of_seat = Seat("P07", "Task 1", 15, score=80.0)
+def test_a_board_is_sent_only_the_seat_and_only_when_it_has_changed(served, connect):
+    served.presenter.reported_seat = Seat("P07", "Task 1", 15, score=80.0)
     board = connect(served, ViewRole.BOARD)
     board.join(kind="board")
     first = board.next()
     shown = (first["type"], first["trainee"], first["task"], first["score"], first["phase"])
     assert shown == ("seat", "P07", "Task 1", 80.0, "idle")
-    served.presenter.told_of_seat = Seat("P08")
+    served.presenter.reported_seat = Seat("P08")
     # Between the two there is no state, no screen and no other seat.
     second = board.next()
     assert (second["type"], second["trainee"], second["score"]) == ("seat", "P08", None)
     assert served.presenter.calls == []
 
 
-def test_a_board_s_key_outlives_the_simulator_and_others_do_not(tmp_path):
+def test_a_boards_key_outlives_the_simulator_and_others_do_not(tmp_path):
     path = tmp_path / BOARDS_FILE
     first = Sessions(dict.fromkeys(ViewRole, 2), path)
     keys = {role: first.open(role) for role in ViewRole}
@@ -69,7 +69,7 @@ def test_the_oldest_board_is_forgotten_when_there_are_too_many(tmp_path):
 
 
 @pytest.mark.parametrize("content", ["{}7", "[1]", '["ab"]', f'["{"x" * 64}"]', "7"])
-def test_a_damaged_file_of_boards_is_named(tmp_path, content):
+def test_a_damaged_boards_file_is_named(tmp_path, content):
     path = tmp_path / BOARDS_FILE
     path.write_text(content, encoding="utf-8")
     with pytest.raises(ValueError, match=BOARDS_FILE):
@@ -77,20 +77,20 @@ def test_a_damaged_file_of_boards_is_named(tmp_path, content):
 
 
 @pytest.mark.parametrize("role", [ViewRole.VIEW, ViewRole.SPECTATOR])
-def test_only_a_board_gives_orders(guarded, role):
+def test_only_a_board_can_give_orders(guarded, role):
     status, _headers, sentence = order(guarded, guarded.new_key(role))
     assert (status, sentence) == (403, "Only a teacher's board may instruct: pair as one.")
     assert guarded.presenter.calls == []
 
 
-def test_without_a_pin_nobody_gives_orders(serve, tmp_path):
+def test_without_a_pin_nobody_can_give_orders(serve, tmp_path):
     for served in (serve(config=tmp_path), serve()):
         status, _headers, sentence = order(served, served.new_key(ViewRole.BOARD))
         assert (status, "set a PIN there" in sentence) == (409, True)
         assert served.presenter.calls == []
 
 
-def test_five_wrong_pins_make_a_pause_in_which_the_right_one_is_refused_too(guarded):
+def test_five_wrong_pins_start_a_pause_in_which_the_right_one_is_refused_too(guarded):
     guarded.server._instructor._pin._limit._clock = lambda: 100.0
     key = guarded.new_key(ViewRole.BOARD)
     statuses = [order(guarded, key, pin=f"{n:06}")[0] for n in range(5)]
@@ -127,13 +127,13 @@ NO_SENTENCE = "text must be printable text of 1 to 200 characters."
         ({"order": "say", "text": "a\x1b"}, NO_SENTENCE),
     ],
 )
-def test_an_order_that_is_none_says_what_would_be_right(guarded, values, sentence):
+def test_an_invalid_order_is_answered_with_what_would_be_right(guarded, values, sentence):
     key = guarded.new_key(ViewRole.BOARD)
     assert order(guarded, key, **values)[::2] == (400, sentence)
     assert guarded.presenter.calls == []
 
 
-def test_a_pin_is_kept_as_a_slow_hash_that_only_its_owner_reads(tmp_path):
+def test_a_pin_is_stored_as_a_slow_hash_readable_only_by_its_owner(tmp_path):
     pin = InstructorPin(tmp_path / "config")
     assert not pin.is_set
     pin.set(PIN)
@@ -146,7 +146,7 @@ def test_a_pin_is_kept_as_a_slow_hash_that_only_its_owner_reads(tmp_path):
 
 
 @pytest.mark.parametrize("wrong", ["12345", "1234567890123", "12345a", "١٢٣٤٥٦"])
-def test_what_is_no_pin_is_refused(tmp_path, wrong):
+def test_an_invalid_pin_is_refused(tmp_path, wrong):
     with pytest.raises(ValueError, match="A PIN has 6 to 12 digits"):
         InstructorPin(tmp_path).set(wrong)
     assert not InstructorPin(tmp_path).is_set
@@ -162,7 +162,7 @@ def test_a_damaged_pin_file_lets_nobody_in(serve, tmp_path, content):
     assert served.presenter.calls == []
 
 
-def test_guesses_are_allowed_again_after_the_pause_and_a_right_one_forgets_the_wrong_ones():
+def test_attempts_are_allowed_again_after_the_pause_and_a_right_one_clears_the_wrong_ones():
     now = [0.0]
     limit = GuessLimit(lambda: now[0])
     assert [limit.guessed(False) for _ in range(5)] == [False] * 4 + [True]

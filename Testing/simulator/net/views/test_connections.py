@@ -18,7 +18,7 @@ def in_memory() -> int:
     return sum(isinstance(each, web.RequestHandler) for each in gc.get_objects())
 
 
-def test_a_connection_that_has_asked_for_something_and_ended_is_let_go_of():
+def test_an_ended_connection_is_released_from_memory():
     connections = Connections(8, LONG_S)
     before = in_memory()
 

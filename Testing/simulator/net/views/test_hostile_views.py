@@ -65,7 +65,7 @@ GARBAGE = {
 
 
 @pytest.mark.parametrize("message", GARBAGE.values(), ids=GARBAGE.keys())
-def test_what_is_no_message_closes_only_that_view(served, connect, message):
+def test_an_invalid_message_closes_only_that_view(served, connect, message):
     good, bad = connect(served), connect(served)
     good.join()
     number = bad.join()["view"]
@@ -115,7 +115,7 @@ def test_a_flood_of_pings_closes_only_that_view(serve, connect):
     assert good.next("state")["type"] == "state"
 
 
-def test_a_ping_is_answered_and_is_no_sign_that_somebody_holds_on(serve, connect):
+def test_a_ping_is_answered_but_does_not_count_as_somebody_holding_on(serve, connect):
     served = serve(silent_s=0.2)
     view = connect(served)
     number = view.join()["view"]
@@ -138,7 +138,7 @@ def test_a_ping_is_answered_and_is_no_sign_that_somebody_holds_on(serve, connect
         json.dumps({**HELLO, "refreshHz": -1}),
     ],
 )
-def test_a_view_that_does_not_begin_with_hello_is_told_nothing(served, connect, message):
+def test_a_view_that_does_not_begin_with_hello_is_sent_nothing(served, connect, message):
     view = connect(served)
     view.send(message)
     code, _ = view.closing()
@@ -171,7 +171,7 @@ def asking(port: int, path: str) -> socket.socket:
     return stranger
 
 
-def test_strangers_that_ask_and_never_read_keep_nobody_out(
+def test_strangers_that_send_requests_and_never_read_keep_nobody_out(
     serve, connect, tmp_path, monkeypatch, caplog
 ):
     (tmp_path / "index.html").write_text("the page")
@@ -204,7 +204,7 @@ STRANGE_REQUESTS = [
 
 
 @pytest.mark.parametrize("request_bytes", STRANGE_REQUESTS)
-def test_what_is_no_request_is_refused_and_not_logged(served, caplog, request_bytes):
+def test_an_invalid_request_is_refused_and_not_logged(served, caplog, request_bytes):
     with socket.create_connection((HOST, served.port), 60) as stranger:
         # It may be refused and cut off before it has sent everything.
         with contextlib.suppress(OSError):
@@ -217,7 +217,7 @@ def test_what_is_no_request_is_refused_and_not_logged(served, caplog, request_by
     assert caplog.text == ""
 
 
-def test_a_connection_that_asks_for_nothing_is_closed(serve):
+def test_a_connection_that_requests_nothing_is_closed(serve):
     served = serve(first_message_s=0.05)
     with socket.create_connection((HOST, served.port), 60) as stranger:
         stranger.sendall(b"GET / HTTP/1.1\r\nHost:")

@@ -2,7 +2,7 @@ import asyncio
 
 import pytest
 
-from rastrainer_simulator.net.views.presenter import Frames
+from rastrainer_simulator.presentation.presenter import Frames
 
 KEY = {"type": "key", "code": "KeyW", "isDown": True, "text": "w"}
 PAD = {"type": "pad", "axes": [0.5, -1.0, 0, 0], "buttons": [0, 1, 0.25]}
@@ -43,7 +43,7 @@ def test_what_a_view_sends_reaches_the_presenter(served, connect, message, call)
     served.wait_for_call(name, number, *values)
 
 
-def test_what_is_a_little_beyond_the_end_of_a_pad_is_its_end(served, connect):
+def test_gamepad_values_slightly_out_of_range_are_clamped(served, connect):
     view = connect(served)
     number = view.join()["view"]
     view.send({"type": "pad", "axes": [1.0001, -1.2], "buttons": [-0.001, 1.01]})
@@ -58,7 +58,7 @@ RELEASED = [
 
 
 @pytest.mark.parametrize(("message", "call"), RELEASED)
-def test_a_view_that_falls_silent_has_let_go(serve, connect, message, call):
+def test_inputs_held_by_a_view_that_falls_silent_are_released(serve, connect, message, call):
     served = serve(silent_s=0.05)
     view = connect(served)
     number = view.join()["view"]
@@ -68,9 +68,7 @@ def test_a_view_that_falls_silent_has_let_go(serve, connect, message, call):
     assert ("view_left", number) not in calls, "it may go on watching"
 
 
-def test_a_view_that_told_its_frames_and_falls_silent_shows_a_picture_that_stands_still(
-    serve, connect
-):
+def test_a_view_that_stops_reporting_frames_counts_as_a_frozen_picture(serve, connect):
     served = serve(lost_s=0.05)
     view = connect(served)
     number = view.join()["view"]
@@ -79,7 +77,7 @@ def test_a_view_that_told_its_frames_and_falls_silent_shows_a_picture_that_stand
     assert ("view_left", number) not in calls, "it may go on watching"
 
 
-def test_a_view_that_says_it_is_alive_holds_on(serve, connect):
+def test_inputs_held_by_a_view_that_reports_being_alive_stay_held(serve, connect):
     served = serve(silent_s=1000.0)
     view = connect(served)
     number = view.join()["view"]
@@ -104,7 +102,7 @@ def test_a_view_that_says_it_is_alive_holds_on(serve, connect):
     served.wait_for_call("on_key", number, "KeyW", False, "")
 
 
-def test_a_view_that_leaves_has_let_go_before(serve, connect):
+def test_a_view_that_leaves_releases_its_inputs_first(serve, connect):
     served = serve(silent_s=1000.0)
     view = connect(served)
     number = view.join()["view"]

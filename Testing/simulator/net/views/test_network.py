@@ -45,7 +45,7 @@ def connected(port: int, version: ssl.TLSVersion) -> ssl.SSLSocket:
 
 
 @pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
-def test_the_page_is_served_by_tls_1_2_and_1_3(port, version):
+def test_the_page_is_served_over_tls_1_2_and_1_3(port, version):
     with connected(port, version) as browser:
         browser.sendall(REQUEST)
         assert browser.recv(100).startswith(b"HTTP/1.1 200")
@@ -61,7 +61,7 @@ def test_tls_older_than_1_2_is_refused(port, certificates, version):
     assert own_certificate(certificates).tls.minimum_version > version
 
 
-def test_a_view_that_says_nothing_is_sent_everything_by_tls_too(serve, certificates):
+def test_a_view_that_sends_nothing_is_sent_everything_over_tls_too(serve, certificates):
     # So long that no ping of the server makes the view answer.
     served = serve(gone_s=1000.0)
     port = served.thread.run(served.server.listen_in_network(0, own_certificate(certificates).tls))
@@ -71,7 +71,7 @@ def test_a_view_that_says_nothing_is_sent_everything_by_tls_too(serve, certifica
     assert ticks == sorted(set(ticks))
 
 
-def test_plain_http_gets_no_answer_from_the_local_network_s_port(port):
+def test_plain_http_gets_no_answer_from_the_local_network_port(port):
     with socket.create_connection((HOST, port), 60) as browser:
         browser.sendall(REQUEST)
         answer = b""
@@ -83,14 +83,14 @@ def test_plain_http_gets_no_answer_from_the_local_network_s_port(port):
     assert b"HTTP" not in answer
 
 
-def test_the_fingerprint_that_is_told_is_that_of_the_certificate_that_is_shown(port, certificates):
+def test_the_displayed_fingerprint_is_that_of_the_served_certificate(port, certificates):
     with connected(port, ssl.TLSVersion.TLSv1_3) as browser:
         shown = browser.getpeercert(binary_form=True)
     told = own_certificate(certificates).fingerprint
     assert bytes.fromhex(told.replace(":", "")) == hashlib.sha256(shown).digest()
 
 
-def test_a_certificate_is_kept_and_a_torn_one_made_anew(tmp_path):
+def test_a_certificate_is_kept_and_a_truncated_one_is_replaced(tmp_path):
     first = own_certificate(tmp_path).fingerprint
     assert own_certificate(tmp_path).fingerprint == first
     file = tmp_path / FILE_NAME
@@ -98,7 +98,7 @@ def test_a_certificate_is_kept_and_a_torn_one_made_anew(tmp_path):
     assert own_certificate(tmp_path).fingerprint != first
 
 
-def test_the_fingerprint_is_that_of_the_served_certificate_though_another_start_replaces_it(
+def test_the_fingerprint_is_the_served_certificates_even_if_another_start_replaces_the_file(
     served, tmp_path, monkeypatch
 ):
     other, load = tmp_path / "other", ssl.SSLContext.load_cert_chain
@@ -117,7 +117,7 @@ def test_the_fingerprint_is_that_of_the_served_certificate_though_another_start_
     assert certificate.fingerprint == shown.digest().hex(":").upper()
 
 
-def refused_without_rights(folder: Path) -> str:
+def refused_without_permission(folder: Path) -> str:
     if os.getuid() == 0:
         os.setuid(65534)
     with pytest.raises(InputError) as refused:
@@ -125,10 +125,10 @@ def refused_without_rights(folder: Path) -> str:
     return str(refused.value)
 
 
-def test_a_folder_that_cannot_be_written_to_is_told():
+def test_a_folder_that_cannot_be_written_to_is_reported():
     with tempfile.TemporaryDirectory() as folder:
         Path(folder).chmod(0o555)
-        said = in_child(refused_without_rights, Path(folder))
+        said = in_child(refused_without_permission, Path(folder))
         Path(folder).chmod(0o755)
     assert said.startswith("The certificate for the local network cannot be kept in ")
     assert "Permission denied" in said

@@ -4,7 +4,7 @@ import logging
 import pytest
 
 from rastrainer_simulator.net.views import view_server as view_server_module
-from rastrainer_simulator.net.views.gate import COOKIE, PairingCode, Sessions, ViewRole
+from rastrainer_simulator.net.views.access_control import COOKIE, PairingCode, Sessions, ViewRole
 from Testing.simulator.net.views.served import SUBPROTOCOL, raw_request, request
 
 UPGRADE = {
@@ -56,7 +56,7 @@ def test_sounds_are_wav_files(served):
         assert (status, body[:4], body[8:12]) == (200, b"RIFF", b"WAVE")
 
 
-def test_five_wrong_codes_make_a_new_one_and_a_pause(served):
+def test_five_wrong_codes_create_a_new_one_and_start_a_pause(served):
     served.server.code._limit._clock = lambda: 100.0
     first = served.code
     for _ in range(4):
@@ -69,7 +69,7 @@ def test_five_wrong_codes_make_a_new_one_and_a_pause(served):
     assert (status, int(headers["Retry-After"])) == (429, 1)
 
 
-def test_a_view_of_this_computer_is_told_how_others_are_paired(served, connect):
+def test_a_view_on_this_computer_is_told_how_to_pair_others(served, connect):
     view = connect(served)
     view.join()
     told = {"type": "pairing", "code": served.code, "addresses": [served.url]}
@@ -79,7 +79,7 @@ def test_a_view_of_this_computer_is_told_how_others_are_paired(served, connect):
     assert view.next("pairing") == {**told, "code": served.new_codes[0]}
 
 
-def test_the_pause_ends_and_grows_until_the_right_code_comes():
+def test_the_pause_ends_and_grows_until_the_right_code_is_entered():
     now, shown = [0.0], []
     code = PairingCode(lambda: now[0], shown.append)
     for pause in (1.0, 2.0, 4.0):
@@ -106,7 +106,7 @@ def test_guessing_never_waits_longer_than_five_minutes_and_a_right_code_still_pa
     assert code.accepts(code.code)
 
 
-def test_a_key_knows_what_it_was_given_for(served):
+def test_a_key_keeps_the_role_it_was_issued_for(served):
     for role in ("view", "spectator"):
         body = {"code": served.code, "role": role}
         headers = request(served.url, "/pair", "POST", json=body)[1]
@@ -117,7 +117,7 @@ def test_a_key_knows_what_it_was_given_for(served):
 
 
 @pytest.mark.parametrize("role", ["teacher", "", 1, None, ["view"]])
-def test_a_role_that_is_none_is_refused_and_costs_no_guess(served, role):
+def test_an_invalid_role_is_refused_and_costs_no_attempt(served, role):
     body = {"code": served.code, "role": role}
     status, _, answer = request(served.url, "/pair", "POST", json=body)
     assert (status, b"spectator" in answer, served.new_codes) == (400, True, [])
@@ -126,7 +126,7 @@ def test_a_role_that_is_none_is_refused_and_costs_no_guess(served, role):
 @pytest.mark.parametrize(
     "body", [b"", b"{", b"[]", b'{"code": 1}', b'{"code": ""}', b"\xff", b'{"code": NaN}']
 )
-def test_a_body_without_a_code_is_refused_and_costs_no_guess(served, body):
+def test_a_body_without_a_code_is_refused_and_costs_no_attempt(served, body):
     status, _, answer = request(served.url, "/pair", "POST", data=body)
     assert (status, b"the 6 digits" in answer) == (400, True)
     assert served.new_codes == []
@@ -149,7 +149,7 @@ def test_codes_and_keys_are_never_logged(served, caplog):
     assert not any(secret in caplog.text for secret in (key, *codes))
 
 
-def test_a_page_of_another_origin_can_neither_pair_nor_connect(served):
+def test_a_page_from_another_origin_can_neither_pair_nor_connect(served):
     key = served.new_key()
     for origin in ("http://evil.example", f"https://127.0.0.1:{served.port}", "null"):
         assert pair(served, served.code, Origin=origin)[0] == 403
@@ -159,17 +159,17 @@ def test_a_page_of_another_origin_can_neither_pair_nor_connect(served):
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:80", "", "localhost.evil.example"])
-def test_a_foreign_name_that_leads_here_is_refused(served, host):
+def test_a_foreign_host_name_that_leads_here_is_refused(served, host):
     origin = f"http://{host}"
     assert pair(served, served.code, Host=host, Origin=origin)[0] in (400, 403)
 
 
 @pytest.mark.parametrize("host", ["localhost", "LOCALHOST:1", "[::1]:80", "127.0.0.1"])
-def test_the_own_names_are_known(served, host):
+def test_the_servers_own_host_names_are_accepted(served, host):
     assert pair(served, served.code, Host=host)[0] == 200
 
 
-def test_every_answer_tells_the_browser_what_to_refuse(served):
+def test_every_answer_tells_the_browser_what_to_block(served):
     for path in ("/", SCENE, "/missing"):
         headers = request(served.url, path)[1]
         policy = headers["Content-Security-Policy"].split("; ")
@@ -179,7 +179,7 @@ def test_every_answer_tells_the_browser_what_to_refuse(served):
         assert headers["Cross-Origin-Resource-Policy"] == "same-origin"
 
 
-def test_without_a_built_page_it_says_how_to_build_it(served):
+def test_without_a_built_page_the_answer_says_how_to_build_it(served):
     status, headers, body = request(served.url, "/")
     assert (status, headers["Content-Type"].split(";")[0]) == (200, "text/html")
     assert b"make page" in body
@@ -220,7 +220,7 @@ def test_the_built_page_is_served_to_everyone(served):
         "/scene/..%2f..%2fsecret.txt.glb",
     ],
 )
-def test_no_path_leads_out_of_the_page(served, path):
+def test_no_path_leads_out_of_the_pages_folder(served, path):
     answer = raw_request(served.port, f"GET {path} HTTP/1.1")
     assert answer.split(b" ")[1] in (b"400", b"401", b"403", b"404")
     assert b"secret" not in answer.partition(b"\r\n\r\n")[2]
@@ -234,7 +234,7 @@ def test_the_oldest_key_is_forgotten_when_there_are_too_many():
     assert sessions.role("") is None
 
 
-def test_spectators_make_no_key_of_a_view_forgotten():
+def test_spectators_never_displace_the_key_of_a_view():
     sessions = Sessions({**dict.fromkeys(ViewRole, 2), ViewRole.VIEW: 1})
     key = sessions.open()
     watching = [sessions.open(ViewRole.SPECTATOR) for _ in range(3)]

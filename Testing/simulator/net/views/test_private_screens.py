@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from rastrainer_simulator.net.views.gate import ViewRole
-from rastrainer_simulator.net.views.presenter import Control, Feedback
-from rastrainer_simulator.net.views.screen import Fact, Menu, MenuItem, Screen
+from rastrainer_simulator.net.views.access_control import ViewRole
+from rastrainer_simulator.presentation.presenter import Control, Feedback
+from rastrainer_simulator.presentation.screen import Fact, Menu, MenuItem, Screen
 
 SECRET = Screen(
     menu=Menu(
@@ -78,9 +78,7 @@ def seat(served, connect):
         ("gamepad", {"window", "other window"}),
     ],
 )
-def test_only_the_views_before_who_operates_are_sent_the_items_the_focus_and_its_clicks(
-    served, seat, holder, readers
-):
+def test_only_the_operators_views_are_sent_items_focus_and_clicks(served, seat, holder, readers):
     number = seat[holder][1] if holder in seat else None
     tell(served, Control(holder, number))
     finish(served)
@@ -91,14 +89,14 @@ def test_only_the_views_before_who_operates_are_sent_the_items_the_focus_and_its
         assert events == (["focus"] if name in readers else []), name
 
 
-def test_who_joins_meanwhile_is_sent_nothing_of_it(served, seat, connect):
+def test_a_view_that_joins_meanwhile_is_sent_nothing_of_it(served, seat, connect):
     tell(served, Control("page", seat["page"][1]))
     late = connect(served)
     late.join(kind="page")
     assert is_bare(late.next("screen")["screen"]["menu"])
 
 
-def test_who_takes_the_control_is_sent_the_whole_menu_and_who_lost_it_none(served, seat):
+def test_whoever_takes_control_is_sent_the_whole_menu_and_whoever_lost_it_none(served, seat):
     (first, number), (second, other) = seat["page"], seat["other page"]
     tell(served, Control("page", number))
     assert not is_bare(first.next("screen")["screen"]["menu"])

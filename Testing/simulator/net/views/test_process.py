@@ -39,7 +39,7 @@ def test_a_view_pairs_by_the_printed_code_and_does_not_keep_the_simulator_from_e
         assert simulator.code not in errors
 
 
-def test_a_port_that_is_taken_is_told_or_replaced(tmp_path):
+def test_a_requested_port_in_use_is_reported_and_the_default_one_replaced(tmp_path):
     with socket.create_server((HOST, 0)) as other:
         taken = other.getsockname()[1]
         with pytest.raises(AssertionError, match=f"Cannot listen on 127.0.0.1:{taken}"):

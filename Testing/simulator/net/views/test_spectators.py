@@ -5,11 +5,11 @@ import json
 import aiohttp
 import pytest
 
-from rastrainer_simulator.net.views.gate import ViewRole
-from rastrainer_simulator.net.views.messages import ALIVE, MEMBERS, Worn
+from rastrainer_simulator.net.views.access_control import ViewRole
+from rastrainer_simulator.net.views.incoming import ALIVE, MEMBERS, Worn
 from rastrainer_simulator.net.views.outgoing import Mirror
-from rastrainer_simulator.net.views.presenter import Control, Feedback
-from rastrainer_simulator.net.views.screen import Screen, ScreenMessage
+from rastrainer_simulator.presentation.presenter import Control, Feedback
+from rastrainer_simulator.presentation.screen import Screen, ScreenMessage
 from Testing.security.stream_attack import MESSAGES
 from Testing.simulator.net.views.served import HELLO
 
@@ -47,7 +47,7 @@ def until(wanted, view):
     next(told for told in wearers(view) if told == wanted)
 
 
-def test_there_is_an_example_of_every_message_of_the_protocol():
+def test_every_message_of_the_protocol_has_an_example():
     assert EXAMPLES.keys() == MEMBERS.keys()
 
 
@@ -56,7 +56,7 @@ def test_there_is_an_example_of_every_message_of_the_protocol():
     [*((role, "spectator") for role in ViewRole), (ViewRole.BOARD, "board")],
 )
 @pytest.mark.parametrize("kind", [kind for kind in MEMBERS if kind != ALIVE])
-def test_who_only_watches_and_sends_anything_is_closed_and_nothing_has_happened(
+def test_a_spectator_that_sends_anything_is_closed_without_any_effect(
     served, connect, kind, role, watcher
 ):
     spectator = watch(served, connect, role, watcher)
@@ -65,7 +65,7 @@ def test_who_only_watches_and_sends_anything_is_closed_and_nothing_has_happened(
     assert served.presenter.calls == []
 
 
-def test_a_spectator_that_is_alive_goes_on_watching(served, connect):
+def test_a_spectator_that_reports_being_alive_keeps_watching(served, connect):
     spectator = watch(served, connect)
     spectator.send(EXAMPLES[ALIVE])
     spectator.send(EXAMPLES[ALIVE])
@@ -76,7 +76,7 @@ def test_a_spectator_that_is_alive_goes_on_watching(served, connect):
 
 @pytest.mark.parametrize("role", [ViewRole.SPECTATOR, ViewRole.BOARD])
 @pytest.mark.parametrize("kind", ["desktop", "page", "headset"])
-def test_the_key_of_who_only_watches_lets_no_view_join(served, connect, kind, role):
+def test_a_spectators_key_lets_no_view_join(served, connect, kind, role):
     spectator = connect(served, role)
     spectator.send({**HELLO, "kind": kind})
     reason = "This key only watches: the kind of the view must be spectator or board."
@@ -84,7 +84,7 @@ def test_the_key_of_who_only_watches_lets_no_view_join(served, connect, kind, ro
     assert served.presenter.calls == []
 
 
-def test_the_flow_which_counts_who_sees_a_trial_hears_of_no_spectator(served, connect):
+def test_spectators_are_not_counted_among_those_who_see_a_trial(served, connect):
     spectator = watch(served, connect)
     view = connect(served)
     number = view.join()["view"]
@@ -95,7 +95,7 @@ def test_the_flow_which_counts_who_sees_a_trial_hears_of_no_spectator(served, co
     assert [call[:2] for call in calls] == [("view_joined", number), ("view_left", number)]
 
 
-def test_a_spectator_is_told_all_that_a_view_is_but_the_code(served, connect):
+def test_a_spectator_is_sent_everything_that_a_view_is_except_the_code(served, connect):
     served.presenter.screen = Screen(instruction=ScreenMessage("Touch 3"))
     view, spectator = connect(served), connect(served, ViewRole.SPECTATOR)
     view.join()
@@ -114,9 +114,7 @@ def test_a_spectator_is_told_all_that_a_view_is_but_the_code(served, connect):
     assert "pairing" not in {message["type"] for message in until_last}
 
 
-def test_a_spectator_sees_where_the_eyes_and_hands_of_a_headset_are_and_no_view_does(
-    served, connect
-):
+def test_only_a_spectator_is_sent_the_pose_of_a_headsets_eyes_and_hands(served, connect):
     headset, spectator, page = connect(served), watch(served, connect), connect(served)
     headset.join(kind="headset")
     page.join()
@@ -130,7 +128,7 @@ def test_a_spectator_sees_where_the_eyes_and_hands_of_a_headset_are_and_no_view_
     until(None, spectator)
 
 
-def test_a_headset_that_leaves_is_worn_by_nobody(served, connect):
+def test_a_headset_that_leaves_is_no_longer_worn(served, connect):
     spectator, headset = watch(served, connect), connect(served)
     headset.join(kind="headset")
     headset.send(WORN)
@@ -139,7 +137,7 @@ def test_a_headset_that_leaves_is_worn_by_nobody(served, connect):
     until(None, spectator)
 
 
-def test_the_newest_headset_is_followed_and_after_it_the_one_before():
+def test_the_newest_headset_is_followed_and_after_it_the_previous_one():
     mirror, worn = Mirror(), Worn(tuple(EYES), None, tuple(HAND))
     mirror.take(1, worn)
     assert mirror.text == "null", "it is no headset"
@@ -155,7 +153,7 @@ def test_the_newest_headset_is_followed_and_after_it_the_one_before():
     assert json.loads(mirror.text) == TOLD
 
 
-def test_spectators_take_no_place_of_a_view(serve, connect):
+def test_spectators_do_not_take_the_place_of_a_view(serve, connect):
     served = serve(views=1, spectators=1)
     watch(served, connect)
     with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
@@ -164,7 +162,7 @@ def test_spectators_take_no_place_of_a_view(serve, connect):
     assert view.join()["type"] == "welcome"
 
 
-def test_a_spectator_s_connection_yields_to_a_view_where_there_are_too_many(serve, connect):
+def test_a_spectators_connection_yields_to_a_view_when_there_are_too_many(serve, connect):
     served = serve(connections=2)
     view, spectator = connect(served), watch(served, connect)
     view.join()

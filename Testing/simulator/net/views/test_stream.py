@@ -8,8 +8,15 @@ from trimesh.transformations import quaternion_matrix
 
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.net.views.outgoing import quaternion
-from rastrainer_simulator.net.views.presenter import Control, Feedback, Hello
-from rastrainer_simulator.net.views.screen import Hint, Menu, MenuItem, Screen, ScreenMessage, Tone
+from rastrainer_simulator.presentation.presenter import Control, Feedback, Hello
+from rastrainer_simulator.presentation.screen import (
+    Hint,
+    Menu,
+    MenuItem,
+    Screen,
+    ScreenMessage,
+    Tone,
+)
 from Testing.domain.scenario.made_up_scenario import png
 from Testing.simulator.net.views.served import request
 
@@ -25,7 +32,7 @@ def feedback(number: int) -> Feedback:
     return Feedback(number, "touch", "touch", rumble=0.5, data={"label": str(number)})
 
 
-def test_a_view_is_welcomed_first_and_told_how_things_stand(served, connect):
+def test_a_view_is_welcomed_first_and_sent_the_current_state(served, connect):
     served.presenter.screen = SCREEN
     served.presenter.control = Control("gamepad")
     view = connect(served)
@@ -39,7 +46,7 @@ def test_a_view_is_welcomed_first_and_told_how_things_stand(served, connect):
     assert ("view_joined", 1, Hello("page", "Quest 2", 72.0)) in served.presenter.calls
 
 
-def test_poses_are_where_the_simulation_has_them(served, connect, control_loop):
+def test_poses_match_those_of_the_simulation(served, connect, control_loop):
     view = connect(served)
     view.join()
     state = view.next("state")
@@ -66,7 +73,7 @@ def test_quaternions_agree_with_another_library_for_any_rotation():
         assert np.hypot(np.hypot(x, y), np.hypot(z, w)) == pytest.approx(1.0)
 
 
-def test_states_keep_coming_and_their_ticks_rise(served, connect):
+def test_states_keep_arriving_with_rising_ticks(served, connect):
     view = connect(served)
     view.join()
     ticks = [view.next("state")["tick"] for _ in range(20)]
@@ -88,7 +95,7 @@ def test_the_scene_is_named_after_its_content_and_fits_the_scenario(served, conn
         assert scene["cameras"][name]["viewAngleDeg"] == camera.view_angle_deg
 
 
-def test_a_scene_comes_half_as_large_to_whoever_takes_gzip_and_tells_its_size(served, connect):
+def test_a_scene_is_half_as_large_with_gzip_and_announces_its_size(served, connect):
     view = connect(served)
     view.join()
     url = view.next("scene")["url"]
@@ -102,7 +109,7 @@ def test_a_scene_comes_half_as_large_to_whoever_takes_gzip_and_tells_its_size(se
     assert int(headers["Content-Length"]) < 0.6 * len(whole)
 
 
-def test_a_scene_that_never_was_is_not_found(served):
+def test_an_unknown_scene_is_not_found(served):
     headers = {"Authorization": f"Bearer {served.new_key()}"}
     assert request(served.url, f"/scene/{'0' * 64}.glb", headers=headers)[0] == 404
 
@@ -128,7 +135,7 @@ def test_every_view_gets_each_event_once_and_in_order(served, connect):
     }
 
 
-def test_a_view_that_joins_later_does_not_hear_what_has_been(served, connect):
+def test_a_view_that_joins_later_does_not_get_past_events(served, connect):
     first = connect(served)
     first.join()
     served.tell(feedback(1))
@@ -140,7 +147,7 @@ def test_a_view_that_joins_later_does_not_hear_what_has_been(served, connect):
     assert late.next("event")["number"] == 2
 
 
-def test_a_view_that_has_not_read_gets_the_latest_screen_and_not_all_before(serve, connect):
+def test_a_view_that_falls_behind_gets_the_latest_screen_and_not_all_before_it(serve, connect):
     served = serve(gone_s=1000.0)
     view = connect(served)
     view.join()
@@ -155,7 +162,7 @@ def test_a_view_that_has_not_read_gets_the_latest_screen_and_not_all_before(serv
     assert len(screens) < count / 2, "what nobody read was replaced, not kept"
 
 
-def test_a_view_that_reads_no_more_does_not_hold_up_the_end(serve, connect):
+def test_a_view_that_no_longer_reads_does_not_hold_up_the_shutdown(serve, connect):
     served = serve(gone_s=1000.0)
     view = connect(served)
     view.join()
@@ -191,7 +198,7 @@ def test_a_view_that_lets_too_many_events_wait_is_dropped_and_may_come_back(serv
     assert again.next("event")["number"] == 300
 
 
-def test_each_view_is_told_whether_it_drives(served, connect):
+def test_each_view_is_told_whether_it_has_control(served, connect):
     views = [connect(served), connect(served)]
     numbers = [view.join()["view"] for view in views]
     for view in views:
@@ -204,7 +211,7 @@ def test_each_view_is_told_whether_it_drives(served, connect):
     ]
 
 
-def test_no_more_views_than_allowed_and_room_again_when_one_leaves(serve, connect):
+def test_no_more_views_than_allowed_can_join_and_a_place_is_freed_when_one_leaves(serve, connect):
     served = serve(views=1)
     first = connect(served)
     number = first.join()["view"]
@@ -223,7 +230,7 @@ def test_views_are_told_when_the_simulator_ends(serve, connect):
     assert view.closing() == (1001, "The simulator has been stopped.")
 
 
-def test_a_scenarios_picture_is_served_to_views_by_its_name_and_nothing_else(served, tmp_path):
+def test_a_scenarios_picture_is_served_to_views_by_name_and_nothing_else_is(served, tmp_path):
     picture = tmp_path / "preview.png"
     picture.write_bytes(png())
     served.pictures["ball"] = picture

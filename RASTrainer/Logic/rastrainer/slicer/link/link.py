@@ -93,7 +93,7 @@ class Link:
         )
         self._connection = SlicerConnection(scene, findKit, self._keepCommand, clock)
         self._pending = PendingCommands(self._guard, clock, self._processSoon)
-        self._wantsPoses = False
+        self._posesAreWanted = False
         self._preparedConnector: Any | None = None
         self._status = self._connection.status
 
@@ -152,15 +152,15 @@ class Link:
         self._connection.end()
         self.process()
 
-    def wantPoses(self, areWanted: bool) -> None:
+    def requestPoses(self, areWanted: bool) -> None:
         """Have the simulator send poses while the arm moves, or none.
 
         Slicer renders all its views for each pose, so request them only while someone is looking.
         """
-        if areWanted != self._wantsPoses:
-            self._wantsPoses = areWanted
+        if areWanted != self._posesAreWanted:
+            self._posesAreWanted = areWanted
             if self.isOpen:
-                self._sayHello(isFirst=False)
+                self._sendHello(isFirst=False)
 
     def send(
         self,
@@ -189,7 +189,7 @@ class Link:
             return
         self._test.process()
         if self._guard.run("The connection", self._connection.follow):
-            self._sayHello(isFirst=True)
+            self._sendHello(isFirst=True)
         if self.connector is not self._preparedConnector:
             self._preparedConnector = self.connector
             if self.connector is not None:
@@ -234,7 +234,7 @@ class Link:
             self._pending.poll(self.isOpen, self._transmit)
             self._arrivals.emitCommands()
 
-    def _sayHello(self, isFirst: bool) -> None:
+    def _sendHello(self, isFirst: bool) -> None:
         """Greet the simulator and ask for poses; later again, to ask for others."""
 
         def welcome(reply: Reply) -> None:
@@ -244,7 +244,7 @@ class Link:
             if reply.ok and isFirst:
                 self._guard.emit("The opened link", self.opened)
 
-        hz = POSES_HZ if self._wantsPoses else 0.0
+        hz = POSES_HZ if self._posesAreWanted else 0.0
         hello = {"protocolVersion": PROTOCOL_VERSION, "client": self._client}
         self.send(CommandName.HELLO, {**hello, "toolTipHz": hz, "linksHz": hz}, welcome)
 

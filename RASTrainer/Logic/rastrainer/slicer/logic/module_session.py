@@ -14,7 +14,6 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
-from rastrainer.slicer.logic.plan_logic import PlanLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
@@ -28,6 +27,7 @@ from rastrainer.slicer.logic.scenario_logic import (
 from rastrainer.slicer.logic.scenario_maker import ScenarioMaker
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.logic.study_logic import StudyLogic
+from rastrainer.slicer.logic.target_plan_logic import PlanLogic
 from rastrainer.slicer.logic.trace_logic import TraceLogic
 from rastrainer.slicer.logic.trainee_logic import CurriculumLogic, TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
@@ -42,7 +42,7 @@ from rastrainer.slicer.scene.scenario_nodes import VolumeLoader
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
 from rastrainer.study.database.database import LockWait, PostgresAddress, StudyPlace
-from rastrainer.study.database.postgres_connecting import search_driver_in
+from rastrainer.study.database.postgres_connecting import find_driver_in
 from rastrainer.study.database.study import Study
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.analysis import TrialAnalysis
@@ -141,7 +141,7 @@ class ModuleSession:
         self.studyPlace: StudyPlace = places.studyAddress or places.study
         self._scene = scene
         self._lockWait = LockWait.interactive()
-        search_driver_in(places.simulator)
+        find_driver_in(places.simulator)
         cache = ScenarioCache.below(places.assets / "scenarios", places.library)
         self.procedures: tuple[tuple[str, str], ...] = ()
         self.methods: tuple[str, ...] = (RegistrationMethod.FIDUCIALS.value,)
@@ -246,7 +246,7 @@ class ModuleSession:
             return
         inSlices = self.slices.needsPoses
         areShown = self.scenario.isRobotShown or inSlices
-        self.link.wantPoses(areShown and self.isSeen(inSlices))
+        self.link.requestPoses(areShown and self.isSeen(inSlices))
         self.link.process()
         self.work.process()
         if self._lockWait.may_retry():
@@ -263,14 +263,14 @@ class ModuleSession:
         self.slices.process()
         self.layout.process()
 
-    def giveTimeToWork(self) -> bool:
+    def yieldTimeToWork(self) -> bool:
         """Let work in the background run for a moment; return whether there still is any."""
-        self.work.giveTime()
+        self.work.yieldTime()
         if not self._scene.IsBatchProcessing():
             self.work.process()
         return self.work.isBusy
 
-    def sceneIsToBeCleared(self) -> None:
+    def sceneWillBeCleared(self) -> None:
         """Keep what would take the scene too long to delete at once."""
         self.replay.keepStates()
 

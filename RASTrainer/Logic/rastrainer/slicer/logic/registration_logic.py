@@ -18,8 +18,8 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.scene.error_colors import (
     clearResidualArrows,
     colorHead,
+    removeHeadColors,
     showResidualArrows,
-    uncolorHead,
 )
 from rastrainer.slicer.scene.nodes import Role, findNode, localPoints, worldPoints
 from rastrainer.slicer.scene.registration_nodes import (
@@ -291,7 +291,7 @@ class RegistrationLogic:
             with contextlib.suppress(InputError):
                 colorHead(head, self.shown, self._errorOnSkin(self.shown))
                 return
-        uncolorHead(head)
+        removeHeadColors(head)
 
     def _head(self) -> Any | None:
         return findNode(self._scene, "vtkMRMLModelNode", Role.HEAD_MODEL)

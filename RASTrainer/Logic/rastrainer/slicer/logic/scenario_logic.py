@@ -193,7 +193,7 @@ class ScenarioFiles:
             InputError: there is one of that title already, or the plan cannot be carried out.
         """
         isLine = node.IsA("vtkMRMLMarkupsLineNode")
-        plan = planWords(None, node) if isLine else planWords(node, None)
+        plan = planArguments(None, node) if isLine else planArguments(node, None)
         return self.saveWith(plan, name, title, progress)
 
     def saveWith(
@@ -224,7 +224,7 @@ class ScenarioFiles:
         return self._simulator.run(["scenario", *words], progress, mayFail)
 
 
-def planWords(targets: Any | None, trajectory: Any | None) -> list[str]:
+def planArguments(targets: Any | None, trajectory: Any | None) -> list[str]:
     """Return the arguments of `rastrainer scenario` for a list of targets and a line.
 
     Raises:

@@ -23,7 +23,7 @@ from rastrainer.scenario.writer import HeadDraft, write_draft
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.head_preview import HeadPreview
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.scenario_logic import planWords
+from rastrainer.slicer.logic.scenario_logic import planArguments
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
 from rastrainer.slicer.program.child_process import runChild
 from rastrainer.slicer.program.own_process import Run
@@ -197,7 +197,7 @@ class ScenarioMaker:
         setUp = folder / "setup.json"
         write_setup(setUp, options.setUp)
         words = ["--setup", str(setUp)]
-        return (*words, *planWords(options.targets, options.trajectory))
+        return (*words, *planArguments(options.targets, options.trajectory))
 
 
 def _chosen(volumeNode: Any) -> Any:

@@ -83,7 +83,7 @@ class StudyLogic:
                 step, end = progress.next_step, progress.break_end
                 # Another Slicer may have ended the break already: what follows is no break.
                 if step is not None and end is not None and now >= end:
-                    study.finish(name, step.name, {"minutes": progress.minutes_over(now)})
+                    study.finish(name, step.name, {"minutes": progress.minutes_elapsed(now)})
             self._leadOn(name)
 
     def protocol(self) -> StudyProtocol | None:
@@ -121,9 +121,9 @@ class StudyLogic:
             return None
         return study.progress(name)
 
-    def minutesOver(self, progress: Progress) -> float:
+    def minutesElapsed(self, progress: Progress) -> float:
         """Return how much of the chosen trainee's trial run or break is over; min."""
-        step, minutes = progress.next_step, progress.minutes_over(self._now())
+        step, minutes = progress.next_step, progress.minutes_elapsed(self._now())
         if step is None or step.kind is not StepKind.TRIAL_RUN:
             return minutes
         return minutes + self._watch.unsavedS(self._trainees.chosen, step.mode) / 60.0

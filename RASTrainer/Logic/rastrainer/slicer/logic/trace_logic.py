@@ -18,7 +18,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import knownNumber
-from rastrainer.slicer.scene.error_colors import colorSkin, uncolorHead
+from rastrainer.slicer.scene.error_colors import colorSkin, removeHeadColors
 from rastrainer.slicer.scene.nodes import (
     Role,
     drawAsPoints,
@@ -173,7 +173,7 @@ def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
     if isGuided and len(trace.places):
         _colorHead(head, trace.away_mm)
     elif head is not None:
-        uncolorHead(head, DISTANCE_SCALARS)
+        removeHeadColors(head, DISTANCE_SCALARS)
     _showNext(scene, trace.next_place if isGuided else None)
 
 
@@ -183,7 +183,7 @@ def forgetTrace(scene: Any) -> None:
     removeNode(scene, MARKUPS, Role.NEXT_PLACE)
     head = findNode(scene, MODEL, Role.HEAD_MODEL)
     if head is not None and head.GetPolyData() is not None:
-        uncolorHead(head, DISTANCE_SCALARS)
+        removeHeadColors(head, DISTANCE_SCALARS)
         head.GetPolyData().GetPointData().RemoveArray(DISTANCE_SCALARS)
 
 

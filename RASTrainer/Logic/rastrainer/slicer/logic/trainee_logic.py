@@ -252,7 +252,7 @@ class CurriculumLogic:
         self._stamps: dict[str, tuple[int | None, ...]] = {}
         self._followed: Study | None = None
         self._listening = Listening(
-            (trainees.changed, self._followTrainees), (link.opened, self._tellAll)
+            (trainees.changed, self._followTrainees), (link.opened, self._sendEverybody)
         )
 
     def close(self) -> None:
@@ -292,7 +292,7 @@ class CurriculumLogic:
         CurriculumStore(self._trainees.study).choose(curriculum, name)
         self._followTrainees()
 
-    def _tellAll(self) -> None:
+    def _sendEverybody(self) -> None:
         """Tell the simulator, which may know nothing yet, where everybody stands."""
         self._told.clear()
         self._stamps.clear()

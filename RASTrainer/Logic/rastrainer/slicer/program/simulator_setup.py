@@ -20,7 +20,7 @@ from rastrainer import __version__
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_text
-from rastrainer.python_environment import private_words
+from rastrainer.python_environment import private_command
 from rastrainer.slicer.program.child_process import ChildProcess, childEnvironment
 from rastrainer.slicer.program.simulator_package import (
     SetupProgress,
@@ -151,7 +151,7 @@ class SimulatorSetup:
         if child.exitStatus == 0 and not self._isTrimming and not self._isCanceled:
             self._isTrimming = True
             self._child = ChildProcess(
-                private_words(self._python, self._partial, TRIMMER, str(self._partial))
+                private_command(self._python, self._partial, TRIMMER, str(self._partial))
             )
             return
         error = self._finish(child.exitStatus)
@@ -167,7 +167,7 @@ class SimulatorSetup:
 
     def command(self, arguments: Sequence[str]) -> list[str]:
         """Return what starts the installed `rastrainer` with these arguments."""
-        return private_words(self._python, self.folder, PROGRAM, *arguments)
+        return private_command(self._python, self.folder, PROGRAM, *arguments)
 
     def _mark(self) -> dict[str, str]:
         try:

@@ -1,6 +1,6 @@
 """Removes what the simulator never opens from a private folder of packages; a separate program.
 
-    private_words(python, FOLDER, "rastrainer.slicer.program.trim_packages", FOLDER)
+    private_command(python, FOLDER, "rastrainer.slicer.program.trim_packages", FOLDER)
 
 Wheels bring C++ headers, manuals and tests, and VTK and Pinocchio a hundred libraries that the
 simulator does not use. What it uses is not guessed: every package that its sources import is

@@ -125,7 +125,7 @@ def colorRange(low: float, high: float) -> tuple[float, float]:
     return float(bottom), float(max(top, bottom + 0.1))
 
 
-def uncolorHead(model: Any, name: str = TRE_SCALARS) -> None:
+def removeHeadColors(model: Any, name: str = TRE_SCALARS) -> None:
     """Show the head in its own color again, if it is colored by this value."""
     display = model.GetDisplayNode()
     if display is not None and display.GetActiveScalarName() == name:

@@ -39,10 +39,10 @@ ENDS = 2
 
 @dataclass(frozen=True)
 class _Change:
-    """A change of a node. `takeBack` undoes it and returns whether there was anything to undo."""
+    """A change of a node. `undoChange` undoes it and returns whether there was anything to undo."""
 
     nodeId: str
-    takeBack: Callable[[Any], bool]
+    undoChange: Callable[[Any], bool]
 
 
 class PlanPoints:
@@ -103,7 +103,7 @@ class PlanPoints:
         while self._changes:
             change = self._changes.pop()
             node = self._scene.GetNodeByID(change.nodeId)
-            if node is not None and change.takeBack(node):
+            if node is not None and change.undoChange(node):
                 return
 
     def forget(self) -> None:

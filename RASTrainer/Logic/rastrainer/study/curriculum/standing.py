@@ -179,7 +179,7 @@ def standing_in(
 
 def _is_comparable(trial: CountedTrial, assignment: Assignment) -> bool:
     """Return whether a trial counts for an assignment with a score of the present version."""
-    is_present = trial.is_aborted or trial.version == _present_version(assignment)
+    is_present = trial.is_aborted or trial.version == _current_version(assignment)
     return is_present and trial.counts_for(assignment)
 
 
@@ -190,7 +190,7 @@ def _standing(
     pass_mark_of: PassMarkOf,
 ) -> AssignmentStanding:
     """Return where a trainee stands; `reached` has when those before it were reached, by name."""
-    present = _present_version(assignment)
+    present = _current_version(assignment)
 
     def of_version(version: str) -> list[CountedTrial]:
         return [trial for trial in own if trial.is_aborted or trial.version == version]
@@ -228,7 +228,7 @@ def _standing(
     )
 
 
-def _present_version(assignment: Assignment) -> str:
+def _current_version(assignment: Assignment) -> str:
     if assignment.procedure:
         return PROCEDURE_SCORE_VERSION
     return score_version(RegistrationMethod(assignment.method))

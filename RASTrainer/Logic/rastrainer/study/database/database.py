@@ -62,7 +62,7 @@ class PostgresAddress:
         return f"{SCHEMES[0]}{user}{host}{port}/{quote(self.database, safe='')}{end}"
 
     @property
-    def connection_words(self) -> dict[str, str]:
+    def connection_options(self) -> dict[str, str]:
         """What libpq is told."""
         words = {"host": self.host, "dbname": self.database, **self.options}
         if self.user:
@@ -128,7 +128,7 @@ def _address(text: str) -> PostgresAddress:
     if not "".join((host, database, user, *options.values())).isprintable():
         raise InputError(f"An address of PostgreSQL is printable text such as {EXAMPLE}.")
     address = PostgresAddress(host, database, user, port, options)
-    if not address.is_here and address.connection_words["sslmode"] not in SAFE_MODES:
+    if not address.is_here and address.connection_options["sslmode"] not in SAFE_MODES:
         raise InputError(
             "A study on another computer is reached over TLS with a certificate that is checked: "
             f"leave sslmode out, or set it to {' or '.join(SAFE_MODES)}."
@@ -142,7 +142,7 @@ def _port(text: str) -> int:
     return int(text)
 
 
-def beside_study(place: StudyPlace) -> Path:
+def path_beside_study(place: StudyPlace) -> Path:
     """Return the path whose name begins those of files beside a study, such as what was sent where.
 
     That of the study's file; for a study in PostgreSQL one in the user's own folder, by its

@@ -103,7 +103,7 @@ _BY_WORDS = {
 }
 
 
-def search_driver_in(folder: Path) -> None:
+def find_driver_in(folder: Path) -> None:
     """Load the package from a private folder where this Python has none of its own."""
     if folder not in _folders:
         _folders.append(folder)
@@ -148,7 +148,7 @@ def connected(
 ) -> Any:
     """Return a connection; psycopg's error if there is none in time."""
     connection = _impatient(postgres_driver(), answer_s).connect(
-        **address.connection_words,
+        **address.connection_options,
         **_NETWORK,
         tcp_user_timeout=1000 * silence_s,
         autocommit=True,

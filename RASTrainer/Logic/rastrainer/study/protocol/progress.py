@@ -89,7 +89,7 @@ class Progress:
         """When the previous step was done, or the trainee enrolled; ISO 8601."""
         return self.entries[-1].stored_utc if self.entries else self.enrolled_utc
 
-    def minutes_over(self, now: datetime) -> float:
+    def minutes_elapsed(self, now: datetime) -> float:
         """Return the elapsed time of a trial run or break, min."""
         step = self.next_step
         if step is None or step.kind not in (StepKind.TRIAL_RUN, StepKind.BREAK):
@@ -154,7 +154,7 @@ class Progress:
             mode=step.mode,
             questionnaire=step.questionnaire,
             minutes=step.minutes,
-            over=min(self.minutes_over(now), step.minutes),
+            over=min(self.minutes_elapsed(now), step.minutes),
             guidance=step.guidance,
             ghost=step.ghost,
             procedure=step.procedure,

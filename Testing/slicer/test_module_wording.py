@@ -30,7 +30,7 @@ def sentences(path):
             )
 
 
-def test_no_sentence_of_the_module_speaks_of_the_command_line():
+def test_no_sentence_of_the_module_mentions_the_command_line():
     said = [
         f"{path.name}: {sentence}"
         for path in (RASTRAINER / "RASTrainer.py", *LOGIC.rglob("*.py"))
@@ -41,7 +41,7 @@ def test_no_sentence_of_the_module_speaks_of_the_command_line():
     assert said == []
 
 
-def test_what_may_speak_of_the_command_line_is_there_and_does():
+def test_files_allowed_to_mention_the_command_line_exist_and_do():
     for path in ON_THE_COMMAND_LINE:
         assert any(WORDS.search(sentence) for sentence in sentences(path)), path
 
@@ -64,13 +64,13 @@ def texts_of_widgets():
     return found
 
 
-def test_no_widget_speaks_of_the_command_line():
+def test_no_widget_mentions_the_command_line():
     texts = texts_of_widgets()
     assert len(texts) > 200
     assert {place: text for place, text in texts.items() if WORDS.search(text)} == {}
 
 
-def test_the_field_of_a_protocol_says_which_page_describes_the_file():
+def test_the_protocol_field_says_which_page_describes_the_file():
     (tip,) = [
         text
         for place, text in texts_of_widgets().items()

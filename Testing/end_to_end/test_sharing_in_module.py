@@ -16,7 +16,7 @@ from Testing.slicer.host.fixtures import *  # noqa: F403 (the fixture `host`)
 
 
 @pytest.fixture(autouse=True)
-def scenario_of_ones_own(host, tmp_path):
+def users_own_scenario(host, tmp_path):
     """The module with a scenario in the library, and a program of the simulator."""
     user_library().mkdir(parents=True)
     written(user_library() / "ball", np.argsort(-egg().vertices[:, 2])[:300:20])
@@ -26,7 +26,7 @@ def scenario_of_ones_own(host, tmp_path):
 
 
 @pytest.mark.soak
-def test_it_is_saved_without_face_and_names_and_the_panel_says_so(host, tmp_path):
+def test_a_scenario_is_saved_without_face_and_names_and_the_panel_says_so(host, tmp_path):
     host.answer("Save the scenario", tmp_path / "out.zip")
     host.press("exportScenarioButton")
     assert host.messages == []
@@ -40,7 +40,7 @@ def test_it_is_saved_without_face_and_names_and_the_panel_says_so(host, tmp_path
 
 
 @pytest.mark.soak
-def test_face_and_names_stay_where_that_is_chosen(host, tmp_path):
+def test_face_and_names_are_kept_on_request(host, tmp_path):
     host.check("removeFaceCheckBox", False)
     host.check("removeNamesCheckBox", False)
     host.answer("Save the scenario", tmp_path / "out.zip")
@@ -55,7 +55,7 @@ def read_scenario(folder):
 
 
 @pytest.mark.soak
-def test_a_plan_is_kept_in_a_copy_of_the_scenario_which_is_chosen_and_shown(host):
+def test_a_plan_is_saved_in_a_copy_of_the_scenario_which_is_selected_and_shown(host):
     line = host.scene.AddNewNodeByClass("vtkMRMLMarkupsLineNode", "Other way")
     setPoints(line, ("Entry", "Target"), np.array([[10.0, 20.0, 97.0], [15.0, 10.0, 30.0]]))
     unfold(host, "planCollapsibleButton")

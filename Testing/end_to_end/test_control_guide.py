@@ -13,7 +13,7 @@ GUIDE = Path(__file__).parents[2] / "docs" / "how-to" / "control-from-a-program.
 PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
-def test_the_program_of_the_guide_begins_a_trial_moves_the_arm_and_hears_why_a_touch_is_refused(
+def test_the_guides_program_begins_a_trial_moves_the_arm_and_learns_why_a_touch_is_refused(
     tmp_path,
 ):
     (program,) = PROGRAM.findall(GUIDE.read_text(encoding="utf-8"))

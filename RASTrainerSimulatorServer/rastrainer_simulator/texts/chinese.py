@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from rastrainer_simulator.ops.texts import typesetting
+from rastrainer_simulator.texts import typesetting
 
 _ITEMS: Mapping[str, str] = {
     "sus_1": "愿意经常使用",

@@ -231,7 +231,7 @@ def standings(
             values = [v for v in (getattr(o, name) for o in peers) if v is not None]
             if value is not None and values:
                 found.append(_standing(title, unit, value, group, values, better))
-    return found + _besideCohort(trial, cohort)
+    return found + _comparedWithCohort(trial, cohort)
 
 
 def showScore(scene: Any, rows: Sequence[Row]) -> Any:
@@ -287,7 +287,7 @@ def _standing(
     return GroupComparison(title, unit, value, group, len(values), float(np.median(values)), share)
 
 
-def _besideCohort(trial: StoredTrial, cohort: Sequence[Trial]) -> list[GroupComparison]:
+def _comparedWithCohort(trial: StoredTrial, cohort: Sequence[Trial]) -> list[GroupComparison]:
     record, rigid = trial.record, trial.registrations.get(RIGID)
     # The published tables call the tasks 1 to 5.
     peers = [

@@ -81,7 +81,7 @@ def one_side(fiducials):
 
 @pytest.mark.parametrize("choose", [without_the_worst_five, one_side])
 @pytest.mark.parametrize("task", TASKS)
-def test_the_score_is_of_all_touches_whatever_registration_was_submitted(scenario, task, choose):
+def test_all_touches_are_scored_whatever_registration_was_submitted(scenario, task, choose):
     cheated, honest = (submit(scenario, task, rows) for rows in (choose, everything))
     assert not np.allclose(cheated.submitted, cheated.all_touches, atol=1e-3)
     scored = [
@@ -107,7 +107,7 @@ def test_a_registration_before_the_fifteenth_touch_is_refused(scenario, count):
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_each_touch_has_to_be_at_its_own_fiducial(scenario, task):
+def test_each_touch_must_be_at_its_own_fiducial(scenario, task):
     trial = Trial(scenario)
     trial.start(task)
     first = trial.fiducial("1")
@@ -116,7 +116,7 @@ def test_each_touch_has_to_be_at_its_own_fiducial(scenario, task):
     assert trial.state.next_point == "2"
 
 
-def test_a_record_of_fewer_touches_is_refused():
+def test_a_record_with_fewer_touches_is_refused():
     record = make_record()
     with pytest.raises(InputError, match="a list of 15 points"):
         TrialRecord.from_json({**record, "points": record["points"][:10]})

@@ -17,7 +17,7 @@ class OffenseError(AssertionError):
     """Something was sent that would harm Slicer."""
 
 
-class WirePolice:
+class WireChecker:
     """Reads a stream of what was sent, in any pieces, and raises at what must not be.
 
     Attributes:

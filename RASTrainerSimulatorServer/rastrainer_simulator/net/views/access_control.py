@@ -48,7 +48,7 @@ class ViewRole(str, Enum):
     """As a spectator, from a teacher's board; its key outlives the simulator's process."""
 
     @property
-    def only_watches(self) -> bool:
+    def is_watch_only(self) -> bool:
         """Whether its views may drive nothing."""
         return self is not ViewRole.VIEW
 

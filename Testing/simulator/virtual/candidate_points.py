@@ -35,7 +35,7 @@ def surface_at(place: np.ndarray) -> np.ndarray:
     return CENTER + from_center / np.linalg.norm(from_center / HALF_AXES)
 
 
-class PlacesOfPoints:
+class CandidatePoints:
     """The places where the next point may be; all are (3,) float, World, m.
 
     Attributes:

@@ -77,7 +77,7 @@ def answer_of(given):
     }
 
 
-def test_an_open_trial_is_registered_from_what_the_simulator_answers(scenario, traced):
+def test_an_unfinished_trial_is_registered_from_the_simulators_answer(scenario, traced):
     given, _pose = traced
     again = register_trial(GivenPoints.of_answer(answer_of(given)), scenario)
     np.testing.assert_array_equal(again.rigid.matrix, register_trial(given, scenario).rigid.matrix)
@@ -93,7 +93,7 @@ def test_an_open_trial_is_registered_from_what_the_simulator_answers(scenario, t
         pytest.param({"method": "laser"}, "methods are fiducials, landmarks", id="unknown"),
     ],
 )
-def test_an_answer_that_cannot_be_registered_is_refused_with_a_sentence(traced, changes, said):
+def test_an_answer_that_cannot_be_registered_is_refused_with_a_message(traced, changes, said):
     with pytest.raises(InputError, match=said):
         GivenPoints.of_answer({**answer_of(traced[0]), **changes})
 

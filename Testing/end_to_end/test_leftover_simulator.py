@@ -33,7 +33,7 @@ def left(story):
     child.close()
 
 
-def test_it_is_found_when_the_module_is_opened_and_connected_to_and_ended(story, left):
+def test_opening_the_module_finds_a_leftover_simulator_which_can_be_joined_and_ended(story, left):
     host = story.host
     story.choose_own_program()
     assert "was not started from here is running" in host.text("runningSimulatorText")
@@ -47,7 +47,7 @@ def test_it_is_found_when_the_module_is_opened_and_connected_to_and_ended(story,
     assert not host.find("runningSimulatorFrame").visible
 
 
-def test_it_is_found_when_another_is_started_in_place_of_a_sentence_of_the_command_line(
+def test_starting_another_simulator_reveals_the_leftover_one_and_not_a_command_line_message(
     story, request
 ):
     host = story.host

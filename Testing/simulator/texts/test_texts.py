@@ -10,8 +10,8 @@ import pytest
 from rastrainer_simulator.flow.session.preferences import OPTIONS
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import GAMEPAD_INPUTS, ControlName, InputDevice, SourceKind
-from rastrainer_simulator.ops.texts.english import ENGLISH
-from rastrainer_simulator.ops.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
 
 
 def fields(sentence):
@@ -19,7 +19,7 @@ def fields(sentence):
 
 
 @pytest.mark.parametrize("language", sorted(LANGUAGES))
-def test_a_language_has_every_sentence_with_the_same_values(language):
+def test_a_language_has_every_sentence_with_the_same_placeholders(language):
     table = LANGUAGES[language]
     assert set(table) == set(ENGLISH)
     assert [key for key in ENGLISH if fields(table[key]) != fields(ENGLISH[key])] == []
@@ -31,19 +31,19 @@ def test_every_language_is_offered_by_its_own_name_in_all_of_them():
         assert len({table[f"settings.language.{tag}"] for table in LANGUAGES.values()}) == 1
 
 
-def test_french_has_no_break_before_signs_of_two_parts_and_curved_apostrophes():
+def test_french_has_nonbreaking_spaces_before_double_punctuation_and_curly_apostrophes():
     for text in LANGUAGES["fr"].values():
         said = "".join(written for written, *_ in Formatter().parse(text))
         assert re.findall(r"[^\u202f][;:!?%»]|«[^\u202f]|'", f" {said}") == [], text
     assert LANGUAGES["fr"]["waiting.problem"].endswith("lui-même\u202f: {reason}")
 
 
-def test_a_question_and_an_exclamation_are_opened_in_spanish():
+def test_spanish_questions_and_exclamations_have_opening_marks():
     for text in LANGUAGES["es"].values():
         assert (text.count("?"), text.count("!")) == (text.count("¿"), text.count("¡"))
 
 
-def test_chinese_has_full_width_signs_and_a_space_beside_numbers_and_latin_letters():
+def test_chinese_has_full_width_punctuation_and_spaces_beside_numbers_and_latin_letters():
     wide = "[\u4e00-\u9fff]"
     for text in LANGUAGES["zh-Hans"].values():
         said = re.sub(r"{\w+:[^}]*}", "0", text)
@@ -52,7 +52,7 @@ def test_chinese_has_full_width_signs_and_a_space_beside_numbers_and_latin_lette
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_two_ways_of_a_stick_or_of_arrow_keys_share_the_name_of_the_stick(language):
+def test_two_directions_of_a_stick_or_of_arrow_keys_share_the_name_of_the_stick(language):
     texts = Texts(LANGUAGES[language])
     for device, name, pairs in (
         (InputDevice.GAMEPAD, "leftx", ("-leftx", "+leftx", "-lefty", "+lefty")),
@@ -64,7 +64,7 @@ def test_two_ways_of_a_stick_or_of_arrow_keys_share_the_name_of_the_stick(langua
         assert len(pair_label(up, down)) < len(f"{up} / {down}"), name
 
 
-def test_every_key_that_the_code_makes_of_a_name_has_its_sentence():
+def test_every_key_that_the_code_builds_from_a_name_has_its_sentence():
     made = [f"control.{control.value}" for control in ControlName]
     made += [f"gamepad.{name}" for name in GAMEPAD_INPUTS]
     made += [f"source.{kind.value}" for kind in SourceKind]
@@ -79,7 +79,7 @@ def test_every_key_that_the_code_makes_of_a_name_has_its_sentence():
     assert [key for key in made if key not in ENGLISH] == []
 
 
-def test_a_sentence_of_the_simulation_is_said_again_in_another_language():
+def test_a_sentence_of_the_simulation_can_be_restated_in_another_language():
     english, german = Texts(), Texts(LANGUAGES["de"])
     said = english.say("above the skin", point="5", height=12.34)
     assert said == "12.3 mm above the skin: lower the tip onto point 5."
@@ -87,7 +87,7 @@ def test_a_sentence_of_the_simulation_is_said_again_in_another_language():
     assert german.again("what others say") == "what others say"
 
 
-def test_feedback_of_slicers_is_said_with_the_languages_words_and_decimal_sign():
+def test_slicers_feedback_is_shown_in_the_language_with_its_decimal_sign():
     german = Texts(LANGUAGES["de"])
     assert german.say("feedback.touch above", depth=1.25).startswith(
         ", vor allem in der Tiefe (1,2"
@@ -100,7 +100,7 @@ def test_a_negative_number_has_a_true_minus_sign_and_a_text_keeps_its_hyphens():
     assert Texts().say("start", trainee="P-01", point="1") == "P-01, touch point 1."
 
 
-def test_a_value_with_braces_is_filled_in_as_it_is():
+def test_a_value_with_braces_is_filled_in_verbatim():
     assert Texts().say("start", trainee="{point} {0}", point="1") == "{point} {0}, touch point 1."
 
 
@@ -119,5 +119,5 @@ def test_a_sentence_can_be_copied_and_sent_to_another_process():
         ("Page up", "Arrow down", "Page up / Arrow down"),
     ],
 )
-def test_what_two_inputs_share_is_said_once(first, second, together):
+def test_what_two_inputs_share_is_stated_once(first, second, together):
     assert pair_label(first, second) == together

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from string import Formatter
 
-from rastrainer_simulator.ops.texts.chinese import CHINESE
-from rastrainer_simulator.ops.texts.english import ENGLISH
-from rastrainer_simulator.ops.texts.french import FRENCH
-from rastrainer_simulator.ops.texts.german import GERMAN
-from rastrainer_simulator.ops.texts.spanish import SPANISH
+from rastrainer_simulator.texts.chinese import CHINESE
+from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.french import FRENCH
+from rastrainer_simulator.texts.german import GERMAN
+from rastrainer_simulator.texts.spanish import SPANISH
 
 LANGUAGES: Mapping[str, Mapping[str, str]] = {
     "en": ENGLISH,

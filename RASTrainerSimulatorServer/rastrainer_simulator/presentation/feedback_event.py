@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from rastrainer.protocol import PROCEDURE_PHASES, Phase, Proximity
-from rastrainer_simulator.net.views.presenter import Feedback
+from rastrainer_simulator.presentation.presenter import Feedback
 from rastrainer_simulator.state import TOUCH_ERRORS, Event, EventKind, TouchStage
 from rastrainer_simulator.training.feed import FeedLayer
 

@@ -32,7 +32,7 @@ def next_tip(client, condition=lambda _tip: True):
     )
 
 
-def test_the_adapter_moves_the_arm_as_the_picture_shows_and_lets_it_stop(tmp_path):
+def test_the_guides_adapter_moves_the_arm_as_the_picture_shows_and_lets_it_stop(tmp_path):
     (program,) = PROGRAM.findall(GUIDE.read_text(encoding="utf-8"))
     assert "port=18944" in program
     with (

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer_simulator.ops.texts.texts import LANGUAGES
+from rastrainer_simulator.texts.texts import LANGUAGES
 
 TEXTS = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web" / "src" / "texts"
 FILES = {
@@ -42,7 +42,7 @@ def tables(language: str) -> list[dict[str, str]]:
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_the_pages_say_the_same_with_the_same_values(language):
+def test_the_pages_have_the_same_sentences_with_the_same_placeholders(language):
     for table, english in zip(tables(language), tables("en"), strict=True):
         assert len(english) > 50
         assert table.keys() == english.keys()
@@ -51,14 +51,14 @@ def test_the_pages_say_the_same_with_the_same_values(language):
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_what_a_drawing_colors_has_the_name_that_the_menus_have_for_it(language):
+def test_colored_parts_of_a_drawing_are_named_as_in_the_menus(language):
     page, table = tables(language)[0], LANGUAGES[language]
     for part, name in DRAWN.items():
         assert f"{table[name]} ".startswith(f"{page[part]} "), part
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_the_board_explains_the_states_by_the_words_that_trainees_read(language):
+def test_the_board_explains_states_in_the_words_that_trainees_read(language):
     board, table = tables(language)[1], LANGUAGES[language]
     for state in ("reached", "locked"):
         assert board[f"legend.{state}"].startswith(table[f"assignments.{state}"])

@@ -55,24 +55,24 @@ def scenario_of(setup):
         ),
     ],
 )
-def test_what_is_not_on_the_table_is_reported(setup, sentence):
+def test_anything_not_standing_on_the_table_is_reported(setup, sentence):
     sentences = standing(setup)
     assert sentence in sentences[0]
     assert "\n" not in sentences[0]
 
 
-def test_the_usual_set_up_and_the_scenario_that_comes_with_it_are_on_the_table():
+def test_the_default_setup_and_the_bundled_scenario_stand_on_the_table():
     assert standing(SetUp()) == []
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     assert check_standing(scenario, colin27()) == []
 
 
-def test_the_check_of_the_plan_reports_the_table():
+def test_the_plan_check_reports_the_table():
     planning = PlanningSetup(scenario_of(SetUp(table_center=(800.0, 0.0))), egg())
     assert "robot's foot" in check_plan(planning)[0]
 
 
-def test_no_trial_brings_the_head_lower_than_reported():
+def test_no_trial_places_the_head_lower_than_reported():
     setup = SetUp(perturbation=Perturbation(20.0, 30.0, 25.0))
     scenario, head = scenario_of(setup), egg()
     reported = lowest_in_trials_mm(scenario, head)

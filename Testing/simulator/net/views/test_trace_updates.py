@@ -9,7 +9,7 @@ import pytest
 from rastrainer.protocol import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.loop.timing import LoopStatistics
-from rastrainer_simulator.net.views.presenter import SkinPlace, TraceGuidance
+from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance
 from rastrainer_simulator.state import StepResult
 from Testing.simulator.landmarked import with_landmarks
 from Testing.simulator.net.views.served import ServedViews
@@ -20,7 +20,7 @@ GUIDED = TraceGuidance(10.0, PLACE)
 NEXT = {"positionMm": [1.0, 80.0, -20.0], "normal": [0.0, 1.0, 0.0]}
 
 
-class ToldStates:
+class RepeatedStates:
     """A `StateSource` that tells one state again and again, until a test has another."""
 
     statistics = LoopStatistics()
@@ -54,7 +54,7 @@ class TracedTrial:
         self.trial.start(method="surface")
         self.trial.touch(3)
         self._idle = control_loop.latest
-        self.source = ToldStates(self._idle, control_loop.setup)
+        self.source = RepeatedStates(self._idle, control_loop.setup)
         self.served = ServedViews(loop_thread, self.source)
 
     def close(self):
@@ -88,7 +88,7 @@ def traced(control_loop, loop_thread):
     traced.close()
 
 
-def test_views_are_told_only_what_is_new_and_who_joins_late_all_of_it(traced, connect):
+def test_views_are_sent_only_what_is_new_and_late_ones_the_whole_trace(traced, connect):
     view = connect(traced.served)
     view.join()
     traced.draw(5, 0.30)
@@ -104,7 +104,7 @@ def test_views_are_told_only_what_is_new_and_who_joins_late_all_of_it(traced, co
     assert (told["known"], told["points"]) == (0, traced.in_head(0))
 
 
-def test_an_undone_stroke_is_taken_back(traced, connect):
+def test_an_undone_stroke_is_removed(traced, connect):
     view = connect(traced.served)
     view.join()
     for count, height in ((4, 0.30), (6, 0.32)):
@@ -117,7 +117,7 @@ def test_an_undone_stroke_is_taken_back(traced, connect):
     assert (last["known"], last["points"]) == (4, traced.in_head(4))
 
 
-def test_guidance_comes_with_the_trace_and_goes_when_the_trial_ends(traced, connect):
+def test_guidance_comes_with_the_trace_and_disappears_when_the_trial_ends(traced, connect):
     traced.served.presenter.guidance = GUIDED
     view = connect(traced.served)
     view.join()

@@ -20,23 +20,23 @@ def around(angle_deg, height=0.0, lift=1.0):
 
 @pytest.mark.parametrize("angle_deg", [0, 20, 45, 90])
 @pytest.mark.parametrize("lift", [1.0, 1.5])
-def test_on_the_arc_the_tip_is_on_the_way_at_any_height(angle_deg, lift):
+def test_on_the_arc_the_tip_is_on_the_path_at_any_height(angle_deg, lift):
     assert WAY.beside(around(angle_deg, lift=lift)) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_beside_the_arc_it_is_as_far_as_along_the_head():
+def test_beside_the_arc_the_deviation_is_the_distance_along_the_head():
     # On a sphere of 0.1 m, 0.3 rad from the arc's plane: 0.03 m.
     tip = (0.5 + 0.1 * math.cos(0.3) * math.cos(0.7), 0.1 * math.cos(0.3) * math.sin(0.7))
     assert WAY.beside((*tip, 0.2 + 0.1 * math.sin(0.3))) == pytest.approx(0.03)
 
 
-def test_before_the_start_and_past_the_end_the_nearer_one_counts():
+def test_before_the_start_and_past_the_end_the_nearer_end_counts():
     assert WAY.beside(around(-30)) == pytest.approx(0.1 * math.radians(30))
     assert WAY.beside(around(120)) == pytest.approx(0.1 * math.radians(30))
     assert WAY.beside(around(-180)) == pytest.approx(0.1 * math.radians(90))
 
 
-def test_a_way_of_no_length_is_a_point():
+def test_a_path_of_zero_length_is_a_point():
     way = PathArc(WAY.center, WAY.start, WAY.start)
     assert way.beside(around(40)) == pytest.approx(0.1 * math.radians(40))
 
@@ -50,6 +50,6 @@ def test_a_way_of_no_length_is_a_point():
         ((0.01, -0.1, 0.0), ("right",)),
     ],
 )
-def test_directions_are_told_the_longest_first_and_short_ones_not(target, words):
+def test_directions_are_listed_longest_first_and_short_ones_are_omitted(target, words):
     # The robot's own axes: x is forward, y left, z up.
     assert direction_words((0.0, 0.0, 0.0), target, ROBOT_AXES) == words

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from rastrainer_simulator.net.views.screen import Screen
+from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.viewpoint.view_control import Pictures
 

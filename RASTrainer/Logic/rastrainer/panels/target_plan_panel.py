@@ -25,7 +25,7 @@ from rastrainer.progress import no_progress
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.plan_logic import PlanOnImages, targetsOf
+from rastrainer.slicer.logic.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
 from rastrainer.slicer.scene.registration_nodes import snapshot
 from rastrainer.slicer.signal import Listening

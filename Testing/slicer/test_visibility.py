@@ -20,26 +20,26 @@ from Testing.slicer.host.host import Host
         ("OneUpPlotView", True, False, True),
     ],
 )
-def test_what_is_seen_depends_on_the_layout_and_on_the_module(
+def test_visibility_depends_on_the_layout_and_on_the_module(
     host, layout, is_entered, in_slices, is_seen
 ):
-    from rastrainer.panels.application import isSomethingSeen
+    from rastrainer.panels.application import isAnythingVisible
 
     number = getattr(slicer.vtkMRMLLayoutNode, f"SlicerLayout{layout}")
     slicer.app.layoutManager().setLayout(number)
-    assert isSomethingSeen(is_entered, in_slices) is is_seen
+    assert isAnythingVisible(is_entered, in_slices) is is_seen
     host.minimize()
-    assert not isSomethingSeen(is_entered, in_slices)
+    assert not isAnythingVisible(is_entered, in_slices)
     host.minimize(False)
-    assert isSomethingSeen(is_entered, in_slices) is is_seen
+    assert isAnythingVisible(is_entered, in_slices) is is_seen
 
 
-def test_without_a_window_the_module_alone_may_be_seen(tmp_path):
-    from rastrainer.panels.application import isSomethingSeen
+def test_without_a_window_only_the_module_can_be_visible(tmp_path):
+    from rastrainer.panels.application import isAnythingVisible
 
     bare = Host(tmp_path, window=False)
     try:
-        assert isSomethingSeen(True)
-        assert not isSomethingSeen(False, True)
+        assert isAnythingVisible(True)
+        assert not isAnythingVisible(False, True)
     finally:
         bare.close()
