@@ -80,7 +80,7 @@ class Story:
     def use_scenario_in_simulator(self) -> None:
         host = self.host
         host.press("loadScenarioButton")
-        host.wait_until(lambda: " now." in host.text("scenarioText"), "the scenario is loaded")
+        host.wait_until(lambda: " now uses " in host.text("scenarioText"), "the scenario is loaded")
         self.wait_until_connected()
 
     def abort_a_trial_run(self) -> None:
