@@ -31,7 +31,7 @@ ENDING := --max-worker-restart=0 -o faulthandler_timeout=900 -o faulthandler_exi
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(AS_SLOW) $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder $(ENDING) -q
+	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(AS_SLOW) $(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder $(ENDING) -q
 
 # What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
 soak: .venv/soak-installed page

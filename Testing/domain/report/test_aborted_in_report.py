@@ -67,7 +67,7 @@ def test_a_report_without_aborted_trials_says_so(tmp_path):
     count = len(data.trials)
     words = words_of(report_html(data))
     assert f"{count} of {count} started trials were finished" in words
-    assert "played again" not in words
+    assert "aborted with" not in words
 
 
 def test_a_report_of_a_csv_has_no_section_on_started_trials():
