@@ -128,6 +128,12 @@ def test_every_link_on_a_page_leads_somewhere(page):
 
 
 @pytest.mark.parametrize("page", PAGES)
+def test_no_page_contains_conflict_markers(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert re.findall(r"^(?:<{7}|>{7}) .*$", text, re.MULTILINE) == []
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_every_path_named_on_a_page_is_in_the_repository(page):
     assert {path for path in paths_in(page) if not is_there(path)} == set()
 
