@@ -9,7 +9,8 @@ import numpy as np
 
 from rastrainer.protocol import Mode
 from rastrainer_simulator.flow.flow import Flow
-from rastrainer_simulator.flow.seat import OperatedView, ViewSources, instruct, seat_of
+from rastrainer_simulator.flow.operated_views import OperatedView, ViewSources
+from rastrainer_simulator.flow.seat import instruct, seat_of
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.flow.session.session import TrainingSession

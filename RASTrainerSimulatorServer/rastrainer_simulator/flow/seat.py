@@ -1,110 +1,18 @@
-"""The seat: its views, how they are operated and turned, and what its teacher sees and has done."""
+"""The seat as a teacher's board shows it, and what a teacher orders there."""
 
 from __future__ import annotations
 
-from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, Mode, Phase
+from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, Phase
 from rastrainer_simulator.flow.flow import Flow
 from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import ResultPage
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.controls import Controls
-from rastrainer_simulator.input.inputs import SIMULATOR_STATION, ControlContext, Source, SourceKind
-from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.presentation.presenter import Hello, InstructorOrder, Seat
+from rastrainer_simulator.presentation.presenter import InstructorOrder, Seat
 from rastrainer_simulator.presentation.screen import Screen, Tone
-from rastrainer_simulator.record.trial_context import ViewReport
-from rastrainer_simulator.replay.playback import PlaybackSwitch
-from rastrainer_simulator.state import SimulationState
-from rastrainer_simulator.viewpoint.view_control import Pictures, ViewMotion
 
 _WRONG = (Tone.WARNING, Tone.ERROR)
 SENTENCE_S = 20.0
 """How long the trainee sees a teacher's sentence: longer than a notice, since nobody expects it."""
-NOTED_S = 0.2
-"""A view that moves is noted in the journal so often."""
-
-
-class ViewSources:
-    """Knows each view by its number, from when it joins until it leaves."""
-
-    def __init__(self) -> None:
-        self._views: dict[int, Hello] = {}
-        self._silent: set[int] = set()
-        self._touched: set[int] = set()
-        self._yaw_deg: dict[int, float] = {}
-
-    def join(self, view: int, hello: Hello) -> None:
-        """Take note of a view."""
-        self._views[view] = hello
-
-    def leave(self, view: int) -> Hello | None:
-        """Forget a view; return what it was, None where it is not known."""
-        self._silent.discard(view)
-        self._touched.discard(view)
-        self._yaw_deg.pop(view, None)
-        return self._views.pop(view, None)
-
-    def hello(self, view: int) -> Hello | None:
-        """Return what a view is; None where it is not known."""
-        return self._views.get(view)
-
-    @property
-    def has_headset(self) -> bool:
-        """Whether one of them is a headset."""
-        return any(hello.kind == "headset" for hello in self._views.values())
-
-    def hear(self, view: int, is_heard: bool) -> None:
-        """Take note whether a view says that it draws."""
-        if is_heard:
-            self._silent.discard(view)
-        else:
-            self._silent.add(view)
-
-    def look(self, view: int, yaw_deg: float) -> None:
-        """Take where the eyes of a headset look, degrees from World's x."""
-        self._yaw_deg[view] = yaw_deg
-
-    def yaw_deg(self, holder: Source | None) -> float | None:
-        """Return where the eyes above an operator's controllers look; None without those."""
-        if holder is None or holder.kind is not SourceKind.XR or holder.view is None:
-            return None
-        return self._yaw_deg.get(holder.view)
-
-    def watched(self, holder: Source | None) -> int | None:
-        """Return the view that the trainee looks at: a headset, else the one that is operated."""
-        # A headset whose network broke comes back as another view, long before the first has left.
-        heard = [each for each in reversed(self._views.items()) if each[0] not in self._silent]
-        by_kind = {hello.kind: view for view, hello in heard}
-        operated = None if holder is None else holder.view
-        choices = (by_kind.get("headset"), operated, by_kind.get("desktop"), by_kind.get("page"))
-        return next((view for view in choices if view is not None), None)
-
-    def source(self, kind: SourceKind, view: int) -> Source:
-        """Return a view's source; the simulator's own windows share a station with its gamepad."""
-        hello = self._views.get(view)
-        is_own = hello is not None and hello.kind == "desktop"
-        return Source(kind, SIMULATOR_STATION if is_own else f"view {view}", view)
-
-    def sticks_source(self, view: int, has_screen_sticks: bool) -> Source:
-        """Return whose sticks a view sends: a headset's, a touch screen's, or a mouse's.
-
-        A page has sticks of its own on a touch screen; for a mouse they have been asked for.
-        """
-        hello = self._views.get(view)
-        if hello is None or hello.kind == "headset":
-            return self.source(SourceKind.XR, view)
-        is_for_mouse = has_screen_sticks and view not in self._touched
-        if hello.kind == "desktop" or is_for_mouse:
-            return self.source(SourceKind.MOUSE, view)
-        self._touched.add(view)
-        return self.source(SourceKind.TOUCH_SCREEN, view)
-
-    def hand_source(self, kind: SourceKind, view: int) -> Source:
-        """Return what an item was chosen or written with: a finger, where one has been seen."""
-        hello = self._views.get(view)
-        if hello is not None and hello.kind == "headset":
-            return self.source(SourceKind.XR, view)
-        return self.source(SourceKind.TOUCH_SCREEN if view in self._touched else kind, view)
 
 
 def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -> Seat:
@@ -153,75 +61,3 @@ def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text:
         return session.texts.say("instructor.no result")
     page.accept("replay")
     return ""
-
-
-class OperatedView:
-    """The session's view between controls, control loop and views."""
-
-    def __init__(
-        self,
-        session: TrainingSession,
-        controls: Controls,
-        control_loop: ControlLoop,
-        shown: PlaybackSwitch,
-    ) -> None:
-        self._session = session
-        self._controls = controls
-        self._control_loop = control_loop
-        self._shown = shown
-        self._noted: tuple[str, ViewReport] | None = None
-        self._since_noted = 0.0
-
-    def pictures(self, now: SimulationState) -> Pictures:
-        """Return where the pictures of a state are looked from."""
-        return self._session.view.pictures(now, self._shown.setup.scenario.cameras)
-
-    def turn(self, source: Source, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Turn the view for the operator; nobody else may."""
-        if self._controls.is_operator(source):
-            shown = self._shown
-            camera = shown.setup.scenario.cameras[shown.latest.camera]
-            self._session.view.control.turn(camera, around_deg, higher_deg, zoom)
-
-    @property
-    def follows(self) -> bool:
-        """Whether the view goes automatically to the best view of each next point."""
-        session, tutorial = self._session, self._session.tutorial
-        practiced = session.training if tutorial is None else tutorial
-        if practiced.mode == Mode.HMD.value:
-            # In a headset one looks around with the head.
-            return False
-        if tutorial is not None and not tutorial.has_learned_view:
-            return False
-        choice = session.preferences.view
-        is_led = session.study.step_of(practiced.trainee) is not None
-        return choice == "always" or (choice == "practice" and not is_led)
-
-    def advance(self, dt: float) -> None:
-        """Move the view by `dt` seconds, and have the trial's journal say where it is."""
-        session = self._session
-        session.view.advance(
-            dt,
-            self._shown.latest,
-            self._shown.setup.scenario,
-            ViewMotion(*self._controls.view),
-            self._controls.sticks,
-            self.follows and self._controls.situation is ControlContext.WORK,
-        )
-        self._since_noted += dt
-        if session.has_open_trial and self._since_noted >= NOTED_S:
-            self._note()
-
-    def _note(self) -> None:
-        session = self._session
-        control, orbit = session.view.control, session.view.control.orbit
-        report = ViewReport(
-            orbit.azimuth_deg,
-            orbit.elevation_deg,
-            orbit.zoom,
-            control.is_automatic,
-            self.follows,
-        )
-        if self._noted != (session.training.trial_id, report):
-            self._noted, self._since_noted = (session.training.trial_id, report), 0.0
-            self._control_loop.note_display(report)
