@@ -80,8 +80,8 @@ def load_volume(scene, path, name):
 
 @pytest.fixture
 def scan():
-    """A head in the shape of MRBrainTumor1, turned in the scanner."""
-    return phantom(spacing=SAMPLE_SPACING, shape=SAMPLE_SHAPE, turn_deg=7.0, noise=3.0)
+    """A head in the shape of MRBrainTumor1, turned in the scanner, nearly as wide as an adult's."""
+    return phantom(spacing=SAMPLE_SPACING, shape=SAMPLE_SHAPE, turn_deg=7.0, noise=3.0, size=1.1)
 
 
 @pytest.fixture

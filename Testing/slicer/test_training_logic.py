@@ -23,6 +23,21 @@ def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):
         room.logic.start("T001", "", "hmd")
 
 
+def test_no_trial_starts_while_the_simulator_loads_a_scenario(room):
+    done = []
+    room.logic.loadScenario("mine", lambda: done.append(True))
+    assert room.logic.isLoading
+    with pytest.raises(InputError, match="still loading a scenario"):
+        room.logic.start("T001", "task-2", "hmd")
+    room.run_until(lambda: done)
+    assert not room.logic.isLoading
+    room.refusal = "There is no such scenario."
+    room.logic.loadScenario("nowhere", lambda: done.append(True))
+    room.run_until(lambda: room.answers[-1:] == [room.refusal])
+    assert (len(done), room.logic.isLoading) == (1, False)
+    assert room.all_sent("StartTask") == []
+
+
 def test_the_trial_run_waits_for_the_tutorial_if_the_simulator_requires_it(room):
     room.needsTutorial = True
     room.logic.start("T001", "trial-run", "desktop", isTutorialFirst=True)

@@ -33,7 +33,7 @@ from rastrainer.protocol import (
 )
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.training_logic import TrialStatus
+from rastrainer.slicer.logic.training_logic import LOADING, TrialStatus
 from rastrainer.slicer.settings import (
     IS_TUTORIAL_FIRST,
     MODE,
@@ -208,9 +208,12 @@ class TrainingPanel:
             reason = (
                 _("A trial is open: abort it or let it be registered first.")
                 if progress.isOpen
+                else LOADING
+                if self._logic.isLoading
                 else _("Choose a trainee in the section Trainees first.")
             )
-        mayStart = isConnected and not progress.isOpen and bool(self._session.trainees.chosen)
+        isFree = isConnected and not progress.isOpen and not self._logic.isLoading
+        mayStart = isFree and bool(self._session.trainees.chosen)
         for button, tip in (
             (ui.startTrialRunButton, _("Start the trial run, which does not count.")),
             (ui.startTaskButton, _("Start the task that is chosen in the section Scenario.")),

@@ -27,6 +27,7 @@ from rastrainer.slicer.scene.trial_scene import forgetStoredTouches, noteTouched
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 
+LOADING = _("The simulator is still loading a scenario: wait until it says that it uses it.")
 LOADING_S = 30.0
 """How long the simulator may take to load a scenario."""
 
@@ -102,6 +103,7 @@ class TrainingLogic:
         self._stateTime = 0.0
         self._shownTrial = ""
         self._total = FIDUCIAL_COUNT
+        self._loadings = 0
         self._listening = Listening(
             (link.stateChanged, self._follow), (link.pointsChanged, self._emitChange)
         )
@@ -155,8 +157,10 @@ class TrainingLogic:
         does without it. The trial run can be started after it.
 
         Raises:
-            InputError: no trainee or no task is chosen.
+            InputError: no trainee or no task is chosen, or the simulator is loading a scenario.
         """
+        if self.isLoading:
+            raise InputError(LOADING)
         if not trainee:
             raise InputError(_("Choose a trainee in the section Trainees first."))
         if not task:
@@ -192,14 +196,22 @@ class TrainingLogic:
             raise InputError(_("This trial is over. The trial that is open now was not aborted."))
         self._send(CommandName.ABORT, {"trialId": trialId})
 
+    @property
+    def isLoading(self) -> bool:
+        """Whether the simulator is loading a scenario: a trial would start on the one before."""
+        return self._loadings > 0
+
     def loadScenario(self, folder: str, done: Callable[[], None]) -> None:
         """Load another scenario into the simulator, between two trials; call `done` once it has."""
 
         def takeAnswer(reply: Reply) -> None:
+            self._loadings -= 1
             self.answered.emit(reply.error)
             if reply.ok:
                 done()
+            self.changed.emit()
 
+        self._loadings += 1
         self._link.send(
             CommandName.LOAD_SCENARIO, {"folder": folder}, takeAnswer, timeoutS=LOADING_S
         )
