@@ -212,6 +212,7 @@ class TrainingLogic:
             self.changed.emit()
 
         self._loadings += 1
+        self.changed.emit()
         self._link.send(
             CommandName.LOAD_SCENARIO, {"folder": folder}, takeAnswer, timeoutS=LOADING_S
         )
