@@ -201,24 +201,26 @@ class TrainingPanel:
     def _isPaused(self) -> bool:
         return self._logic.progress.phase == Phase.PAUSED.value
 
+    def _whyNoneStarts(self, progress: TrialStatus, isConnected: bool) -> str:
+        """Return why no trial can be started now, "" if one can."""
+        if not isConnected:
+            return _("Connect to the simulator first.")
+        if progress.isOpen:
+            return _("A trial is open: abort it or let it be registered first.")
+        if self._logic.isLoading:
+            return LOADING
+        if not self._session.trainees.chosen:
+            return _("Choose a trainee in the section Trainees first.")
+        return ""
+
     def _showButtons(self, progress: TrialStatus, isConnected: bool) -> None:
         ui = self._ui
-        reason = _("Connect to the simulator first.")
-        if isConnected:
-            reason = (
-                _("A trial is open: abort it or let it be registered first.")
-                if progress.isOpen
-                else LOADING
-                if self._logic.isLoading
-                else _("Choose a trainee in the section Trainees first.")
-            )
-        isFree = isConnected and not progress.isOpen and not self._logic.isLoading
-        mayStart = isFree and bool(self._session.trainees.chosen)
+        reason = self._whyNoneStarts(progress, isConnected)
         for button, tip in (
             (ui.startTrialRunButton, _("Start the trial run, which does not count.")),
             (ui.startTaskButton, _("Start the task that is chosen in the section Scenario.")),
         ):
-            setUsable(button, mayStart, tip, reason)
+            setUsable(button, not reason, tip, reason)
         isPaused = progress.phase == Phase.PAUSED.value
         ui.pauseButton.text = _("Resume") if isPaused else _("Pause")
         mayPause = isConnected and (isPaused or progress.phase in _PAUSABLE)
