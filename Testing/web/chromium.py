@@ -18,6 +18,7 @@ from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ServedViews
+from Testing.web.slow_page import slow_pages
 from tools.build_page import install_packages
 
 WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
@@ -92,9 +93,10 @@ navigator.getGamepads = () => [window.pad];
 def launch(playwright: Playwright, *arguments: str) -> Browser:
     """Start the Chromium of this machine, or Playwright's own where there is none."""
     path = shutil.which("chromium") or shutil.which("chromium-browser")
-    return playwright.chromium.launch(
+    browser = playwright.chromium.launch(
         executable_path=path, args=[*ARGUMENTS, *arguments], timeout=PATIENCE_MS
     )
+    return slow_pages(browser)
 
 
 def emulator() -> str:

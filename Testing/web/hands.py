@@ -69,10 +69,15 @@ _MOVE = """async (by) => {
 
 
 _IS_TARGET = """(target) => {
-  const box = document.querySelector(target)?.getBoundingClientRect();
-  return box !== undefined && Math.min(box.width, box.height) >= 24;
+  const place = document.querySelector(target);
+  if (place === null || getComputedStyle(place).cursor !== "pointer") return false;
+  const { width, height } = place.getBoundingClientRect();
+  return Math.min(width, height) >= 24;
 }"""
-"""Whether what is to be clicked is as large as WCAG 2.2 wants it (2.5.8)."""
+"""Whether what is to be clicked looks like it, and is as large as WCAG 2.2 wants it (2.5.8).
+
+One look answers both: between two, the page may put another element in its place.
+"""
 _FINE_HINT = "#hints [data-item='press fine']"
 _SLOW_IS = """(word) =>
   document.querySelector("#hints [data-item='press fine']")?.textContent.endsWith(word)"""
@@ -140,6 +145,9 @@ class Thumbs:
 
     def _put(self, thumb: int, across: float, along: float) -> None:
         box = self._page.query_selector_all("#touch-controls .stick")[thumb].bounding_box()
+        if box is None:
+            # A menu has opened.
+            return
         radius = box["width"] / 2
         is_new = thumb not in self._thumbs
         middle = box["x"] + radius, box["y"] + radius
@@ -174,11 +182,9 @@ class PageMouse:
     def click(self, item: str) -> None:
         """Click on an item of the menu or on a hint, once it is there."""
         target = f"#menu li[data-name='{item}'] button, #hints [data-item='{item}']"
-        place = self._page.locator(target)
         self._page.wait_for_function(_IS_TARGET, arg=target)
-        assert place.evaluate("e => getComputedStyle(e).cursor") == "pointer"
         # The page may set the hints anew at any moment: a click that would miss is made again.
-        place.click()
+        self._page.click(target)
 
     def tap(self, control: str) -> None:
         self.push(0.0, 0.0, 0.0)

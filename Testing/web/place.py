@@ -219,6 +219,28 @@ class Trainee(StreamTrainee):
         self.choose("register")
 
 
+class OnPage:
+    """Chooses items where the page shows them, for a trainee with a `page`."""
+
+    page: Page
+
+    def choose(self, item: str) -> None:
+        """Choose an item of the open menu, which leads to another."""
+        before = self.menu_name
+        self.until_on_page()
+        self.choose_on_page(item)
+        self.until(lambda: self.menu_name != before, f"after {item}")
+
+    def until_on_page(self) -> None:
+        """Wait until the page shows the open menu: the one before may have such an item too."""
+        selector = f"body[data-menu='{self.menu_name or ''}']"
+        self.page.wait_for_selector(selector, state="attached")
+
+    def choose_on_page(self, item: str) -> None:
+        """Choose an item by what the page is worked with."""
+        raise NotImplementedError
+
+
 class CarriedTrainee(Trainee):
     """Is quick: the tip goes by command where it shall."""
 

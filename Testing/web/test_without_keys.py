@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ from Testing.end_to_end.view_learner import ViewLearner
 from Testing.tutorial_player import TutorialPlayer
 from Testing.web.chromium import enter_headset, open_page
 from Testing.web.hands import PageMouse, TrackedHands
-from Testing.web.place import PATIENT, Place, Trainee
+from Testing.web.place import PATIENT, OnPage, Place, Trainee
 from Testing.web.tapping_trainee import PHONE, SteeringTrainee, TappingTrainee
 
 SIZE = {"width": 1280, "height": 720}
@@ -20,14 +22,15 @@ SLOW, SLOWEST = "0.5", "0.25"
 """Simulated seconds in a second, so that a stick is let go of in time on a busy machine."""
 
 
-class Clicks:
-    """Menus by clicks, as far as an ID and the task."""
+class ClickingTrainee(OnPage, Trainee):
+    """Does everything by the mouse."""
 
-    def choose(self, item: str) -> None:
-        """Click on an item, which leads to another menu."""
-        before = self.menu_name
+    def __init__(self, view, page):
+        super().__init__(view, PageMouse(page))
+        self.page = page
+
+    def choose_on_page(self, item):
         self.hands.click(item)
-        self.until(lambda: self.menu_name != before, f"after {item}")
 
     def click_id(self) -> None:
         """Add P7 to the ID, a character at a time."""
@@ -52,23 +55,15 @@ class Clicks:
         self.until(lambda: self.view.screen.has_sticks, "the sticks")
 
 
-class ClickingTrainee(Clicks, Trainee):
-    """Does everything by the mouse."""
-
-
-class HandTrainee(Trainee):
+class HandTrainee(OnPage, Trainee):
     """Pinches at what is written on boards; elsewhere the tip follows the pinching hand."""
 
     def __init__(self, view, page):
         super().__init__(view, TrackedHands(page))
-        self._page = page
+        self.page = page
 
-    def choose(self, item):
-        before = self.menu_name
-        # Else the board of the menu before, which may have an item of that name elsewhere.
-        self._page.wait_for_selector(f"body[data-menu='{before or ''}']", state="attached")
+    def choose_on_page(self, item):
         self.hands.choose(item)
-        self.until(lambda: self.menu_name != before, f"after {item}")
 
     def steer_to(self, place, near, fine=False):  # noqa: ARG002
         if self.menu_name == "trial":
@@ -94,46 +89,45 @@ def place(tmp_path_factory):
         yield place
 
 
+@contextmanager
 def page_of(place, browser, *headset, **options):
+    """A page of that place, which leaves the arm to the next one even where a test has failed."""
     simulator = place.simulator
-    return open_page(browser, simulator.url, simulator.code, *headset, draws=False, **options)
+    page = open_page(browser, simulator.url, simulator.code, *headset, draws=False, **options)
+    with page.context:
+        yield page
+        assert page.problems == []
 
 
 @pytest.fixture
 def thumbs(place, browser):
     """Somebody whose trial runs, begun by tapping, and the page."""
-    page = page_of(place, browser, size=PHONE, has_touch=True)
-    trainee = TappingTrainee(place, page)
-    trainee.begin_by_taps("task-1")
-    page.wait_for_selector("#touch-controls")
-    yield trainee, page
-    trainee.press("menu", lambda: trainee.menu is not None, "the menu")
-    trainee.choose("abort")
-    trainee.choose("abort")
-    assert page.problems == []
-    page.context.close()
+    with page_of(place, browser, size=PHONE, has_touch=True) as page:
+        trainee = TappingTrainee(place, page)
+        trainee.begin_by_taps("task-1")
+        page.wait_for_selector("#touch-controls")
+        yield trainee, page
+        trainee.press("menu", lambda: trainee.menu is not None, "the menu")
+        trainee.choose("abort")
+        trainee.choose("abort")
 
 
 @pytest.fixture
 def mouse(place, browser):
-    page = page_of(place, browser, size=SIZE)
-    trainee = ClickingTrainee(place.view, PageMouse(page))
-    yield trainee, page
-    trainee.go_home()
-    assert page.problems == []
-    page.context.close()
+    with page_of(place, browser, size=SIZE) as page:
+        trainee = ClickingTrainee(place.view, page)
+        yield trainee, page
+        trainee.go_home()
 
 
 @pytest.fixture
 def hand(place, browser):
     """Somebody in Task 1, begun by a tracked hand."""
-    page = page_of(place, browser, "metaQuest3")
-    enter_headset(page)
-    trainee = HandTrainee(place.view, page)
-    begin(trainee)
-    yield trainee
-    assert page.problems == []
-    page.context.close()
+    with page_of(place, browser, "metaQuest3") as page:
+        enter_headset(page)
+        trainee = HandTrainee(place.view, page)
+        begin(trainee)
+        yield trainee
 
 
 @pytest.mark.soak
@@ -170,15 +164,14 @@ def test_two_thumbs_steer_at_once_stop_the_arm_and_read_on_the_buttons_what_to_p
 
 @pytest.mark.soak
 def test_a_whole_trial_is_touched_and_scored_with_two_thumbs_alone(tmp_path, browser):
-    with Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any") as place:
-        page = page_of(place, browser, size=PHONE, has_touch=True)
+    slow = Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any")
+    with slow as place, page_of(place, browser, size=PHONE, has_touch=True) as page:
         trainee = SteeringTrainee(place, page)
         trainee.begin_by_taps("task-1")
         page.wait_for_selector("#touch-controls .stick")
         trainee.play_to_result()
         assert len(place.entries("touch")) == 15
         assert {entry["operator"] for entry in place.entries("input")} <= {"touch screen", ""}
-        assert page.problems == []
 
 
 def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(mouse):
@@ -212,9 +205,9 @@ class MouseLearner(ViewLearner):
 @pytest.mark.soak
 def test_the_tutorial_is_done_with_the_mouse_alone_and_leads_to_the_trial_run(tmp_path, browser):
     rules = {"order": "fixed", "tutorial": "required"}
-    with Place(tmp_path, "--speed", SLOWEST, limits=PATIENT, **rules) as place:
-        page = page_of(place, browser, size=SIZE)
-        trainee = ClickingTrainee(place.view, PageMouse(page))
+    slowest = Place(tmp_path, "--speed", SLOWEST, limits=PATIENT, **rules)
+    with slowest as place, page_of(place, browser, size=SIZE) as page:
+        trainee = ClickingTrainee(place.view, page)
         trainee.begin_by_sticks("tutorial")
         player = TutorialPlayer(MouseLearner(trainee), SourceKind.MOUSE)
         player.play()
@@ -222,7 +215,6 @@ def test_the_tutorial_is_done_with_the_mouse_alone_and_leads_to_the_trial_run(tm
         trainee.until_menu("tutorial-done")
         trainee.begin_task("trial-run")
         page.wait_for_selector("#touch-controls .stick")
-        assert page.problems == []
 
 
 @pytest.mark.soak
@@ -237,14 +229,13 @@ def test_the_first_touches_of_a_task_are_steered_by_the_mouse(place, mouse):
 
 @pytest.mark.soak
 def test_a_whole_trial_is_touched_and_scored_with_the_mouse_alone(tmp_path, browser):
-    with Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any") as place:
-        page = page_of(place, browser, size=SIZE)
-        trainee = ClickingTrainee(place.view, PageMouse(page))
+    slow = Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any")
+    with slow as place, page_of(place, browser, size=SIZE) as page:
+        trainee = ClickingTrainee(place.view, page)
         trainee.begin_by_sticks("task-1")
         trainee.play_to_result()
         assert len(place.entries("touch")) == 15
         assert {entry["operator"] for entry in place.entries("input")} <= {"mouse", ""}
-        assert page.problems == []
 
 
 def begin(trainee):
