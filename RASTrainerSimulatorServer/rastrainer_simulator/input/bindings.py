@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import string
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,7 +11,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.files.writing import keep_others_out, make_folder, write_text
+from rastrainer.files.writing import write_private_json
 from rastrainer_simulator.input.inputs import (
     BUTTONS,
     OF_VIEW,
@@ -209,9 +208,7 @@ def write_bindings(path: Path, bindings: Bindings) -> None:
     for device in InputDevice:
         table = bindings.table(device)
         values[device.value] = {control.value: list(table[control]) for control in ControlName}
-    make_folder(path.parent, is_private=True)
-    write_text(path, json.dumps(values, indent=2) + "\n")
-    keep_others_out(path)
+    write_private_json(path, values)
 
 
 def _read_table(values: dict[str, Any], device: InputDevice) -> Table:

@@ -23,7 +23,7 @@ _FILE, _FOLDER = 0o600, 0o700
 _OTHERS = 0o077
 
 
-def write_text(path: str | os.PathLike[str], text: str) -> None:
+def write_text(path: str | os.PathLike[str], text: str, is_private: bool = False) -> None:
     """Write a UTF-8 text file as `write_bytes` does.
 
     Raises:
@@ -33,11 +33,16 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         content = text.encode("utf-8")
     except ValueError as error:
         raise _unwritable(path, error) from None
-    write_bytes(path, content)
+    write_bytes(path, content, is_private)
 
 
-def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
+def write_bytes(path: str | os.PathLike[str], content: bytes, is_private: bool = False) -> None:
     """Write a file atomically: after a crash there is the old or the new one.
+
+    Args:
+        path: of the file; its folder is there.
+        content: all of it.
+        is_private: it is for this user only, unless its folder is shared (see `keep_others_out`).
 
     Raises:
         InputError: the file cannot be written.
@@ -45,11 +50,12 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
     target = Path(path)
     partial = target.parent / f".{uuid.uuid4().hex}.partial"
     try:
-        with partial.open("xb") as file:
+        is_own = is_private and not _is_shared(target)
+        with open(partial, "xb", opener=open_private if is_own else None) as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        if target.exists():
+        if target.exists() and not is_own:
             shutil.copymode(target, partial)
         partial.replace(target)
     except (OSError, ValueError) as error:
@@ -58,9 +64,10 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
         raise _unwritable(path, error) from None
 
 
-def write_json(path: str | os.PathLike[str], value: object) -> None:
+def write_json(path: str | os.PathLike[str], value: object, is_private: bool = False) -> None:
     """Write indented JSON as `write_text` does."""
-    write_text(path, json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+    text = json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    write_text(path, text, is_private)
 
 
 def make_folder(folder: Path, is_private: bool = False) -> None:
@@ -92,11 +99,7 @@ def write_private_json(path: Path, value: object) -> None:
         InputError: the folder cannot be made, or the file not written.
     """
     make_folder(path.parent, is_private=True)
-    if not path.exists():
-        # Private before there is anything in it.
-        write_json(path, {})
-        keep_others_out(path)
-    write_json(path, value)
+    write_json(path, value, is_private=True)
 
 
 def _unwritable(path: object, error: Exception) -> InputError:
@@ -144,6 +147,10 @@ def keep_others_out(path: str | os.PathLike[str]) -> None:
     path = Path(path)
     with contextlib.suppress(OSError):
         status = path.stat()
-        is_shared = path.parent.stat().st_mode & stat.S_ISGID
-        if status.st_uid == os.geteuid() and status.st_mode & _OTHERS and not is_shared:
+        is_open = status.st_uid == os.geteuid() and status.st_mode & _OTHERS
+        if is_open and not _is_shared(path):
             path.chmod(stat.S_IMODE(status.st_mode) & ~_OTHERS)
+
+
+def _is_shared(path: Path) -> bool:
+    return bool(path.parent.stat().st_mode & stat.S_ISGID)

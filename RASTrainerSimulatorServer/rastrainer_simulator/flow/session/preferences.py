@@ -10,7 +10,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.files.writing import keep_others_out, make_folder, write_text
+from rastrainer.files.writing import write_private_json
 from rastrainer.json_checks import accepted, text
 from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, TouchRule, TutorialRule
 from rastrainer.transforms import MM_PER_M
@@ -145,9 +145,7 @@ def write_preferences(path: Path, preferences: Preferences) -> None:
     Raises:
         InputError: the file cannot be written.
     """
-    make_folder(path.parent, is_private=True)
-    write_text(path, json.dumps(dataclasses.asdict(preferences), indent=2) + "\n")
-    keep_others_out(path)
+    write_private_json(path, dataclasses.asdict(preferences))
 
 
 def faded_guidance(choice: str, task: str, order: Sequence[str]) -> Guidance:

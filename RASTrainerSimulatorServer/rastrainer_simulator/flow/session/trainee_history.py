@@ -14,8 +14,7 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.json_fields import read_fields
-from rastrainer.files.reading import failure_reason
-from rastrainer.files.writing import keep_others_out, make_private_folder, write_text
+from rastrainer.files.writing import make_folder, write_text
 from rastrainer.journal.folder import TUTORIAL_SUFFIX, journals_of
 from rastrainer.journal.journal_file import (
     MAX_LINE_BYTES,
@@ -131,15 +130,9 @@ class FinishedTutorials:
         self._note(outcome)
         utc = iso(datetime.now(timezone.utc))
         path = self._records / f"{file_stamp(utc)}_{uuid.uuid4()}{TUTORIAL_SUFFIX}"
-        try:
-            make_private_folder(self._records)
-        except OSError as error:
-            raise InputError(
-                f"The folder {self._records} cannot be made: {failure_reason(error)}."
-            ) from None
+        make_folder(self._records, is_private=True)
         # One line, as a journal's first: by it the file is found when the trainee is deleted.
-        write_text(path, json.dumps({"utc": utc, **outcome.to_json()}) + "\n")
-        keep_others_out(path)
+        write_text(path, json.dumps({"utc": utc, **outcome.to_json()}) + "\n", is_private=True)
 
     def _note(self, outcome: TutorialOutcome) -> None:
         self._devices[outcome.trainee].update(_COUNTS_FOR.get(outcome.device, (outcome.device,)))

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import os
 import socket
 import ssl
-import tempfile
 from dataclasses import dataclass
 from datetime import datetime, timedelta, timezone
 from ipaddress import ip_address
@@ -16,7 +14,7 @@ from pathlib import Path
 import trustme
 
 from rastrainer.errors import InputError
-from rastrainer.files.writing import make_private_folder
+from rastrainer.files.writing import make_private_folder, write_bytes, write_text
 
 VALID_DAYS = 90
 RENEWED_BEFORE_DAYS = 14
@@ -114,9 +112,5 @@ def _make(file: Path, names_file: Path, names: tuple[str, ...]) -> None:
     authority = trustme.CA(organization_name="RASTrainer on this machine")
     until = datetime.now(timezone.utc) + timedelta(days=VALID_DAYS)
     issued = authority.issue_cert(*names, not_after=until)
-    content = issued.private_key_and_cert_chain_pem.bytes()
-    handle, name = tempfile.mkstemp(dir=file.parent, prefix=file.name)
-    with os.fdopen(handle, "wb") as written:
-        written.write(content)
-    Path(name).replace(file)
-    names_file.write_text("\n".join(names), encoding="utf-8")
+    write_bytes(file, issued.private_key_and_cert_chain_pem.bytes(), is_private=True)
+    write_text(names_file, "\n".join(names))
