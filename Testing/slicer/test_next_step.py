@@ -29,6 +29,26 @@ def step_of(situation, **changes):
     return nextStep(replace(situation, **changes))
 
 
+@pytest.mark.parametrize(
+    "situation",
+    [CHOSEN, PRACTICED, replace(CHOSEN, studyStep=StepKind.TRIAL)],
+    ids=["trial run", "task", "step of a study"],
+)
+def test_what_would_start_a_trial_waits_while_a_scenario_is_being_loaded(situation):
+    before, step = nextStep(situation), step_of(situation, isLoading=True)
+    assert (step.action, step.title, step.section) == (
+        NextAction.WAIT,
+        before.title,
+        before.section,
+    )
+    assert "still loading a scenario" in step.sentence
+
+
+def test_what_starts_no_trial_does_not_wait_for_a_scenario_that_is_being_loaded():
+    for situation in (OFF, CONNECTED, replace(CHOSEN, studyStep=StepKind.QUESTIONNAIRE)):
+        assert step_of(situation, isLoading=True) == nextStep(situation)
+
+
 def test_a_session_leads_from_an_empty_slicer_to_the_next_trial():
     seen = [
         nextStep(situation).title

@@ -9,7 +9,7 @@ from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode
 from rastrainer.slicer.scene.registration_nodes import isApplied, isPlanned, matrixOf
-from Testing.slicer.training_room import TRIAL
+from Testing.slicer.training_room import LOADING_REFUSAL, TRIAL
 
 
 def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):
@@ -23,19 +23,35 @@ def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):
         room.logic.start("T001", "", "hmd")
 
 
-def test_no_trial_starts_while_the_simulator_loads_a_scenario(room):
+def test_a_scenario_that_is_being_loaded_is_an_obstacle_until_it_is_there_or_refused(room):
     done = []
+    room.run_until(lambda: not room.logic.obstacle)
     room.logic.loadScenario("mine", lambda: done.append(True))
-    assert room.logic.isLoading
-    with pytest.raises(InputError, match="still loading a scenario"):
-        room.logic.start("T001", "task-2", "hmd")
+    assert "still loading a scenario" in room.logic.obstacle
     room.run_until(lambda: done)
-    assert not room.logic.isLoading
+    assert not room.logic.obstacle
     room.refusal = "There is no such scenario."
     room.logic.loadScenario("nowhere", lambda: done.append(True))
+    assert room.logic.isLoading
     room.run_until(lambda: room.answers[-1:] == [room.refusal])
-    assert (len(done), room.logic.isLoading) == (1, False)
-    assert room.all_sent("StartTask") == []
+    assert (len(done), room.logic.obstacle) == (1, "")
+
+
+def test_a_trial_refused_while_somebody_else_has_a_head_loaded_is_reported_and_starts_later(room):
+    room.isLoading = True
+    room.logic.start("T001", "task-2", "hmd")
+    room.run_until(lambda: room.answers)
+    room.isLoading = False
+    room.logic.start("T001", "task-2", "hmd")
+    room.run_until(lambda: len(room.answers) == 2)
+    assert room.answers == [LOADING_REFUSAL, ""]
+
+
+def test_what_is_in_the_way_of_a_trial_is_the_link_first_then_another_trial(room):
+    room.tell(phase="running")
+    room.run_until(lambda: "trial is open" in room.logic.obstacle)
+    room.link.disconnect()
+    assert room.logic.obstacle == "Connect to the simulator first."
 
 
 def test_the_trial_run_waits_for_the_tutorial_if_the_simulator_requires_it(room):

@@ -9,17 +9,22 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.scene.nodes import findNode
 from rastrainer_headless.connector import headlessKit
+from rastrainer_simulator.texts.english import ENGLISH
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, run_until_received
 
 TRIAL = str(uuid.UUID(int=5))
+LOADING_REFUSAL = ENGLISH["being set up"]
 
 
 class Room:
-    """A logic on a link to a simulator double that has the ball scenario."""
+    """A logic on a link to a simulator double that has the ball scenario.
+
+    As the simulator does, it begins neither a trial nor another loading while `isLoading`.
+    """
 
     def __init__(self, scene, scenario):
         self.scene, self.now, self.refusal = scene, 100.0, None
-        self.needsTutorial = False
+        self.needsTutorial = self.isLoading = False
         self.simulator = SimulatorDouble(self.answer)
         self.link = Link(scene, headlessKit)
         self.logic = TrainingLogic(scene, self.link, lambda _name: scenario, lambda: self.now)
@@ -36,6 +41,8 @@ class Room:
             return {"scenario": "ball", "title": "Ball", "tasks": []}
         if name == "StartTutorial" and self.refusal is None:
             return {"isNeeded": self.needsTutorial}
+        if name in ("StartTask", "LoadScenario") and self.isLoading:
+            return LOADING_REFUSAL
         return {} if self.refusal is None or name == "Hello" else self.refusal
 
     def tell(self, **state):

@@ -192,6 +192,8 @@ class Flow:
             session.trainee, session.mode = trainee, mode
             if not needs_tutorial(session):
                 return Answer(0, True, data={"isNeeded": False})
+            if session.setting_up.is_under_way:
+                return Answer(0, False, say("being set up"))
             session.begin_tutorial()
         return Answer(0, True, data={"isNeeded": True})
 

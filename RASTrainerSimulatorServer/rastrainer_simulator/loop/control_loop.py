@@ -44,6 +44,7 @@ from rastrainer_simulator.state import (
     StartingPoint,
     StepResult,
 )
+from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 from rastrainer_simulator.training.true_error import Truth
 
@@ -51,9 +52,13 @@ CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
 COMMANDS_PER_TICK = 16
 TOO_MANY_STARTS = "Trials are being started too often: wait a few seconds, then try again."
-TRIAL_IS_OPEN = "A trial is running: Register or Abort it before another scenario."
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
+TRIAL_IS_OPEN = Texts().say("no other head in a trial")
+BEING_SET_UP = Texts().say("being set up")
+
+_BEGIN_REPLACEMENT = "BeginReplacement"
+"""Waits for its turn among the commands; clients cannot send it."""
 
 _OF_ANY_TRIAL = (CommandName.GET_TRIAL, CommandName.ACKNOWLEDGE_TRIAL, *ENDING_A_TRIAL)
 _PASSING = frozenset(
@@ -122,6 +127,7 @@ class ControlLoop:
         limits = trial_limits or TrialLimits()
         self._starts = RateLimit(limits.starts_per_s, limits.starts_at_once)
         self._refused: str | None = None
+        self._is_being_replaced = False
         self._successor: tuple[Simulation, int] | None = None
         self._subscribers: Subscribers[StepResult] = Subscribers()
         self._punctuality = Punctuality()
@@ -215,11 +221,36 @@ class ControlLoop:
             self._answers.refuse_all(SHUTTING_DOWN)
         return future
 
+    @property
+    def is_being_replaced(self) -> bool:
+        """Whether another simulation is being made: no trial begins on the present one."""
+        return self._is_being_replaced
+
+    def begin_replacement(self) -> Future[Answer]:
+        """Have no trial begin from now on, since another simulation is being made.
+
+        Refused while a trial is open. It takes its turn among the commands: whatever trial was
+        asked for before has begun, and none does after it. If it is not refused, one may call
+        `replace_simulation` and has to call `end_replacement`.
+        """
+        ticket, future = self._answers.expect()
+        self._arrived.append(OperatorCommand(_BEGIN_REPLACEMENT, ticket=ticket))
+        if self._is_over:
+            self._answers.refuse_all(SHUTTING_DOWN)
+        return future
+
     def replace_simulation(self, simulation: Simulation) -> Future[Answer]:
-        """Continue with another simulation, such as one of another scenario, between two trials."""
+        """Continue with another simulation, such as one of another scenario."""
+        assert self._is_being_replaced, "a trial could be open"
         ticket, future = self._answers.expect()
         self._successor = (simulation, ticket)
+        if self._is_over:
+            self._answers.refuse_all(SHUTTING_DOWN)
         return future
+
+    def end_replacement(self) -> None:
+        """Let trials begin again, on the simulation that is there now."""
+        self._is_being_replaced = False
 
     def _run(self) -> None:
         try:
@@ -244,7 +275,7 @@ class ControlLoop:
             sleep_until(due)
 
     def _tick(self) -> None:
-        if self._successor is not None:
+        if self._successor is not None and not self._held.is_waiting:
             self._switch_simulation(*self._successor)
         commands = self._commands()
         operator_input = replace(self._sticks, commands=commands) if commands else self._sticks
@@ -268,22 +299,32 @@ class ControlLoop:
             if changes_trial and self._held.is_waiting:
                 break
             self._arrived.popleft()
+            if command.name == _BEGIN_REPLACEMENT:
+                self._take_replacement(command.ticket)
+                continue
             if self._is_for_the_archive(command):
                 self._query_archive(command)
                 continue
-            if self._is_start_too_many(command):
-                self._answers.give(Answer(command.ticket, False, TOO_MANY_STARTS))
+            if command.name == CommandName.START_TASK and (reason := self._why_none_starts()):
+                self._answers.give(Answer(command.ticket, False, reason))
                 continue
             commands.append(command)
             if changes_trial:
                 break
         return tuple(commands)
 
-    def _is_start_too_many(self, command: OperatorCommand) -> bool:
-        """Return whether a command would start a trial too soon after others."""
-        if command.name != CommandName.START_TASK or self._is_trial_open:
-            return False
-        return not self._starts.allows(self._state.sim_time)
+    def _take_replacement(self, ticket: int) -> None:
+        self._is_being_replaced = not self._is_trial_open
+        reason = TRIAL_IS_OPEN if self._is_trial_open else ""
+        self._answers.give(Answer(ticket, not reason, reason))
+
+    def _why_none_starts(self) -> str:
+        """Return why the loop lets no trial begin; an open one is the simulation's own reason."""
+        if self._is_trial_open:
+            return ""
+        if self._is_being_replaced:
+            return BEING_SET_UP
+        return "" if self._starts.allows(self._state.sim_time) else TOO_MANY_STARTS
 
     @property
     def _is_trial_open(self) -> bool:
@@ -319,9 +360,6 @@ class ControlLoop:
 
     def _switch_simulation(self, simulation: Simulation, ticket: int) -> None:
         self._successor = None
-        if self._held.is_waiting or self._is_trial_open:
-            self._answers.give(Answer(ticket, False, TRIAL_IS_OPEN))
-            return
         simulation.restart_from(StartingPoint.after(self._state))
         self._simulation = simulation
         self._answers.give(Answer(ticket, True))

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import is_identifier
-from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.library import ListedScenario, list_scenarios, user_library
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.loop.control_loop import TRIAL_IS_OPEN, ControlLoop
+from rastrainer_simulator.loop.control_loop import BEING_SET_UP, ControlLoop
 from rastrainer_simulator.state import Answer
 
-BUSY = "A scenario is being loaded already: wait until it is loaded."
-_HANDOVER_TIMEOUT_S = 5.0
+FAILED = "The scenario could not be loaded: the simulator's log says why."
+
+_log = logging.getLogger(__name__)
 
 
 class ScenarioLoader:
-    """Makes simulations of other scenarios and has the control loop continue with them."""
+    """Makes simulations of other scenarios and has the control loop continue with them.
+
+    One at a time, since that is costly, and between two trials: from the moment that one is asked
+    for until it is used, or cannot be, no trial begins. All methods belong to one thread.
+    """
 
     def __init__(
         self,
@@ -50,18 +55,13 @@ class ScenarioLoader:
         """Load a scenario by its name, or by the path of its folder.
 
         Names are those of the scenarios that come with us and of those in the user's library.
-        While one is being loaded, which is costly, no other is; in a trial none is.
+        It is refused in a trial, and while another simulation is being made.
         """
-        if self._control_loop.latest.training.phase in OPEN_PHASES:
-            return _refused(TRIAL_IS_OPEN)
-        if self._loading is not None and not self._loading.done():
-            return _refused(BUSY)
-        self._loading = self._worker.submit(self._load, folder)
-        return self._loading
+        return self._begin(lambda: self._found(folder), is_checked=True)
 
     def reload(self) -> Future[Answer]:
         """Make the present scenario's simulation again, for instance with other settings."""
-        return self._worker.submit(self._use, self._control_loop.setup.scenario.folder)
+        return self._begin(lambda: self._control_loop.setup.scenario.folder)
 
     def listed(self) -> Future[list[ListedScenario]]:
         """Return the scenarios that can be loaded by their names, and those with a problem."""
@@ -75,24 +75,37 @@ class ScenarioLoader:
         """Wait for the scenario that is being loaded, and load no other."""
         self._worker.shutdown(cancel_futures=True)
 
-    def _load(self, folder: str) -> Answer:
+    def _begin(self, find: Callable[[], Path], is_checked: bool = False) -> Future[Answer]:
+        if self._loading is not None and not self._loading.done():
+            refusal: Future[Answer] = Future()
+            refusal.set_result(Answer(0, False, BEING_SET_UP))
+            return refusal
+        # Here, not in the worker: no trial that is asked for from now on may come before.
+        begun = self._control_loop.begin_replacement()
+        self._loading = self._worker.submit(self._replace, begun, find, is_checked)
+        return self._loading
+
+    def _replace(self, begun: Future[Answer], find: Callable[[], Path], is_checked: bool) -> Answer:
+        if not begun.result().ok:
+            return begun.result()
         try:
-            return self._use(self._found(folder), is_checked=True)
+            return self._use(find(), is_checked)
         except InputError as error:
             return Answer(0, False, str(error))
+        except Exception:
+            _log.exception("A scenario could not be loaded")
+            return Answer(0, False, FAILED)
+        finally:
+            self._control_loop.end_replacement()
 
-    def _use(self, folder: Path, is_checked: bool = False) -> Answer:
-        try:
-            simulation = self._make_simulation(folder)
-            if is_checked and simulation.setup.scenario.procedures:
-                # Here, since the import takes half a second that few need.
-                from rastrainer_simulator.authoring.procedure_plan import require_usable_procedures
+    def _use(self, folder: Path, is_checked: bool) -> Answer:
+        simulation = self._make_simulation(folder)
+        if is_checked and simulation.setup.scenario.procedures:
+            # Here, since the import takes half a second that few need.
+            from rastrainer_simulator.authoring.procedure_plan import require_usable_procedures
 
-                require_usable_procedures(simulation.setup)
-        except InputError as error:
-            return Answer(0, False, str(error))
-        handover = self._control_loop.replace_simulation(simulation)
-        answer = handover.result(_HANDOVER_TIMEOUT_S)
+            require_usable_procedures(simulation.setup)
+        answer = self._control_loop.replace_simulation(simulation).result()
         if not answer.ok:
             return answer
         scenario = simulation.setup.scenario
@@ -115,9 +128,3 @@ class ScenarioLoader:
                 "computer loads no other folder."
             )
         return Path(folder)
-
-
-def _refused(sentence: str) -> Future[Answer]:
-    refusal: Future[Answer] = Future()
-    refusal.set_result(Answer(0, False, sentence))
-    return refusal

@@ -179,6 +179,8 @@ _TABLE: Mapping[str, str] = {
     "another trial is open": "该试验已结束。当前进行的是 {trainee} 的{task}，未被中止。",
     "trial is open": "{trainee} 仍在进行{task}：StartTask 之前请先 Register 或 Abort。",
     "procedure is open": "{trainee} 仍在进行{task}之后的手术操作：StartTask 之前请先完成或 Abort。",
+    "no other head in a trial": "试验正在进行：加载其他场景之前请先 Register 或 Abort。",
+    "being set up": "模拟器仍在加载另一个头部或其他设置：请等待几秒钟。",
     "not at the procedure": "此步骤在 Register 之后，且试验须由 StartTask 连同手术一起开始。",
     "verifying now": "正在验证配准：请用 Capture 记录验证点，然后 AcceptRegistration 或"
     " RegisterAgain。",
@@ -285,7 +287,6 @@ _TABLE: Mapping[str, str] = {
     "experiment.done": "已完成",
     "experiment.task help": "开始此任务。",
     "experiment.no trainee": "请先输入您的 ID。",
-    "experiment.being set up": "模拟器正在应用新设置。",
     "experiment.order": "须先完成{task}。",
     "experiment.trial run first": "须先完成{task}：请触碰其所有点，或练习到时间结束。",
     "experiment.tutorial": "教程",

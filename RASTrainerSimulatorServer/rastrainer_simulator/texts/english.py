@@ -101,6 +101,10 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "trial is open": "{trainee} is still doing {task}: Register or Abort it before StartTask.",
         "procedure is open": "{trainee} is still doing the procedure after {task}: finish or Abort "
         "it before StartTask.",
+        "no other head in a trial": "A trial is running: Register or Abort it before another "
+        "scenario.",
+        "being set up": "The simulator is still loading another head or other settings: wait a few "
+        "seconds.",
         "not at the procedure": "This comes after Register, in a trial that StartTask began with a "
         "procedure.",
         "verifying now": "The registration is being verified: Capture checkpoints, then "
@@ -223,7 +227,6 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
         "experiment.done": "done",
         "experiment.task help": "Begin this task.",
         "experiment.no trainee": "Enter your ID first.",
-        "experiment.being set up": "The simulator is applying its new settings.",
         "experiment.order": "{task} comes first.",
         "experiment.trial run first": "{task} comes first: touch all its points, or practice until "
         "its time is over.",

@@ -212,6 +212,10 @@ _TABLE: Mapping[str, str] = {
     "trial is open": "{trainee} fait encore {task} : Register ou Abort avant StartTask.",
     "procedure is open": "{trainee} est encore à la procédure après {task} : terminez-la, ou "
     "Abort, avant StartTask.",
+    "no other head in a trial": "Un essai est en cours : Register ou Abort avant un autre "
+    "scénario.",
+    "being set up": "Le simulateur charge encore une autre tête ou d'autres réglages : attendez "
+    "quelques secondes.",
     "not at the procedure": "Cela vient après Register, dans un essai que StartTask a commencé "
     "avec une procédure.",
     "verifying now": "Le recalage est en cours de contrôle : Capture pour les points de contrôle, "
@@ -337,7 +341,6 @@ _TABLE: Mapping[str, str] = {
     "experiment.done": "fait",
     "experiment.task help": "Commencer cette tâche.",
     "experiment.no trainee": "Saisissez d'abord votre identifiant.",
-    "experiment.being set up": "Le simulateur applique ses nouveaux réglages.",
     "experiment.order": "D'abord : {task}.",
     "experiment.trial run first": "D'abord : {task}. Touchez tous ses points, ou entraînez-vous "
     "jusqu'à la fin de son temps.",

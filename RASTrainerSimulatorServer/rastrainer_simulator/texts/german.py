@@ -208,6 +208,10 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "trial is open": "{trainee} ist noch bei {task}: Register oder Abort vor StartTask.",
         "procedure is open": "{trainee} ist noch bei der Prozedur nach {task}: Beende sie, oder "
         "Abort, vor StartTask.",
+        "no other head in a trial": "Ein Versuch läuft: Register oder Abort vor einem anderen "
+        "Szenario.",
+        "being set up": "Der Simulator lädt noch einen anderen Kopf oder andere Einstellungen: "
+        "Warte ein paar Sekunden.",
         "not at the procedure": "Das kommt nach Register, in einem Versuch, den StartTask mit "
         "einer Prozedur begonnen hat.",
         "verifying now": "Die Registrierung wird geprüft: Capture für Kontrollpunkte, dann "
@@ -337,7 +341,6 @@ GERMAN: Mapping[str, str] = MappingProxyType(
         "experiment.done": "erledigt",
         "experiment.task help": "Diese Aufgabe beginnen.",
         "experiment.no trainee": "Gib zuerst deine ID ein.",
-        "experiment.being set up": "Der Simulator übernimmt seine neuen Einstellungen.",
         "experiment.trial run first": "{task} kommt zuerst: Berühre alle Punkte, oder übe, bis die "
         "Zeit um ist.",
         "experiment.order": "{task} kommt zuerst.",

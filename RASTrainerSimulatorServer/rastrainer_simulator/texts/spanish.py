@@ -208,6 +208,10 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "trial is open": "{trainee} aún hace {task}: Register o Abort antes de StartTask.",
         "procedure is open": "{trainee} aún está en el procedimiento tras {task}: termínelo, o "
         "Abort, antes de StartTask.",
+        "no other head in a trial": "Hay un ensayo en curso: Register o Abort antes de otro "
+        "escenario.",
+        "being set up": "El simulador aún está cargando otra cabeza u otra configuración: espere "
+        "unos segundos.",
         "not at the procedure": "Esto viene después de Register, en un ensayo que StartTask empezó "
         "con un procedimiento.",
         "verifying now": "El registro se está comprobando: Capture para los puntos de control, "
@@ -332,7 +336,6 @@ SPANISH: Mapping[str, str] = MappingProxyType(
         "experiment.done": "hecho",
         "experiment.task help": "Empezar esta tarea.",
         "experiment.no trainee": "Introduzca primero su ID.",
-        "experiment.being set up": "El simulador está aplicando su nueva configuración.",
         "experiment.order": "Primero: {task}.",
         "experiment.trial run first": "Primero: {task}. Toque todos sus puntos, o practique hasta "
         "que se acabe su tiempo.",

@@ -1,11 +1,17 @@
 """The menu in which a trainee chooses a head, with its pictures."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from rastrainer.scenario.library import ListedScenario
+from rastrainer_simulator.flow.session.chosen_trial import start_task
 from rastrainer_simulator.state import Answer
+from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.german import GERMAN
+
+LOADING = ENGLISH["being set up"]
 
 
 @pytest.fixture
@@ -72,3 +78,34 @@ def test_the_menu_goes_back_by_itself_once_the_head_is_loaded(at_heads, heads):
     at_heads.step()
     heads.loads[0][1].set_result(Answer(0, True))
     at_heads.until_menu("experiment")
+
+
+def test_nothing_begins_in_the_menus_while_a_client_loads_a_head(at_heads):
+    session = at_heads.presenter._session
+    session.prefer(replace(session.preferences, tutorial="required"))
+    at_heads.tap("back")
+    at_heads.until_menu("experiment")
+    begun = at_heads.loop.begin_replacement()
+    at_heads.until(begun.done)
+    at_heads.until(lambda: at_heads.item("tutorial").help == LOADING, "the reason")
+    assert not at_heads.item("trial-run").is_enabled
+    assert at_heads.presenter.start_tutorial("P07", "desktop") == Answer(0, False, LOADING)
+    session.begin_tutorial()
+    assert session.tutorial is None
+    assert [warning.text for warning in at_heads.presenter._flow.screen().warnings] == [LOADING]
+    at_heads.loop.end_replacement()
+    at_heads.until(lambda: at_heads.item("tutorial").is_enabled, "the tutorial may begin")
+
+
+def test_a_trial_that_is_refused_since_a_head_is_being_loaded_says_so_in_the_trainees_language(
+    at_heads,
+):
+    session = at_heads.presenter._session
+    session.prefer(replace(session.preferences, language="de"))
+    begun = at_heads.loop.begin_replacement()
+    at_heads.until(begun.done)
+    start_task(session, "trial-run")
+    at_heads.until(lambda: at_heads.presenter.screen.warnings, "the reason")
+    (warning,) = at_heads.presenter.screen.warnings
+    assert warning.text == GERMAN["being set up"]
+    at_heads.loop.end_replacement()

@@ -340,8 +340,11 @@ def test_quitting_asks_for_confirmation(trainee, outside):
 def test_replacing_the_simulation_after_a_trial_leaves_the_settings_open(trainee, loop, setup):
     trainee.start("task-1")
     abort_and_open_settings(trainee)
+    begun = loop.begin_replacement()
+    trainee.until(begun.done)
     handover = loop.replace_simulation(Simulation(setup, 4))
     trainee.until(handover.done)
+    loop.end_replacement()
     trainee.step(5)
     assert trainee.menu.name == "settings"
 

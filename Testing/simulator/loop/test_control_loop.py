@@ -323,15 +323,85 @@ def test_stopping_in_the_middle_of_a_trial_marks_it_and_refuses_late_commands(ru
 
 
 def test_another_simulation_takes_over_only_between_two_trials(running, anywhere):
-    other = Simulation(anywhere, 4)
     running.start()
-    assert not running.loop.replace_simulation(other).result(TIMEOUT_S).ok
+    refused = running.loop.begin_replacement().result(TIMEOUT_S)
+    assert (refused.ok, refused.message) == (False, control_loop.TRIAL_IS_OPEN)
+    assert not running.loop.is_being_replaced
     running.do(CommandName.ABORT)
     tick = running.loop.latest.tick
-    assert running.loop.replace_simulation(other).result(TIMEOUT_S).ok
+    assert running.loop.begin_replacement().result(TIMEOUT_S).ok
+    assert running.loop.replace_simulation(Simulation(anywhere, 4)).result(TIMEOUT_S).ok
+    running.loop.end_replacement()
     running.ticks(3)
     assert running.loop.latest.tick > tick
     running.start()
+
+
+def test_a_trial_asked_for_before_another_simulation_is_begun_and_none_after_it(running):
+    commands = (CommandName.START_TASK, {"task": "task-1", "trainee": "P01", "mode": "desktop"})
+    answers = [
+        running.loop.submit(*commands),
+        running.loop.begin_replacement(),
+        running.submit(CommandName.ABORT),
+        running.loop.begin_replacement(),
+        running.loop.submit(*commands),
+    ]
+    told = [answer.result(TIMEOUT_S) for answer in answers]
+    assert [answer.ok for answer in told] == [True, False, True, True, False]
+    assert told[-1].message == control_loop.BEING_SET_UP
+    running.loop.end_replacement()
+    running.start()
+
+
+def test_a_start_refused_while_another_simulation_is_made_leaves_no_trace(
+    running, anywhere, tmp_path
+):
+    assert running.loop.begin_replacement().result(TIMEOUT_S).ok
+    for _ in range(10):  # More than may be started at once: refused ones do not count.
+        refused = running.do(CommandName.START_TASK, task="task-1", trainee="P01")
+        assert (refused.ok, refused.message) == (False, control_loop.BEING_SET_UP)
+    assert running.loop.latest.training.phase is Phase.IDLE
+    assert running.loop.replace_simulation(Simulation(anywhere, 4)).result(TIMEOUT_S).ok
+    assert not running.do(CommandName.START_TASK, task="task-1", trainee="P01").ok
+    running.loop.end_replacement()
+    running.loop.hold_sticks(OperatorInput(translation=(0.2, 0.1, -0.6), operator="gamepad"))
+    running.start()
+    running.ticks(30)
+    running.finish()
+    running.loop.stop()
+    (path,) = journals(tmp_path)
+    report = replay(read_journal(path), anywhere)
+    assert report.difference is None
+    assert report.compared["sample"] > 5
+
+
+def test_another_simulation_waits_until_the_score_of_the_last_trial_is_on_the_disk(
+    running, anywhere, monkeypatch
+):
+    trial_id = running.start()
+    running.finish()
+    assert running.register(trial_id).ok
+    assert running.loop.begin_replacement().result(TIMEOUT_S).ok
+    may_sync, fsync = threading.Event(), os.fsync
+    monkeypatch.setattr(os, "fsync", lambda descriptor: (may_sync.wait(), fsync(descriptor)))
+    score = running.submit(CommandName.TRIAL_SCORED, trialId=trial_id, score=70.0)
+    wait_for(lambda: running.loop._held.is_waiting)
+    handover = running.loop.replace_simulation(Simulation(anywhere, 4))
+    running.ticks(20)
+    assert not handover.done()
+    may_sync.set()
+    assert score.result(TIMEOUT_S).ok
+    assert handover.result(TIMEOUT_S).ok
+
+
+def test_replacing_is_refused_once_the_loop_has_ended(running, anywhere):
+    assert running.loop.begin_replacement().result(TIMEOUT_S).ok
+    running.loop.stop()
+    late = (
+        running.loop.begin_replacement(),
+        running.loop.replace_simulation(Simulation(anywhere, 4)),
+    )
+    assert [answer.result(TIMEOUT_S).message for answer in late] == [control_loop.SHUTTING_DOWN] * 2
 
 
 def test_trials_started_too_often_are_refused_and_create_no_journal(anywhere, tmp_path):

@@ -2,17 +2,17 @@
 
 import json
 from concurrent.futures import Future
+from threading import Event
 from types import SimpleNamespace
 
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer.protocol import Phase
 from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import load_setup
-from rastrainer_simulator.loop.control_loop import TRIAL_IS_OPEN
-from rastrainer_simulator.server.scenario_loader import BUSY, ScenarioLoader
+from rastrainer_simulator.loop.control_loop import BEING_SET_UP, TRIAL_IS_OPEN
+from rastrainer_simulator.server.scenario_loader import FAILED, ScenarioLoader
 from rastrainer_simulator.state import Answer
 from Testing.domain.procedure.made_up_procedure import (
     made_up_procedure,
@@ -27,14 +27,29 @@ class Loop:
 
     def __init__(self):
         self.answer = Answer(0, True)
+        self.is_trial_open = False
+        self.is_being_replaced = False
         self.simulations = []
-        self.latest = SimpleNamespace(training=SimpleNamespace(phase=Phase.IDLE))
+
+    def begin_replacement(self):
+        assert not self.is_being_replaced
+        self.is_being_replaced = not self.is_trial_open
+        return answered(Answer(0, False, TRIAL_IS_OPEN) if self.is_trial_open else Answer(0, True))
 
     def replace_simulation(self, simulation):
+        assert self.is_being_replaced
         self.simulations.append(simulation)
-        future = Future()
-        future.set_result(self.answer)
-        return future
+        return answered(self.answer)
+
+    def end_replacement(self):
+        assert self.is_being_replaced
+        self.is_being_replaced = False
+
+
+def answered(answer):
+    future = Future()
+    future.set_result(answer)
+    return future
 
 
 def simulation_of(folder):
@@ -115,21 +130,50 @@ def test_no_second_scenario_is_loaded_while_one_is_being_loaded(make):
     loop.replace_simulation = lambda _simulation: handover
     loader = make(loop, may_be_anywhere=True)
     first = loader.load("colin27")
-    assert [loader.load("colin27").result(60) for _ in range(3)] == [Answer(0, False, BUSY)] * 3
+    others = (loader.load("colin27"), loader.reload(), loader.load("ball"))
+    assert [other.result(0) for other in others] == [Answer(0, False, BEING_SET_UP)] * 3
+    assert loop.is_being_replaced
     handover.set_result(loop.answer)
     assert first.result(60).ok
     assert loader.load("colin27").result(60).ok
 
 
-@pytest.mark.parametrize("phase", [Phase.RUNNING, Phase.PAUSED, Phase.COMPLETE])
-def test_no_scenario_is_read_during_a_trial(make, phase):
+def test_no_scenario_is_read_during_a_trial(make):
     loop = Loop()
-    loop.latest.training.phase = phase
-    loop.replace_simulation = None
+    loop.is_trial_open = True
     loader = make(loop, may_be_anywhere=True)
-    assert loader.load("colin27").result(0) == Answer(0, False, TRIAL_IS_OPEN)
-    loop.latest.training.phase = Phase.REGISTERED
-    loop.replace_simulation = Loop().replace_simulation
+    for refused in (loader.load("nowhere"), loader.reload()):
+        # `nowhere` would have another reason: it was not looked for.
+        assert refused.result(60) == Answer(0, False, TRIAL_IS_OPEN)
+    loop.is_trial_open = False
+    assert loader.load("colin27").result(60).ok
+
+
+def test_trials_are_held_back_from_the_moment_that_a_scenario_is_asked_for(make):
+    loop = Loop()
+    loader = make(loop, may_be_anywhere=True)
+    is_listed = Event()
+    loader._worker.submit(is_listed.wait)
+    loading = loader.load("colin27")
+    assert loop.is_being_replaced
+    is_listed.set()
+    assert loading.result(60).ok
+    assert not loop.is_being_replaced
+
+
+@pytest.mark.parametrize("error", [InputError("It is empty."), MemoryError()], ids=repr)
+def test_trials_begin_again_after_any_failure_which_is_answered(make, monkeypatch, error):
+    loop = Loop()
+    loader = make(loop, may_be_anywhere=True)
+
+    def fail(_folder):
+        assert loop.is_being_replaced
+        raise error
+
+    monkeypatch.setattr(loader, "_make_simulation", fail)
+    assert loader.load("colin27").result(60) == Answer(0, False, str(error) or FAILED)
+    assert not loop.is_being_replaced
+    monkeypatch.undo()
     assert loader.load("colin27").result(60).ok
 
 

@@ -90,6 +90,7 @@ class NextStepPanel:
         self._listening = Listening(
             (session.link.statusChanged, self.showState),
             (session.link.stateChanged, self._followTrial),
+            (session.training.changed, self.showState),
             (session.simulator.program.changed, self.showState),
             (session.simulator.setup.changed, self._lookAtSetup),
             (session.simulator.setup.finished, self._lookAtSetup),
@@ -148,6 +149,7 @@ class NextStepPanel:
             phase=trial.phase,
             touched=trial.touched,
             total=trial.total,
+            isLoading=session.training.isLoading,
             isUnscored=self._isUnscored,
             hasNewResult=self._hasNewResult,
             isResultShown=self._isResultShown,

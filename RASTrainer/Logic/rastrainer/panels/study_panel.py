@@ -21,7 +21,6 @@ from rastrainer.panels.widgets import (
     setUsable,
     textLabel,
 )
-from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.study_logic import TRIALS
 from rastrainer.slicer.translation import _
@@ -201,16 +200,8 @@ class StudyPanel:
             self._showStartButton(self._progress.next_step)
 
     def _showStartButton(self, step: Step) -> None:
-        isConnected = self._session.link.status.state is LinkState.CONNECTED
-        isOpen = self._session.training.progress.isOpen
-        setUsable(
-            self._ui.startStepButton,
-            isConnected and not isOpen,
-            step.sentence,
-            _("A trial is open: abort it or let it be registered first.")
-            if isConnected
-            else _("Connect to the simulator first."),
-        )
+        reason = self._session.training.obstacle
+        setUsable(self._ui.startStepButton, not reason, step.sentence, reason)
 
 
 def _row(progress: Progress, number: int) -> tuple[str, str, str]:

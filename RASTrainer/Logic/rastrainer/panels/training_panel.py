@@ -33,7 +33,7 @@ from rastrainer.protocol import (
 )
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
-from rastrainer.slicer.logic.training_logic import LOADING, TrialStatus
+from rastrainer.slicer.logic.training_logic import TrialStatus
 from rastrainer.slicer.settings import (
     IS_TUTORIAL_FIRST,
     MODE,
@@ -201,21 +201,10 @@ class TrainingPanel:
     def _isPaused(self) -> bool:
         return self._logic.progress.phase == Phase.PAUSED.value
 
-    def _whyNoneStarts(self, progress: TrialStatus, isConnected: bool) -> str:
-        """Return why no trial can be started now, "" if one can."""
-        if not isConnected:
-            return _("Connect to the simulator first.")
-        if progress.isOpen:
-            return _("A trial is open: abort it or let it be registered first.")
-        if self._logic.isLoading:
-            return LOADING
-        if not self._session.trainees.chosen:
-            return _("Choose a trainee in the section Trainees first.")
-        return ""
-
     def _showButtons(self, progress: TrialStatus, isConnected: bool) -> None:
         ui = self._ui
-        reason = self._whyNoneStarts(progress, isConnected)
+        nobody = _("Choose a trainee in the section Trainees first.")
+        reason = self._logic.obstacle or ("" if self._session.trainees.chosen else nobody)
         for button, tip in (
             (ui.startTrialRunButton, _("Start the trial run, which does not count.")),
             (ui.startTaskButton, _("Start the task that is chosen in the section Scenario.")),

@@ -11,6 +11,7 @@ from rastrainer.scenario.library import ListedScenario
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.flow.session.curricula import Curricula
 from rastrainer_simulator.flow.session.study_steps import StudySteps
+from rastrainer_simulator.loop.control_loop import BEING_SET_UP, TRIAL_IS_OPEN, ControlLoop
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.state import Answer
 from rastrainer_simulator.texts.texts import LANGUAGES
@@ -56,18 +57,26 @@ class FlowServices:
 class SettingUp:
     """Has the simulation continue with other settings, or on another head, between two trials."""
 
-    def __init__(self, services: FlowServices, complain: Callable[[str], None]) -> None:
+    def __init__(
+        self, services: FlowServices, control_loop: ControlLoop, complain: Callable[[str], None]
+    ) -> None:
         """`complain` is called with why that could not be done."""
         self._services = services
+        self._control_loop = control_loop
         self._complain = complain
         self._wanted: SimulationSettings | None = None
+        self._asked: SimulationSettings | None = None
         self._begins_in_s = 0.0
         self._answer: Future[Answer] | None = None
 
     @property
     def is_under_way(self) -> bool:
-        """Whether other settings of the simulation, or another scenario, are on their way."""
-        return self._answer is not None or self._wanted is not None
+        """Whether other settings of the simulation, or another scenario, are on their way.
+
+        Clients load scenarios, too.
+        """
+        is_ours = self._answer is not None or self._wanted is not None
+        return is_ours or self._control_loop.is_being_replaced
 
     def want(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
         """Continue with other settings than the present ones, once they stay for a while."""
@@ -77,18 +86,22 @@ class SettingUp:
 
     def use_scenario(self, name: str) -> None:
         """Continue with another scenario, as soon as it is loaded."""
-        if not self.is_under_way:
+        if self._answer is None:
             self._answer = self._services.use_scenario(name)
 
     def advance(self, dt: float, has_open_trial: bool) -> None:
-        """Advance by `dt` seconds; what an open trial has to wait for begins after it."""
+        """Advance by `dt` seconds; settings wait for the end of an open trial or of a loading."""
         self._begins_in_s -= dt
         if self._answer is not None and self._answer.done():
-            answer = self._answer.result()
-            self._answer = None
-            if not answer.ok:
+            answer, asked = self._answer.result(), self._asked
+            self._answer = self._asked = None
+            if asked is not None and answer.message in (TRIAL_IS_OPEN, BEING_SET_UP):
+                # Somebody else was faster.
+                self._wanted = self._wanted or asked
+            elif not answer.ok:
                 self._complain(answer.message)
-        may_begin = self._answer is None and self._begins_in_s <= 0.0
-        if self._wanted is not None and may_begin and not has_open_trial:
+        is_free = self._answer is None and not self._control_loop.is_being_replaced
+        may_begin = is_free and not has_open_trial and self._begins_in_s <= 0.0
+        if self._wanted is not None and may_begin:
             self._answer = self._services.use_settings(self._wanted)
-            self._wanted = None
+            self._asked, self._wanted = self._wanted, None

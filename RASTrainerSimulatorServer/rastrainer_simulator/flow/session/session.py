@@ -133,7 +133,7 @@ class TrainingSession:
         self.is_slicer_connected = services.is_slicer_connected
         self.quit = services.quit
         self.study = services.study
-        self.setting_up = SettingUp(services, self.complain)
+        self.setting_up = SettingUp(services, control_loop, self.complain)
         self._services = services
         self._control_loop = control_loop
         self._controls = controls
@@ -230,7 +230,10 @@ class TrainingSession:
             self._asked.append((command, self._control_loop.submit(command, checked, sender)))
 
     def begin_tutorial(self) -> None:
-        """Open the tutorial, in place of any page."""
+        """Open the tutorial, in place of any page, unless its head is about to go."""
+        if self.setting_up.is_under_way:
+            self.complain(self.texts.say("being set up"))
+            return
         task = {"task": TRIAL_RUN, "trainee": self.trainee.strip(), "mode": self.mode}
         try:
             arguments = check_arguments(CommandName.START_TASK, task)

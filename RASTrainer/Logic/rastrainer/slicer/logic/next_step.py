@@ -5,12 +5,12 @@ One button leads from an empty Slicer to a score; each step can also be done in 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from rastrainer.protocol import OPEN_PHASES, Phase
 from rastrainer.slicer.link.link_status import LinkState, LinkStatus
-from rastrainer.slicer.logic.training_logic import tutorialSentence
+from rastrainer.slicer.logic.training_logic import LOADING, tutorialSentence
 from rastrainer.slicer.program.simulator_program import ProgramState
 from rastrainer.slicer.translation import _
 from rastrainer.study.protocol.steps import StepKind
@@ -85,6 +85,7 @@ class WorkflowState:
         phase: of the simulator's trial.
         touched: how many points of it are touched.
         total: how many it has.
+        isLoading: the simulator is loading a scenario, and starts no trial.
         isUnscored: the trial that was registered last could not be kept or scored.
         hasNewResult: a trial of the chosen trainee was scored and has not been looked at.
         isResultShown: the score is what was looked at last.
@@ -108,6 +109,7 @@ class WorkflowState:
     phase: str = Phase.IDLE.value
     touched: int = 0
     total: int = 0
+    isLoading: bool = False
     isUnscored: bool = False
     hasNewResult: bool = False
     isResultShown: bool = False
@@ -130,9 +132,13 @@ def nextStep(now: WorkflowState) -> NextStep:
         return NextStep(NextAction.SHOW_RESULT, _("Show result"), text, Section.REGISTRATION)
     if not now.trainee:
         return _trainee(now)
-    return _trial(now)
+    step = _trial(now)
+    if now.isLoading and step.action in _STARTS:
+        return replace(step, action=NextAction.WAIT, sentence=LOADING)
+    return step
 
 
+_STARTS = (NextAction.START_TRIAL_RUN, NextAction.START_TASK, NextAction.START_STUDY_STEP)
 _TOUCHED = _("{touched} of {total} points are touched.")
 _DURING_TRIAL = {
     Phase.RUNNING.value: (NextAction.PAUSE, _("Pause"), _TOUCHED, Section.TRAINING),

@@ -20,6 +20,7 @@ from rastrainer.protocol import (
 )
 from rastrainer.scenario.scenario import Scenario, method_of
 from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode
 from rastrainer.slicer.scene.registration_nodes import showPlannedPlace
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
@@ -157,10 +158,8 @@ class TrainingLogic:
         does without it. The trial run can be started after it.
 
         Raises:
-            InputError: no trainee or no task is chosen, or the simulator is loading a scenario.
+            InputError: no trainee or no task is chosen.
         """
-        if self.isLoading:
-            raise InputError(LOADING)
         if not trainee:
             raise InputError(_("Choose a trainee in the section Trainees first."))
         if not task:
@@ -198,8 +197,17 @@ class TrainingLogic:
 
     @property
     def isLoading(self) -> bool:
-        """Whether the simulator is loading a scenario: a trial would start on the one before."""
+        """Whether the simulator is loading a scenario for Slicer: it refuses trials meanwhile."""
         return self._loadings > 0
+
+    @property
+    def obstacle(self) -> str:
+        """Why no trial can be started now, whoever is to play it; empty where one can."""
+        if self._link.status.state is not LinkState.CONNECTED:
+            return _("Connect to the simulator first.")
+        if self.progress.isOpen:
+            return _("A trial is open: abort it or let it be registered first.")
+        return LOADING if self.isLoading else ""
 
     def loadScenario(self, folder: str, done: Callable[[], None]) -> None:
         """Load another scenario into the simulator, between two trials; call `done` once it has."""

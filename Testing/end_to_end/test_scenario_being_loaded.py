@@ -1,0 +1,231 @@
+"""While the simulator loads a head or settings, nobody begins a trial on what is about to go."""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import sys
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+
+import pytest
+
+from rastrainer.igtl.client import Client
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.protocol import PROTOCOL_VERSION
+from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer_simulator.core.setup import load_setup
+from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.replay.resimulation import replay
+from rastrainer_simulator.texts.english import ENGLISH
+from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
+from Testing.end_to_end.simulator_process import ViewedSimulator
+from Testing.end_to_end.window_process import wait_until
+from Testing.simulator.net.views.served import ViewClient
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no named pipes")
+
+LOADING = ENGLISH["being set up"]
+PATIENCE_S = 120.0
+MORE_THAN_AT_ONCE = 6
+"""Trials that may not be started at once: refused ones do not count."""
+HELD = """
+import sys
+from pathlib import Path
+from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.server import server
+
+def held(scenario, *others, load=server.load_setup, **named):
+    if scenario is not None:
+        Path({pipe!r}).read_bytes()
+    return load(scenario, *others, **named)
+
+server.load_setup = held
+sys.exit(main(["simulator", *sys.argv[1:]]))
+"""
+"""After its start, each scenario is loaded when a test has opened the pipe and closed it again."""
+
+
+class HeldSimulator(ViewedSimulator):
+    """A simulator that loads a scenario only when a test lets it."""
+
+    def __init__(self, folder):
+        self.key = secrets.token_hex(32)
+        self._pipe = folder / "pipe"
+        os.mkfifo(self._pipe)
+        self.records = folder / "records"
+        self.command = (sys.executable, "-c", HELD.format(pipe=str(self._pipe)))
+        super().__init__(self.records, key=self.key)
+
+    @contextmanager
+    def being_loaded(self) -> Iterator[None]:
+        """Wait until something is being loaded, and let it be loaded at the end."""
+        # Opened once the simulator has come to it, too.
+        with self._pipe.open("wb"):
+            yield
+
+
+class Peer(Client):
+    """A client whose commands may be answered later."""
+
+    def __init__(self, port):
+        super().__init__(port=port)
+        self._pool = ThreadPoolExecutor(max_workers=1)
+        assert self.ask("Hello", protocolVersion=PROTOCOL_VERSION, client="test").ok
+
+    def ask(self, command, **arguments):
+        return self.send_command(command, arguments, timeout=PATIENCE_S)
+
+    def begin(self, command, **arguments) -> Future:
+        return self._pool.submit(self.ask, command, **arguments)
+
+    def start(self, task):
+        return self.ask("StartTask", task=task, trainee="P07")
+
+    def close(self):
+        super().close()
+        self._pool.shutdown()
+
+
+class Menu:
+    """A view in which a trainee goes through menus."""
+
+    def __init__(self, view):
+        self._view = view
+        view.join(kind="desktop")
+
+    def go(self, item, menu):
+        self._view.send({"type": "item", "name": item})
+        return self.until(lambda screen: screen["name"] == menu)
+
+    def type(self, name, value):
+        self._view.send({"type": "text", "name": name, "value": value})
+
+    def until(self, is_wanted):
+        """Return the items of the next menu that is as wanted, by their names."""
+        while True:
+            menu = self._view.next("screen")["screen"].get("menu")
+            if menu and is_wanted(menu):
+                return items_of(menu)
+
+    def go_to_experiment(self):
+        self.go("train", "introduction")
+        self.go("skip", "controls")
+        self.go("next", "experiment")
+        self.type("trainee", "P07")
+        return self.until(lambda menu: items_of(menu)["trial-run"]["is_enabled"])
+
+
+def items_of(menu):
+    return {item["name"]: item for item in menu["items"]}
+
+
+def phase(peer):
+    """Return the phase of a trial that has begun."""
+
+    def has_begun(told):
+        return json.loads(told.content.text)["phase"] != "idle"
+
+    return json.loads(peer.wait_for("SimState", has_begun, PATIENCE_S).content.text)["phase"]
+
+
+@pytest.fixture
+def ball(tmp_path):
+    with new_folder(tmp_path / "ball") as made:
+        write_scenario(made, made_up_scenario(), ball_head())
+    return tmp_path / "ball"
+
+
+@pytest.fixture
+def simulator(tmp_path):
+    with HeldSimulator(tmp_path) as simulator:
+        yield simulator
+
+
+@pytest.fixture
+def instructor(simulator):
+    with Peer(simulator.port) as peer:
+        yield peer
+
+
+@pytest.fixture
+def other(simulator):
+    with Peer(simulator.port) as peer:
+        yield peer
+
+
+@pytest.fixture
+def menu(simulator, loop_thread):
+    with ViewClient(loop_thread, simulator.url, simulator.key) as view:
+        yield Menu(view)
+
+
+def test_a_trial_waits_until_the_head_is_there_whoever_wants_to_start_it(
+    simulator, instructor, other, menu, ball
+):
+    menu.go_to_experiment()
+    loading = instructor.begin("LoadScenario", folder=str(ball))
+    with simulator.being_loaded():
+        refused = [other.start("task-1") for _ in range(MORE_THAN_AT_ONCE)]
+        refused.append(other.ask("LoadScenario", folder="colin27"))
+        assert {(answer.ok, answer.error) for answer in refused} == {(False, LOADING)}
+        assert other.ask("ListTasks").data["scenario"] == "colin27"
+        assert not loading.done()
+        items = menu.until(lambda menu: not items_of(menu)["trial-run"]["is_enabled"])
+        assert items["trial-run"]["help"] == LOADING
+        assert items["scenario"]["value"] == "Colin27 head"
+    assert loading.result(PATIENCE_S).data["name"] == "ball"
+    task = other.ask("ListTasks").data["tasks"][0]["name"]
+    items = menu.until(lambda menu: items_of(menu).get(task, {}).get("help") != LOADING)
+    assert items["scenario"]["value"] == "A ball"
+    started = other.start(task)
+    assert (started.ok, started.error) == (True, "")
+    assert other.ask("MoveTipTo", positionMm=[450.0, 30.0, 420.0]).ok
+    assert other.ask("Abort").ok
+    assert simulator.stop()[0] == 0
+    # What was refused before left nothing behind that the trial depends on.
+    (journal,) = simulator.records.glob(f"*{SUFFIX}")
+    assert replay(read_journal(journal), load_setup(ball)).difference is None
+
+
+def test_trials_start_on_the_head_before_once_another_one_could_not_be_loaded(
+    simulator, instructor, other, ball
+):
+    (ball / "head.ply").write_bytes(b"no mesh")
+    loading = instructor.begin("LoadScenario", folder=str(ball))
+    with simulator.being_loaded():
+        assert other.start("task-1").error == LOADING
+    failed = loading.result(PATIENCE_S)
+    assert not failed.ok
+    assert "head.ply" in failed.error
+    assert other.start("task-1").ok
+
+
+def test_a_client_that_leaves_while_its_scenario_is_loaded_holds_up_nobody(simulator, other, ball):
+    with Peer(simulator.port) as leaving:
+        leaving.begin("LoadScenario", folder=str(ball))
+        loading = simulator.being_loaded()
+        loading.__enter__()
+    assert other.start("task-1").error == LOADING
+    loading.__exit__(None, None, None)
+    wait_until(lambda: other.ask("ListTasks").data["scenario"] == "ball", "the head")
+    task = other.ask("ListTasks").data["tasks"][0]["name"]
+    wait_until(lambda: other.start(task).error != LOADING, "the trial")
+    assert phase(other) == "running"
+
+
+def test_a_trial_and_a_scenario_wait_while_other_settings_are_applied(
+    simulator, instructor, menu, ball
+):
+    menu.go("settings", "settings")
+    menu.go("fine", "settings")
+    with simulator.being_loaded():
+        assert instructor.start("task-1").error == LOADING
+        assert instructor.ask("LoadScenario", folder=str(ball)).error == LOADING
+    wait_until(lambda: instructor.start("task-1").error != LOADING, "the trial")
+    assert phase(instructor) == "running"
+    (journal,) = simulator.records.glob(f"*{SUFFIX}")
+    settings = read_journal(journal).header["settings"]
+    assert settings["teleoperation"]["fine_speed"] != load_setup().settings.teleoperation.fine_speed
