@@ -189,11 +189,11 @@ class Flow:
         if tutorial is not None and tutorial.trainee != trainee:
             return Answer(0, False, say("tutorial is open", trainee=tutorial.trainee))
         if tutorial is None:
+            if session.setting_up.is_under_way:
+                return Answer(0, False, say("being set up"))
             session.trainee, session.mode = trainee, mode
             if not needs_tutorial(session):
                 return Answer(0, True, data={"isNeeded": False})
-            if session.setting_up.is_under_way:
-                return Answer(0, False, say("being set up"))
             session.begin_tutorial()
         return Answer(0, True, data={"isNeeded": True})
 

@@ -89,7 +89,8 @@ def test_nothing_begins_in_the_menus_while_a_client_loads_a_head(at_heads):
     at_heads.until(begun.done)
     at_heads.until(lambda: at_heads.item("tutorial").help == LOADING, "the reason")
     assert not at_heads.item("trial-run").is_enabled
-    assert at_heads.presenter.start_tutorial("P07", "desktop") == Answer(0, False, LOADING)
+    assert at_heads.presenter.start_tutorial("P08", "desktop") == Answer(0, False, LOADING)
+    assert session.trainee == "P07"
     session.begin_tutorial()
     assert session.tutorial is None
     assert [warning.text for warning in at_heads.presenter._flow.screen().warnings] == [LOADING]
