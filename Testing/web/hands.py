@@ -24,21 +24,21 @@ CONTROLLER_BUTTONS = {
 STEPS = {"up": (0, -1), "down": (0, 1), "left": (-1, 0), "right": (1, 0)}
 
 _POINT = """async (name) => {
-  const { boards, placement } = page.headset;
-  const has = (board) => board.regions.some((region) => region.name === name);
-  const find = () => [boards.menu, boards.actions, boards.work].find(has);
+  const { panels, placement } = page.headset;
+  const has = (panel) => panel.regions.some((region) => region.name === name);
+  const find = () => [panels.menu, panels.actions, panels.work].find(has);
   // The simulator's menu may not have been drawn yet.
   const giveUp = performance.now() + 120_000;
   while (!find() && performance.now() < giveUp) await frames_(1);
-  const board = find();
-  if (!board) throw new Error(`No board has ${name}.`);
-  const { x, y, width, height } = board.regions.find((region) => region.name === name);
-  const size = board.mesh.geometry.parameters;
-  const target = board.mesh.position.clone().set(
-    ((x + width / 2) / board.width - 0.5) * size.width,
-    (0.5 - (y + height / 2) / board.height) * size.height, 0);
-  placement.rig.worldToLocal(board.mesh.localToWorld(target));
-  const hand = board.mesh.position.clone().copy(device.position);
+  const panel = find();
+  if (!panel) throw new Error(`No panel has ${name}.`);
+  const { x, y, width, height } = panel.regions.find((region) => region.name === name);
+  const size = panel.mesh.geometry.parameters;
+  const target = panel.mesh.position.clone().set(
+    ((x + width / 2) / panel.width - 0.5) * size.width,
+    (0.5 - (y + height / 2) / panel.height) * size.height, 0);
+  placement.rig.worldToLocal(panel.mesh.localToWorld(target));
+  const hand = panel.mesh.position.clone().copy(device.position);
   hand.x += 0.2;
   hand.y -= 0.4;
   const aim = new placement.rig.constructor();
@@ -279,7 +279,7 @@ class Controllers:
         )
 
     def point_at(self, name: str) -> None:
-        """Point at a part of a board by that name with the right hand, and pull the trigger."""
+        """Point at a part of a panel by that name with the right hand, and pull the trigger."""
         self._page.evaluate(_POINT, name)
 
     def grab(self, is_held: bool) -> None:
@@ -325,7 +325,7 @@ class TrackedHands:
         page.evaluate("device.primaryInputMode = 'hand'; frames_(3)")
 
     def choose(self, name: str) -> None:
-        """Point at a part of a board, and pinch."""
+        """Point at a part of a panel, and pinch."""
         self._page.evaluate(_POINT, name)
 
     def tap(self, control: str) -> None:

@@ -131,8 +131,8 @@ SEEN = """(procedure) => {
     noGo: noGo.map((node) => node.userData.name ?? node.name).sort(),
     isSeenThrough: noGo.every((node) => node.material.transparent),
     skin: model.node("skin").material.opacity,
-    panel: !document.getElementById("guiding").hidden,
-    board: page.headset?.boards.guiding.mesh.visible ?? false,
+    flatPanel: !document.getElementById("guiding").hidden,
+    wornPanel: page.headset?.panels.guiding.mesh.visible ?? false,
   };
 }"""
 PAINTED = """(procedure) => {
@@ -176,7 +176,7 @@ AIM = {
     "entryDistanceMm": 12.37,
     "angleDeg": 6.48,
 }
-NOTHING = {"tools": [], "noGo": [], "skin": 1.0, "panel": False, "board": False}
+NOTHING = {"tools": [], "noGo": [], "skin": 1.0, "flatPanel": False, "wornPanel": False}
 
 
 def at(tool, feed_mm=0.0, aim=None):
@@ -194,7 +194,7 @@ def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(serv
     assert seen["noGo"] == ["no_go_right-ventricle", "no_go_sagittal-sinus"]
     assert seen["isSeenThrough"]
     assert seen["skin"] < 0.5
-    assert seen["panel"]
+    assert seen["flatPanel"]
     assert page.evaluate(PAINTED, at("guide", aim={**AIM, "angleDeg": 6.61})) == [
         "12,4 mm",
         "6,6°",
@@ -210,7 +210,7 @@ def test_the_page_shows_each_tool_with_its_panel_and_the_headset_on_a_board(serv
     served.presenter.screen = Screen(is_head_clear=True, ruler=RULER)
     enter_headset(page)
     worn = page.evaluate(SEEN, at("drill", 41.5))
-    assert worn["board"]
+    assert worn["wornPanel"]
     check_steering(page.evaluate(STEERED, at("guide", aim=AIM)))
     assert not page.evaluate(SEEN, at("pointer"))["tools"]
 

@@ -37,7 +37,7 @@ def drawn(tmp_path_factory, browser) -> dict:
     scenario = write_landmarked(folder / "scenario")
     options = ("--scenario", str(scenario), "--speed", SLOW)
     with Place(folder, *options, limits=WITHOUT_GRAPHICS, guidance="arrow") as place:
-        # No picture is looked at: the boards are drawn, and an empty scene.
+        # No picture is looked at: the panels are drawn, and an empty scene.
         url, code = place.simulator.url, place.simulator.code
         page = open_page(browser, url, code, "metaQuest2", draws=False)
         enter_headset(page)

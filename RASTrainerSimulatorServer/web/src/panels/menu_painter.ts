@@ -2,7 +2,7 @@
 
 import type { Fact, Item, Menu } from "../messages";
 import { COLORS, LINE, TONES, type Pen, type TextStyle } from "./pen";
-import type { Region } from "./board";
+import type { Region } from "./panel";
 
 const PAD = 48;
 const ROW = 68;

@@ -1,7 +1,7 @@
 /** Paint what is read while the arm is driven: the instruction, short facts and the controls. */
 
 import type { Screen } from "../messages";
-import type { Region } from "./board";
+import type { Region } from "./panel";
 import { BANNERS, COLORS, type Pen } from "./pen";
 
 const PAD = 40;
@@ -13,7 +13,7 @@ const CAP = { size: 32, color: COLORS.text, isBold: true };
 const SAMPLE = "#57b5e8";
 const NOTICE = { size: 32, color: COLORS.text };
 
-/** Paint from the top on; the board is as high as what is on it. Return the hints that can be chosen. */
+/** Paint from the top on; the panel is as high as what is on it. Return the hints that can be chosen. */
 export function paintWork(
   pen: Pen,
   screen: Screen,

@@ -14,8 +14,8 @@ import {
 
 import type { Connection } from "../connection";
 import type { EventNews } from "../messages";
-import type { Board } from "../panels/board";
-import type { Boards } from "./boards";
+import type { Panel } from "../panels/panel";
+import type { RoomPanels } from "./room_panels";
 import { controllerBody } from "./controller_body";
 import type { Grab } from "./grab";
 
@@ -51,7 +51,7 @@ interface Hand {
 
 /** What the hands do to the page itself. */
 export interface HandsListener {
-  /** A part of a board was chosen by pointing at it. */
+  /** A part of a panel was chosen by pointing at it. */
   onChosen(name: string): void;
   /** The pointed-at part has changed. */
   onHovered(name: string): void;
@@ -83,7 +83,7 @@ export class Hands {
   constructor(
     xr: WebXRManager,
     parent: Object3D,
-    private readonly boards: Boards,
+    private readonly panels: RoomPanels,
     private readonly connection: Connection,
     private readonly grab: Grab,
     private readonly listener: HandsListener,
@@ -149,15 +149,15 @@ export class Hands {
     hand.ray.updateWorldMatrix(true, false);
     this.raycaster.setFromXRController(hand.ray);
     this.hits.length = 0;
-    const boards = hand.source.hand ? this.boards.touchable : this.boards.pointable;
-    for (const board of boards) {
-      if (board.mesh.visible) this.raycaster.intersectObject(board.mesh, false, this.hits);
+    const panels = hand.source.hand ? this.panels.touchable : this.panels.pointable;
+    for (const panel of panels) {
+      if (panel.mesh.visible) this.raycaster.intersectObject(panel.mesh, false, this.hits);
     }
     const hit = this.hits[0];
     if (hit?.uv === undefined) return "";
     hand.line.visible = true;
     hand.line.scale.z = hit.distance;
-    return (hit.object.userData.board as Board).at(hit.uv);
+    return (hit.object.userData.panel as Panel).at(hit.uv);
   }
 
   /** Choose what a tracked hand points at, or have the tip follow the hand while it pinches. */

@@ -8,7 +8,7 @@ import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen,
 import type { SceneModel } from "../scene_model";
 import type { Sounds } from "../sounds";
 import type { Stage } from "../stage";
-import { Boards } from "./boards";
+import { RoomPanels } from "./room_panels";
 import { headsetModel } from "./device";
 import { Grab } from "./grab";
 import { Hands } from "./hands";
@@ -25,7 +25,7 @@ const STEEP = 0.9;
 export class Headset {
   private readonly camera = new PerspectiveCamera(70, 1, 0.05, 20);
   private readonly placement = new Placement();
-  private readonly boards = new Boards();
+  private readonly panels = new RoomPanels();
   private readonly seating = new Seating();
   private readonly grab = new Grab();
   private readonly arrow = new SightArrow();
@@ -50,11 +50,11 @@ export class Headset {
     const { scene, renderer } = stage;
     this.worn = new WornPoses(connection, stage.world);
     this.placement.rig.add(this.camera);
-    scene.add(this.placement.rig, this.boards.room);
-    this.boards.room.add(this.arrow.group);
-    this.hands = new Hands(renderer.xr, this.placement.rig, this.boards, connection, this.grab, {
+    scene.add(this.placement.rig, this.panels.room);
+    this.panels.room.add(this.arrow.group);
+    this.hands = new Hands(renderer.xr, this.placement.rig, this.panels, connection, this.grab, {
       onChosen: (name) => this.choose(name),
-      onHovered: (name) => this.boards.hover(name),
+      onHovered: (name) => this.panels.hover(name),
     });
   }
 
@@ -84,7 +84,7 @@ export class Headset {
 
   /** Leave the picture to the flat view. */
   end(): void {
-    this.boards.dispose();
+    this.panels.dispose();
     this.arrow.dispose();
     this.hands.release();
     this.placement.rig.removeFromParent();
@@ -98,21 +98,21 @@ export class Headset {
 
   showScreen(screen: Screen): void {
     this.hasArrow = screen.menu === null && screen.has_arrow;
-    this.boards.show(screen);
-    this.hands.isStepped = this.boards.isStepped;
+    this.panels.show(screen);
+    this.hands.isStepped = this.panels.isStepped;
   }
 
   showControl(control: ControlNews): void {
-    this.boards.showControl(control);
+    this.panels.showControl(control);
   }
 
   showGuiding(aim: Aim | null, ruler: DepthRuler | null, depth: number): void {
-    this.boards.showGuiding(aim, ruler, depth);
+    this.panels.showGuiding(aim, ruler, depth);
     this.hands.isAligning = aim !== null;
   }
 
   setNotice(text: string): void {
-    this.boards.setNotice(text);
+    this.panels.setNotice(text);
   }
 
   feel(event: EventNews): void {
@@ -137,7 +137,7 @@ export class Headset {
     this.lookAround(frame);
     this.camera.updateWorldMatrix(true, false);
     this.turnSticks(model.news);
-    this.bringBoards();
+    this.bringPanels();
     this.hands.poll(Math.min(1, now - this.looked));
     this.looked = now;
     // A device may go on asking for pictures of a headset that was taken off.
@@ -145,7 +145,7 @@ export class Headset {
       this.worn.tell(now, this.camera, this.hands.controller("left"), this.hands.controller("right"));
     }
     this.hear(model);
-    this.boards.closeUp.draw(this.stage, this.boards.room, state.inset);
+    this.panels.closeUp.draw(this.stage, this.panels.room, state.inset);
     this.arrow.show(model, this.camera, state.next, this.hasArrow);
     this.stage.renderer.render(this.stage.scene, this.camera);
   }
@@ -159,18 +159,18 @@ export class Headset {
     this.seat();
   }
 
-  /** Place the boards for a person who is where they belong. */
+  /** Place the panels for a person who is where they belong. */
   private seat(): void {
     const { eyes, forward, focus } = this.placement;
     this.seating.put(eyes, forward, focus);
-    this.boards.arrange(this.seating);
+    this.panels.arrange(this.seating);
   }
 
-  /** Have the boards follow a person who has walked or turned away from them. */
-  private bringBoards(): void {
+  /** Have the panels follow a person who has walked or turned away from them. */
+  private bringPanels(): void {
     const eyes = this.camera.getWorldPosition(this.ears.place);
-    const hasMoved = this.seating.follow(eyes, this.ears.forward, this.boards.isMenu);
-    if (hasMoved) this.boards.arrange(this.seating);
+    const hasMoved = this.seating.follow(eyes, this.ears.forward, this.panels.isMenu);
+    if (hasMoved) this.panels.arrange(this.seating);
   }
 
   /** Have the sticks, and what is grabbed, follow the eyes. */
@@ -196,7 +196,7 @@ export class Headset {
   }
 
   private choose(name: string): void {
-    switch (this.boards.localAction(name)) {
+    switch (this.panels.localAction(name)) {
       case "recenter":
         this.mustRecenter = true;
         break;
@@ -207,7 +207,7 @@ export class Headset {
         break;
       case "grab":
         this.grab.isAllowed = !this.grab.isAllowed;
-        this.boards.setGrab(this.grab.isAllowed);
+        this.panels.setGrab(this.grab.isAllowed);
         break;
       case "leave":
         this.leave();

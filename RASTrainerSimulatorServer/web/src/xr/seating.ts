@@ -1,16 +1,16 @@
-/** From where and toward where the boards are seen: it follows the person, but not each small move. */
+/** From where and toward where the panels are seen: it follows the person, but not each small move. */
 
 import { Vector3 } from "three";
 
-/** A turn or a move of the person beyond which the boards come after them. */
+/** A turn or a move of the person beyond which the panels come after them. */
 const TURN_RAD = 0.6;
 const MOVE_M = 0.25;
-/** So near above the head there is no way toward it; then the boards stand where the eyes look. */
+/** So near above the head there is no way toward it; then the panels stand where the eyes look. */
 const NEAREST_M = 0.15;
 
 export class Seating {
   readonly eyes = new Vector3();
-  /** Level unit vector: the boards' middle. */
+  /** Level unit vector: the panels' middle. */
   readonly ahead = new Vector3(0, 0, -1);
   /** Middle of the patient's head. */
   readonly focus = new Vector3();
@@ -25,7 +25,7 @@ export class Seating {
   }
 
   /**
-   * Follow the person's eyes and their level `gaze`; return whether the boards have to be rearranged. Menus
+   * Follow the person's eyes and their level `gaze`; return whether the panels have to be rearranged. Menus
    * come up where the eyes look, what is read at work stands around the head.
    */
   follow(eyes: Vector3, gaze: Vector3, isMenu: boolean): boolean {

@@ -7,12 +7,12 @@ import { yUp } from "../viewpoint";
 
 /** A point farther from the middle of the view (rad) is out of sight. */
 const IN_SIGHT_RAD = 0.45;
-/** Below the middle of the view, where it covers neither the tip nor a board: in front and down, m. */
+/** Below the middle of the view, where it covers neither the tip nor a panel: in front and down, m. */
 const AHEAD_M = 0.6;
 const DOWN_M = 0.16;
 const LENGTH_M = 0.1;
 const COLOR = 0xffe14a;
-/** After the boards. */
+/** After the panels. */
 const ORDER = 30;
 
 export class SightArrow {

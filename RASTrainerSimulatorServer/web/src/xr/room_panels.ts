@@ -3,7 +3,7 @@
 import { Group, Vector3 } from "three";
 
 import type { Aim, ControlNews, DepthRuler, Menu, Message, Screen } from "../messages";
-import { Board, type Region } from "../panels/board";
+import { Panel, type Region } from "../panels/panel";
 import { GUIDING_HEIGHT, GUIDING_WIDTH, guidingContent, paintGuiding } from "../panels/guiding_painter";
 import { paintMenu } from "../panels/menu_painter";
 import { controlsPicture, inputsOf, PICTURE_HEIGHT, PICTURE_WIDTH } from "../panels/controls_picture";
@@ -15,7 +15,7 @@ import { thumbnail } from "../thumbnails";
 import { CloseUp } from "./close_up";
 import type { Seating } from "./seating";
 
-/** Where a board stands: right of the head's direction and above the eyes (rad), and away (m). */
+/** Where a panel stands: right of the head's direction and above the eyes (rad), and away (m). */
 interface Seat {
   readonly aside: number;
   readonly above: number;
@@ -37,14 +37,14 @@ const WARNING_AT_MENU: Seat = { aside: 0, above: -0.54, away: 0.55 };
 const WARNING_AWAY = 1;
 const WARNING_OVER_HEAD = 0.2;
 const HEAD_ABOVE_M = 0.16;
-/** Widths, m, where a board is so far away; a nearer one is as much smaller. */
+/** Widths, m, where a panel is so far away; a nearer one is as much smaller. */
 const FULL_SIZE_AWAY = 1.1;
 const WIDE = 0.86;
 const PICTURE_WIDE = 0.8;
 const CLOSE_UP_WIDE = 0.72;
 const WARNING_WIDE = 0.66;
 const GUIDING_WIDE = 0.24;
-/** Order of drawing; what points at a board comes after it. */
+/** Order of drawing; what points at a panel comes after it. */
 const ON_TOP = 10;
 const BUTTON = { size: 32, color: COLORS.text, isBold: true };
 const WARNING = { size: 40, color: COLORS.text, isBold: true };
@@ -55,18 +55,18 @@ export type Local = (typeof LOCAL)[number];
 const PREFIX = "local ";
 const PAD = 40;
 
-export class Boards {
+export class RoomPanels {
   /** In the room. */
   readonly room = new Group();
   readonly closeUp = new CloseUp(CLOSE_UP_WIDE);
-  private readonly menu = new Board(1024, 1024, WIDE);
-  private readonly work = new Board(1024, 760, WIDE);
-  private readonly actions = new Board(1024, 236, WIDE);
-  private readonly picture = new Board(PICTURE_WIDTH + 2 * PAD, PICTURE_HEIGHT + 2 * PAD, PICTURE_WIDE);
+  private readonly menu = new Panel(1024, 1024, WIDE);
+  private readonly work = new Panel(1024, 760, WIDE);
+  private readonly actions = new Panel(1024, 236, WIDE);
+  private readonly picture = new Panel(PICTURE_WIDTH + 2 * PAD, PICTURE_HEIGHT + 2 * PAD, PICTURE_WIDE);
   /** What is drawn on `picture`; it is there a moment later than its address. */
   private readonly drawing = new Image();
-  private readonly warning = new Board(1024, 256, WARNING_WIDE);
-  private readonly guiding = new Board(GUIDING_WIDTH, GUIDING_HEIGHT, GUIDING_WIDE);
+  private readonly warning = new Panel(1024, 256, WARNING_WIDE);
+  private readonly guiding = new Panel(GUIDING_WIDTH, GUIDING_HEIGHT, GUIDING_WIDE);
   private screen: Screen | null = null;
   private seating: Seating | null = null;
   private control: ControlNews | null = null;
@@ -75,25 +75,25 @@ export class Boards {
   private mayGrab = true;
 
   constructor() {
-    const boards = [this.menu, this.work, this.actions, this.picture, this.warning, this.guiding];
+    const panels = [this.menu, this.work, this.actions, this.picture, this.warning, this.guiding];
     this.guiding.mesh.visible = false;
-    this.room.add(...boards.map((board) => board.mesh), this.closeUp.mesh);
+    this.room.add(...panels.map((panel) => panel.mesh), this.closeUp.mesh);
     this.drawing.onload = () => this.paint();
     const before = [this.menu, this.actions, this.picture, this.warning, this.guiding];
-    for (const [order, board] of before.entries()) {
+    for (const [order, panel] of before.entries()) {
       // The arm may stand before them.
-      board.mesh.material.depthTest = false;
-      board.mesh.renderOrder = ON_TOP + order;
+      panel.mesh.material.depthTest = false;
+      panel.mesh.renderOrder = ON_TOP + order;
     }
   }
 
   /** Those that can be pointed at. */
-  get pointable(): readonly Board[] {
+  get pointable(): readonly Panel[] {
     return [this.menu, this.actions];
   }
 
   /** Those that tracked hands, which have no buttons, can point at. */
-  get touchable(): readonly Board[] {
+  get touchable(): readonly Panel[] {
     return [...this.pointable, this.work];
   }
 
@@ -107,7 +107,7 @@ export class Boards {
     return this.screen?.menu != null;
   }
 
-  /** Place the boards where a person seated like this reads them well. */
+  /** Place the panels where a person seated like this reads them well. */
   arrange(seating: Seating): void {
     this.seating = seating;
     const aside = this.screen?.menu?.picture ? MENU_ASIDE : 0;
@@ -126,9 +126,9 @@ export class Boards {
       [warning, this.isMenu ? WARNING_AT_MENU : overHead],
     ] as const;
     for (const [{ mesh }, seat] of seats) {
-      const toBoard = mesh.position.copy(seating.ahead).applyAxisAngle(UP, -seat.aside);
-      toBoard.multiplyScalar(seat.away * Math.cos(seat.above)).setY(seat.away * Math.sin(seat.above));
-      toBoard.add(eyes);
+      const toPanel = mesh.position.copy(seating.ahead).applyAxisAngle(UP, -seat.aside);
+      toPanel.multiplyScalar(seat.away * Math.cos(seat.above)).setY(seat.away * Math.sin(seat.above));
+      toPanel.add(eyes);
       mesh.scale.setScalar(seat.away / FULL_SIZE_AWAY);
       mesh.lookAt(eyes);
     }
@@ -173,7 +173,7 @@ export class Boards {
   }
 
   dispose(): void {
-    for (const board of [this.menu, this.work, this.actions, this.picture, this.warning, this.guiding]) board.dispose();
+    for (const panel of [this.menu, this.work, this.actions, this.picture, this.warning, this.guiding]) panel.dispose();
     this.closeUp.dispose();
     this.room.removeFromParent();
   }

@@ -1,4 +1,4 @@
-"""The headset's boards: before the eyes, turned to the person, with room for every language."""
+"""The headset's panels: before the eyes, turned to the person, with room for every language."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ BEHIND_M = 1.24
 """From the place where the trainee stands to the one at the other side of the head."""
 TURNED = (0.0, 1.2, -1.2, 3.0)
 
-BOARD = """(name) => {
-  const { boards, camera } = page.headset;
-  const mesh = name === "closeUp" ? boards.closeUp.mesh : boards[name].mesh;
+PANEL = """(name) => {
+  const { panels, camera } = page.headset;
+  const mesh = name === "closeUp" ? panels.closeUp.mesh : panels[name].mesh;
   const eyes = camera.getWorldPosition(mesh.position.clone());
   const place = mesh.getWorldPosition(mesh.position.clone());
   const away = place.clone().sub(eyes);
@@ -29,7 +29,7 @@ BOARD = """(name) => {
   const degrees = (one, other) => one.angleTo(other) * 180 / Math.PI;
   const level = (vector) => vector.clone().setY(0);
   return { aside: degrees(level(gaze), level(away)), facing: degrees(front, away.clone().negate()),
-           away: away.length(), isInRoom: mesh.parent === boards.room };
+           away: away.length(), isInRoom: mesh.parent === panels.room };
 }"""
 WORK = """() => {
   const hint = (control) => ({ control, action: "A longer action of it" });
@@ -39,8 +39,8 @@ WORK = """() => {
     hints: ["A", "B", "Trigger", "Y", "X"].map(hint) });
 }"""
 COVERED = """() => {
-  const { boards, camera } = page.headset;
-  const { mesh } = boards.warning;
+  const { panels, camera } = page.headset;
+  const { mesh } = panels.warning;
   const eyes = camera.getWorldPosition(mesh.position.clone());
   const size = mesh.geometry.parameters;
   const bottom = mesh.localToWorld(mesh.position.clone().set(0, -size.height / 2, 0)).sub(eyes);
@@ -63,7 +63,7 @@ WRITTEN = """() => {
   const written = [];
   const { fillText } = CanvasRenderingContext2D.prototype;
   CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
-    if (this.canvas === page.headset.boards.work.context.canvas) written.push([text, y]);
+    if (this.canvas === page.headset.panels.work.context.canvas) written.push([text, y]);
     return fillText.call(this, text, x, y);
   };
   (%s)();
@@ -115,22 +115,22 @@ def stand(page, forward=0.0, yaw=0.0):
 @pytest.mark.parametrize("yaw", TURNED)
 def test_a_menu_stays_before_the_eyes_wherever_they_turn(menu, yaw):
     stand(menu, yaw=yaw)
-    board = menu.evaluate(BOARD, "menu")
-    assert board["aside"] < 35.0
-    assert board["facing"] < 5.0
-    assert board["away"] < 0.7, "nearer than the arm"
+    panel = menu.evaluate(PANEL, "menu")
+    assert panel["aside"] < 35.0
+    assert panel["facing"] < 5.0
+    assert panel["away"] < 0.7, "nearer than the arm"
 
 
 def test_a_menu_opens_where_the_eyes_look(work):
     stand(work, yaw=0.5)
     work.evaluate("page.headset.showScreen(page.screen)")
     work.evaluate("frames_(3)")
-    assert work.evaluate(BOARD, "menu")["aside"] < 2.0
+    assert work.evaluate(PANEL, "menu")["aside"] < 2.0
 
 
 TWICE = """() => {
   const { headset, screen } = page;
-  const { menu } = headset.boards;
+  const { menu } = headset.panels;
   const work = { ...screen, menu: null };
   const other = { ...screen, menu: { ...screen.menu, title: "Another menu" } };
   const pictures = [screen, work, screen, other, work, screen].map((shown) => {
@@ -153,23 +153,23 @@ def test_a_reopened_menu_is_drawn_again(menu):
 @pytest.mark.parametrize("name", ["work", "closeUp", "warning"])
 def test_a_panel_is_readable_from_behind_the_head_too(work, name):
     stand(work, forward=BEHIND_M, yaw=3.14159)
-    board = work.evaluate(BOARD, name)
-    assert board["facing"] < 5.0
-    assert board["aside"] < 50.0
+    panel = work.evaluate(PANEL, name)
+    assert panel["facing"] < 5.0
+    assert panel["aside"] < 50.0
 
 
 def test_a_banner_is_in_the_room_above_the_head_and_not_in_the_close_up(work):
-    board = work.evaluate(BOARD, "warning")
-    assert board["isInRoom"], "the close-up is drawn without the room's boards"
+    panel = work.evaluate(PANEL, "warning")
+    assert panel["isInRoom"], "the close-up is drawn without the room's panels"
     assert not work.evaluate(COVERED)
-    before = work.evaluate("page.headset.boards.warning.mesh.position.toArray()")
+    before = work.evaluate("page.headset.panels.warning.mesh.position.toArray()")
     stand(work, yaw=0.3)
-    assert work.evaluate("page.headset.boards.warning.mesh.position.toArray()") == before
+    assert work.evaluate("page.headset.panels.warning.mesh.position.toArray()") == before
 
 
 CLOSE_UP = """async (inset) => {
   const { headset, stage } = page;
-  const { closeUp, room } = headset.boards;
+  const { closeUp, room } = headset.panels;
   for (let turn = 0; turn < 3; turn++) closeUp.draw(stage, room, inset);
   const { x, y, z } = closeUp.camera.position;
   return [[x, -z, y], closeUp.camera.fov];
@@ -197,7 +197,7 @@ ARROW = """(place) => {
   const up = arrow.group.position.clone().set(0, 1, 0).applyQuaternion(arrow.group.quaternion);
   const { x, y, z } = arrow.group.position;
   return { isSeen: arrow.group.visible, way: [up.x, -up.z, up.y], at: [x, -z, y],
-           isInRoom: arrow.group.parent === page.headset.boards.room };
+           isInRoom: arrow.group.parent === page.headset.panels.room };
 }"""
 AHEAD = """() => {
   const { camera } = page.headset;
@@ -219,7 +219,7 @@ def test_an_arrow_points_to_a_next_point_that_is_out_of_sight(work):
 
 
 def test_hints_and_control_holder_are_on_separate_lines(worn):
-    worn.evaluate("page.headset.boards.work.shown = ''")
+    worn.evaluate("page.headset.panels.work.shown = ''")
     written = worn.evaluate(WRITTEN % WORK)
     (holder,) = [y for text, y in written if "robot" in text]
     hints = [y for text, y in written if text in ("X", "A longer action of it")]
@@ -245,8 +245,8 @@ WITHOUT_ROOM = """() => {
     written.push({ text, canvas: this.canvas, left: x, right, y, size });
     return fillText.call(this, text, x, y);
   };
-  const { boards } = page.headset;
-  for (const board of [boards.menu, boards.work, boards.actions, boards.warning]) board.shown = "";
+  const { panels } = page.headset;
+  for (const panel of [panels.menu, panels.work, panels.actions, panels.warning]) panel.shown = "";
   page.headset.showScreen(page.screen);
   CanvasRenderingContext2D.prototype.fillText = fillText;
   const found = written.length > 0 ? [] : ["nothing is written"];
@@ -256,7 +256,7 @@ WITHOUT_ROOM = """() => {
     if (one.size < 24) found.push(`${one.text} is too small to read`);
     const { width, height } = one.canvas;
     const isOff = one.left < 0 || one.right > width || one.y > height - 8;
-    if (isOff) found.push(`${one.text} is off its board`);
+    if (isOff) found.push(`${one.text} is off its panel`);
     for (const other of written.slice(index + 1)) {
       const isBeside = one.canvas === other.canvas && Math.abs(one.y - other.y) < 20;
       const across = Math.min(one.right, other.right) - Math.max(one.left, other.left);
@@ -268,7 +268,7 @@ WITHOUT_ROOM = """() => {
 
 
 @pytest.mark.parametrize("language", LONGEST_OR_EACH)
-def test_nothing_on_a_board_is_cut_off_or_overlaps(worn, served, loop, outside, language):
+def test_nothing_on_a_panel_is_cut_off_or_overlaps(worn, served, loop, outside, language):
     presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
     spoken = LANGUAGES if language == LONGEST else [language]
     screens = {**screens_in(presenter, language), "work": max(map(at_work, spoken), key=letters)}

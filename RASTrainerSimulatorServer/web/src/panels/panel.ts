@@ -24,14 +24,14 @@ export interface Region {
   readonly height: number;
 }
 
-export class Board {
+export class Panel {
   readonly mesh: Mesh<PlaneGeometry, MeshBasicMaterial>;
   private readonly context: CanvasRenderingContext2D;
   private readonly texture: CanvasTexture;
   private regions: readonly Region[] = [];
   private shown = "";
 
-  /** Make a board of `width` × `height` pixels, `wide` m wide. */
+  /** Make a panel of `width` × `height` pixels, `wide` m wide. */
   constructor(
     readonly width: number,
     readonly height: number,
@@ -53,10 +53,10 @@ export class Board {
       toneMapped: false,
     });
     this.mesh = new Mesh(geometry, material);
-    this.mesh.userData.board = this;
+    this.mesh.userData.panel = this;
   }
 
-  /** Paint the board if `content`, which describes all that is painted, has changed. */
+  /** Paint the panel if `content`, which describes all that is painted, has changed. */
   show(content: string, paint: (pen: Pen) => readonly Region[] | void): void {
     if (content === this.shown) return;
     this.shown = content;
