@@ -22,7 +22,7 @@ from rastrainer_simulator.flow.session.preferences import (
     read_preferences,
 )
 from rastrainer_simulator.net.state_feed import StateSource
-from rastrainer_simulator.net.views.open_views import open_views
+from rastrainer_simulator.net.views.start_view_server import start_view_server
 from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
@@ -83,7 +83,7 @@ async def _show_until(
     window: DesktopProcess | None = None
     tasks: list[asyncio.Task[None]] = []
     with stop_on_signals(stop):
-        views = await open_views(source, presenter, announce, port, None)
+        views = await start_view_server(source, presenter, announce, port, None)
         try:
             tasks.append(asyncio.create_task(run()))
             if has_window:

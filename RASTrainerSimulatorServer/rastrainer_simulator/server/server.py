@@ -285,9 +285,9 @@ class SimulatorServer:
         if presenter is None:
             return None
         # Here, before the control loop ticks: the import of aiohttp would make ticks late.
-        from rastrainer_simulator.net.views.open_views import open_views
+        from rastrainer_simulator.net.views.start_view_server import start_view_server
 
-        return lambda announce: open_views(
+        return lambda announce: start_view_server(
             presenter.presenter.shown,
             presenter.presenter,
             announce,

@@ -19,7 +19,7 @@ from rastrainer.protocol import OPEN_PHASES
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.access_control import ROLE, ViewRole, refuse_for
-from rastrainer_simulator.net.views.view import View
+from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import LONGEST_PIN, PinGuesses
 from rastrainer_simulator.presentation.presenter import InstructorOrder, Presenter, Seat
 from rastrainer_simulator.state import SimulationState
@@ -40,7 +40,7 @@ class Boards:
     """The joined boards; all are told the same, and only when it has changed."""
 
     def __init__(self) -> None:
-        self._joined: dict[int, View] = {}
+        self._joined: dict[int, ViewSocket] = {}
         self._told = ""
         self._pacer = Pacer(NEWS_HZ)
 
@@ -48,7 +48,7 @@ class Boards:
         """Whether there is any."""
         return bool(self._joined)
 
-    async def serve(self, board: View, now: SimulationState, seat: Seat) -> None:
+    async def serve(self, board: ViewSocket, now: SimulationState, seat: Seat) -> None:
         """Tell a board everything, and have it told what changes until it leaves."""
         # First the others: then all know the same, and the new one is told nothing twice.
         self.tell(now, seat)

@@ -1,4 +1,4 @@
-"""HTTP and the stream, in the simulator's event loop."""
+"""The HTTP server of views: page, scene, sounds, pictures and, by a WebSocket each, the stream."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from rastrainer_simulator.net.views.access_control import (
 )
 from rastrainer_simulator.net.views.boards import InstructorOrders
 from rastrainer_simulator.net.views.incoming import HELLO, ONLY_WATCH, SUBPROTOCOL, check_message
+from rastrainer_simulator.net.views.joined_views import JoinedViews
 from rastrainer_simulator.net.views.limited_server import GuardedServer
-from rastrainer_simulator.net.views.view import View
-from rastrainer_simulator.net.views.views import Views
+from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.presentation.presenter import Hello, Presenter
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
@@ -95,7 +95,7 @@ class ViewServer:
         self._instructor = InstructorOrders(pin, presenter)
         self.port = 0
         self._scenes = SceneFiles(cache_folder(), robot_meshes)
-        self._views = Views(source, presenter, self._scenes, self._limits)
+        self._views = JoinedViews(source, presenter, self._scenes, self._limits)
         self._streams: Counter[ViewRole] = Counter()
         self._page = page_folder()
         self._http = GuardedServer(
@@ -217,7 +217,7 @@ class ViewServer:
             await stream.close(code=WSCloseCode.POLICY_VIOLATION, message=str(error).encode()[:120])
             return
         number, mirror = self._views.next_number(), self._views.mirror
-        view = View(number, stream, hello, self._presenter, mirror, self._limits, is_local)
+        view = ViewSocket(number, stream, hello, self._presenter, mirror, self._limits, is_local)
         await self._views.serve(view)
 
     async def _first_message(self, stream: web.WebSocketResponse, role: ViewRole) -> Hello:

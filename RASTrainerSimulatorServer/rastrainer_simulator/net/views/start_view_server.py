@@ -19,7 +19,7 @@ from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
 from rastrainer_simulator.presentation.presenter import Presenter
 
 
-async def open_views(
+async def start_view_server(
     source: StateSource,
     presenter: Presenter,
     announce: Callable[[str], None],

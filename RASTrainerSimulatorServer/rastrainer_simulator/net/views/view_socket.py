@@ -1,4 +1,4 @@
-"""One connected view: its WebSocket, what waits to be sent to it, and what it holds down."""
+"""One view's WebSocket: what waits to be sent to it, and what it holds down."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ CLOSE_S = 3.0
 _BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING, SEAT)
 
 
-class View:
+class ViewSocket:
     """A view's WebSocket.
 
     Attributes:

@@ -1,4 +1,4 @@
-"""All connected views, and what is sent to them."""
+"""All joined views, and what is sent to them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.boards import Boards
 from rastrainer_simulator.net.views.incoming import DESKTOP, HEADSET
 from rastrainer_simulator.net.views.outgoing import Mirror, TraceUpdate
-from rastrainer_simulator.net.views.view import View
+from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.presentation.presenter import Control, Feedback, Presenter, ViewUpdate
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.scene.scene_files import SceneFiles
@@ -30,7 +30,7 @@ _BEFORE_BUILDING_AHEAD_S = 3.0
 ENDING = "The simulator has been stopped."
 
 
-class Views:
+class JoinedViews:
     """The joined views; `is_due` may be called in any thread, all else in the event loop's.
 
     Attributes:
@@ -44,7 +44,7 @@ class Views:
         self._presenter = presenter
         self._scenes = scenes
         self._limits = limits
-        self._views: dict[int, View] = {}
+        self._views: dict[int, ViewSocket] = {}
         self._boards = Boards()
         self._numbers = itertools.count(1)
         self._pacer = Pacer(limits.state_hz)
@@ -62,7 +62,7 @@ class Views:
         """Return a number for a view that no other has had."""
         return next(self._numbers)
 
-    async def serve(self, view: View) -> None:
+    async def serve(self, view: ViewSocket) -> None:
         """Have a view take part, or a spectator or a board watch, until it leaves."""
         if view.is_board:
             await self._boards.serve(view, self._source.latest, self._presenter.seat())
@@ -118,7 +118,7 @@ class Views:
             for view in self._views.values():
                 view.outbox.put_event(news)
 
-    def _send_all(self, view: View) -> None:
+    def _send_all(self, view: ViewSocket) -> None:
         """Send a view that has just joined the present state."""
         now = self._source.latest
         self._look_for_scene(now)
@@ -134,12 +134,12 @@ class Views:
             view.outbox.put_event(trace)
         self._put_pairing(view)
 
-    def _put_state(self, view: View, text: str) -> None:
+    def _put_state(self, view: ViewSocket, text: str) -> None:
         if view.is_spectator:
             text = outgoing.mirrored(text, self.mirror.text)
         view.outbox.put_latest(outgoing.STATE, text)
 
-    def _put_pairing(self, view: View) -> None:
+    def _put_pairing(self, view: ViewSocket) -> None:
         # By the code a spectator could come back as one who drives.
         if view.is_local and self._pairing and not view.is_spectator:
             view.outbox.put_latest(outgoing.PAIRING, self._pairing)
@@ -166,7 +166,7 @@ class Views:
             if screen.is_private:
                 self._send_screen(screen, views)
 
-    def _send_screen(self, screen: Screen, views: Iterable[View]) -> None:
+    def _send_screen(self, screen: Screen, views: Iterable[ViewSocket]) -> None:
         """Send a screen; what is private in it only to the views of who operates."""
         whole = outgoing.screen(screen)
         bare = outgoing.screen(without_secrets(screen)) if screen.is_private else whole
@@ -174,7 +174,7 @@ class Views:
             is_whole = not screen.is_private or self._is_operators(view)
             view.outbox.put_latest(outgoing.SCREEN, whole if is_whole else bare)
 
-    def _is_operators(self, view: View) -> bool:
+    def _is_operators(self, view: ViewSocket) -> bool:
         """Return whether a view is in front of who holds the control."""
         if view.is_spectator:
             return False
