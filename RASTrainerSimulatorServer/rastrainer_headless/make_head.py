@@ -16,8 +16,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.progress import HEAD_MADE, print_progress, print_warning
 from rastrainer.scenario.writer import HeadDraft, new_folder, write_draft
+from rastrainer.work_progress import HEAD_MADE, print_progress, print_warning
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -16,7 +16,6 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.head.volume import read_head_volume
 from rastrainer.procedure.plan import Procedure, read_all_no_go
-from rastrainer.progress import HEAD_MADE, Progress, Warn, no_progress, report_line
 from rastrainer.python_environment import python_command
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.points import Landmark, PlannedTarget, PlannedTrajectory, Task, on_skin
@@ -29,6 +28,7 @@ from rastrainer.scenario.writer import (
     scenario_name,
     write_scenario,
 )
+from rastrainer.work_progress import HEAD_MADE, Progress, Warn, no_progress, report_line
 from rastrainer_simulator.authoring.landmarks import check_on_planned_head
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_plan import measure_procedures, with_procedure

@@ -14,11 +14,11 @@ from rastrainer.errors import InputError
 from rastrainer.files.point_list import read_markups
 from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, outward_normal, read_head_mesh
 from rastrainer.procedure.checks import ENTRY_OFF_SKIN_MM
-from rastrainer.progress import Progress, Warn
 from rastrainer.scenario.library import checked_scenario
 from rastrainer.scenario.points import LABELS, Task, touch_order
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.transforms import MM_PER_M
+from rastrainer.work_progress import Progress, Warn
 from rastrainer_simulator.authoring.planning_setup import PlanningSetup
 from rastrainer_simulator.authoring.procedure_plan import check_procedures
 from rastrainer_simulator.authoring.task_proposal import PLANS, TaskPlan, target_spread

@@ -9,8 +9,8 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh, outward_normals
-from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.points import LABELS, Task
+from rastrainer.work_progress import Progress, no_progress
 from rastrainer_simulator.authoring.face_removal import face_vertices
 from rastrainer_simulator.authoring.planning_setup import WIDER, PlanningSetup
 from rastrainer_simulator.authoring.task_proposal import (

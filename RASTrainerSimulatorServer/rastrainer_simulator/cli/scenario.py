@@ -9,8 +9,8 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_json
-from rastrainer.progress import print_progress, print_warning
 from rastrainer.scenario.library import list_scenarios, unpack
+from rastrainer.work_progress import print_progress, print_warning
 from rastrainer_simulator.cli.scenario_options import (
     add_head_options,
     add_library,

@@ -5,9 +5,9 @@ import pytest
 from scipy import ndimage
 
 from rastrainer.errors import InputError
-from rastrainer.progress import no_progress
 from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.volume import HeadSettings, Volume, onRasGrid
+from rastrainer.work_progress import no_progress
 from Testing.slicer.head.phantoms import DOUBLE_OBLIQUE, SAGITTAL
 
 SEMI_AXES = np.array([33.0, 38.0, 36.0])

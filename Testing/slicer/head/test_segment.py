@@ -6,7 +6,6 @@ import slicer
 import vtk
 
 from rastrainer.errors import InputError
-from rastrainer.progress import no_progress
 from rastrainer.slicer.head.extraction import findHead, skinOf
 from rastrainer.slicer.head.volume import (
     HeadBody,
@@ -16,6 +15,7 @@ from rastrainer.slicer.head.volume import (
     showSegment,
     volumeOfSegment,
 )
+from rastrainer.work_progress import no_progress
 from Testing.slicer.head.placed import add_transform, vtk_matrix
 
 BASE = -40.3

@@ -14,7 +14,6 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import toolTip
-from rastrainer.progress import Progress
 from rastrainer.scenario.library import user_library
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.module_session import ModulePaths
@@ -23,6 +22,7 @@ from rastrainer.slicer.program.simulator_package import SimulatorPackage, python
 from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS, Settings
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import PostgresAddress, study_place
+from rastrainer.work_progress import Progress
 
 
 def findPlaces(moduleFile: Path, settings: Settings) -> ModulePaths:

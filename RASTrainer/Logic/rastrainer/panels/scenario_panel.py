@@ -22,7 +22,6 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.progress import no_progress
 from rastrainer.protocol import TRIAL_RUN, RegistrationMethod
 from rastrainer.scenario.library import ListedScenario
 from rastrainer.slicer.link.link_status import LinkState
@@ -31,6 +30,7 @@ from rastrainer.slicer.logic.scenario_logic import ComparedMethod
 from rastrainer.slicer.settings import SCENARIO, TASK
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import no_progress
 
 PICTURE_HEIGHT = 180
 

@@ -24,12 +24,12 @@ from rastrainer.panels.widgets import (
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.study_logic import TRIALS
 from rastrainer.slicer.translation import _
-from rastrainer.study.protocol.progress import SKIPPED, Progress, StepEntry
 from rastrainer.study.protocol.questionnaires import (
     Questionnaire,
     QuestionnaireItem,
     find_questionnaire,
 )
+from rastrainer.study.protocol.step_progress import SKIPPED, StepEntry, StepProgress
 from rastrainer.study.protocol.steps import Step, StepKind
 
 TIMED = (StepKind.TRIAL_RUN, StepKind.BREAK)
@@ -43,7 +43,7 @@ class StudyPanel:
         self._session = session
         self._logic = session.study
         self._form = QuestionnaireForm(ui.questionnaireWidget)
-        self._progress: Progress | None = None
+        self._progress: StepProgress | None = None
         self._judged: tuple | None = None
         ui.beginStudyButton.connect("clicked()", self.begin)
         ui.enrollButton.connect("clicked()", self.enroll)
@@ -204,7 +204,7 @@ class StudyPanel:
         setUsable(self._ui.startStepButton, not reason, step.sentence, reason)
 
 
-def _row(progress: Progress, number: int) -> tuple[str, str, str]:
+def _row(progress: StepProgress, number: int) -> tuple[str, str, str]:
     step = progress.steps[number]
     if number < len(progress.entries):
         return str(number + 1), _outcome(progress.entries[number]), step.sentence

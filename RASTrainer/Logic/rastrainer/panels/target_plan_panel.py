@@ -21,7 +21,6 @@ from rastrainer.panels.widgets import (
     setText,
     setUsable,
 )
-from rastrainer.progress import no_progress
 from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
@@ -30,6 +29,7 @@ from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
 from rastrainer.slicer.scene.registration_nodes import snapshot
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import no_progress
 
 
 class PlanPanel:

@@ -13,12 +13,12 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.panels.plain_text import LONGEST_TEXT, shortened, shortName, toolTip, wrappable
-from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.settings import Setting, Settings
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress
 
 GREEN, YELLOW, RED, GRAY = "#2e9e44", "#c98a00", "#d03030", "#888888"
 LINK_COLORS = {

@@ -22,9 +22,9 @@ from rastrainer.head.mesh import read_head_mesh
 from rastrainer.head.volume import check_place, read_head_volume
 from rastrainer.procedure.checks import unusable_lines
 from rastrainer.procedure.plan import read_all_no_go, read_procedure_meshes
-from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import FILE_NAME, PREVIEW_NAME, Scenario, load_scenario
 from rastrainer.scenario.writer import new_folder, write_scenario
+from rastrainer.work_progress import Progress, no_progress
 
 MAX_SCENARIOS = 200
 MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS = 4_000_000, 2048

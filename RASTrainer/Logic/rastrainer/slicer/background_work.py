@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from rastrainer.errors import InputError
-from rastrainer.progress import Progress
 from rastrainer.slicer.signal import Signal
+from rastrainer.work_progress import Progress
 
 T = TypeVar("T")
 

@@ -14,9 +14,9 @@ from scipy import ndimage
 
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
-from rastrainer.progress import Progress
 from rastrainer.slicer.head import mask, surface
 from rastrainer.slicer.head.volume import SPACING_MM, HeadBody, HeadSettings, Volume, onRasGrid
+from rastrainer.work_progress import Progress
 
 CT_AIR, CT_SKIN = -1000.0, -475.0
 """Hounsfield units; the skin's surface is half-way between air and what lies under it."""

@@ -11,7 +11,6 @@ from scipy import ndimage
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.head.volume import KEPT_MM, HeadVolume
-from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.writer import HeadDraft
 from rastrainer.slicer.head import mask, surface
 from rastrainer.slicer.head.extraction import CT_AIR, findHead, isHounsfield, skinOf
@@ -27,6 +26,7 @@ from rastrainer.slicer.head.volume import (
     sampled,
     volumeOfSegment,
 )
+from rastrainer.work_progress import Progress, no_progress
 
 
 def makeDraft(

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
-from rastrainer.progress import Progress
 from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.program.own_process import Run
 from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
 from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, trianglesPolyData
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress
 
 if TYPE_CHECKING:
     from rastrainer.head.mesh import HeadMesh

@@ -16,7 +16,6 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, read_markups, write_markups
-from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.points import FACE_LANDMARKS, Landmark
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
@@ -30,6 +29,7 @@ from rastrainer.slicer.scene.nodes import (
 )
 from rastrainer.slicer.scene.plan_points import LIST, placedRows, startPlacing, stopPlacing
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress, no_progress
 
 COLOR = (0.1, 0.55, 0.9)
 

@@ -32,13 +32,13 @@ from rastrainer.procedure.plan import (
     procedure_json,
     read_procedure_meshes,
 )
-from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.logic.scenario_logic import ScenarioFiles
 from rastrainer.slicer.scene.nodes import labelsOf, worldPoints
 from rastrainer.slicer.scene.plan_points import ENDS, placedRows
 from rastrainer.slicer.scene.procedure_lines import instrumentOf, noGoNodes, planLines, showPlan
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress, no_progress
 
 FILE = "procedure.json"
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack
-from rastrainer.progress import Progress, no_progress
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
@@ -37,6 +36,7 @@ from rastrainer.study.database.values import StoredTrial
 from rastrainer.study.trial_review import with_progress
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.trial_feedback import TrialFeedback
+from rastrainer.work_progress import Progress, no_progress
 
 SLICES_A_TURN = 4
 """Of the states of a closed scene's replay, which are let go little by little."""

@@ -10,7 +10,6 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
-from rastrainer.progress import Progress, no_progress
 from rastrainer.scenario.library import ListedScenario, unpack
 from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import inBackground
@@ -37,6 +36,7 @@ from rastrainer.slicer.scene.scenario_nodes import (
 )
 from rastrainer.slicer.scene.trial_scene import showOnlyTouchesOf
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress, no_progress
 
 
 class ScenarioLogic:

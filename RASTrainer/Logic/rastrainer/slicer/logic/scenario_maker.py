@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, write_markups
-from rastrainer.progress import Progress, no_progress
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.scenario.points import touch_order
 from rastrainer.scenario.scenario import UNKNOWN_LICENSE, Scenario, load_scenario
@@ -29,6 +28,7 @@ from rastrainer.slicer.program.child_process import runChild
 from rastrainer.slicer.program.own_process import Run
 from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, labelsOf, nodesOfClass, worldPoints
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress, no_progress
 
 if TYPE_CHECKING:
     from rastrainer.slicer.head.volume import HeadSettings

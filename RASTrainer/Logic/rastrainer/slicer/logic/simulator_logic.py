@@ -15,7 +15,6 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import FolderHolder, read_holder
-from rastrainer.progress import Progress
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.program.child_process import KILL_AFTER_S, SLICER, endProcess, runChild
@@ -25,6 +24,7 @@ from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.settings import PROGRAM, Settings
 from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
+from rastrainer.work_progress import Progress
 
 LOOK_EVERY_S = 1.0
 _ANY_ADDRESS = ("0.0.0.0", "::", "localhost", "")

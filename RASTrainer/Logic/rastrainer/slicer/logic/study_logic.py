@@ -18,7 +18,7 @@ from rastrainer.slicer.logic.training_logic import TrainingLogic, TrialStatus
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
-from rastrainer.study.protocol.progress import Progress
+from rastrainer.study.protocol.step_progress import StepProgress
 from rastrainer.study.protocol.steps import Step, StepAnswers, StepKind, StudyStep
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, read_study_protocol
@@ -113,7 +113,7 @@ class StudyLogic:
         self._leadOn(self._trainees.chosen)
         return place
 
-    def progress(self) -> Progress | None:
+    def progress(self) -> StepProgress | None:
         """Return the chosen trainee's progress; None for one who practices freely."""
         name = self._trainees.chosen
         study = StudyProgress(self._trainees.study)
@@ -121,7 +121,7 @@ class StudyLogic:
             return None
         return study.progress(name)
 
-    def minutesElapsed(self, progress: Progress) -> float:
+    def minutesElapsed(self, progress: StepProgress) -> float:
         """Return how much of the chosen trainee's trial run or break is over; min."""
         step, minutes = progress.next_step, progress.minutes_elapsed(self._now())
         if step is None or step.kind is not StepKind.TRIAL_RUN:
@@ -237,7 +237,7 @@ class StudyLogic:
         """
         self._leadOn(trial.trainee)
 
-    def _progress(self) -> Progress:
+    def _progress(self) -> StepProgress:
         progress = self.progress()
         if progress is None:
             raise InputError(_("Enroll the trainee in the study first."))
@@ -313,7 +313,7 @@ class StudyLogic:
             self._sentSteps[name] = step
             self._send(step)
 
-    def _noteBreak(self, name: str, progress: Progress) -> None:
+    def _noteBreak(self, name: str, progress: StepProgress) -> None:
         self._breaks.pop(name, None)
         end = progress.break_end
         if end is not None:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from rastrainer.errors import InputError
-from rastrainer.progress import Progress, no_progress
 from rastrainer.protocol import CommandName
 from rastrainer.slicer.background_work import CancelableUntilBegun, inBackground
 from rastrainer.slicer.link.link import Link
@@ -25,6 +24,7 @@ from rastrainer.study.database.values import StoredTrial, Trainee
 from rastrainer.study.tidy_csv import write_histories, write_history
 from rastrainer.study.trainee_data import Erasure, erase_trainee, export_trainee
 from rastrainer.study.tre_calibration import TreCalibration, calibration_of
+from rastrainer.work_progress import Progress, no_progress
 
 LOOK_EVERY_S = 1.0
 

@@ -12,7 +12,6 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, find_track
-from rastrainer.progress import Progress
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.trial_review import scored_with_journal, trajectory_of
 from rastrainer.trial import ctps
@@ -21,6 +20,7 @@ from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outco
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
 from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration, register_trial
+from rastrainer.work_progress import Progress
 
 REGISTER = f"{__name__}:register"
 REGISTER_OPEN = f"{__name__}:registerOpen"

@@ -23,8 +23,8 @@ from typing import Any
 
 from rastrainer.errors import InputError
 from rastrainer.journal.folder import STARTED_BY
-from rastrainer.progress import Progress, report_line
 from rastrainer.python_environment import clean_environment
+from rastrainer.work_progress import Progress, report_line
 
 if sys.platform == "win32":
     from rastrainer.slicer.program.windows_job import WINDOWS_OPTIONS, WindowsJob, endTree

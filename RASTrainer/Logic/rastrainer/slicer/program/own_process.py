@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.progress import Progress, print_progress
 from rastrainer.slicer.program.child_process import NotStartedError, runChild
+from rastrainer.work_progress import Progress, print_progress
 
 Run = Callable[..., Any]
 """Runs a function: `run(function, progress, *arguments, **named)`; see `OwnProcess`."""

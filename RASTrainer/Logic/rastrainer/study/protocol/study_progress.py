@@ -19,15 +19,15 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.database.study_trainees import TRAINEE_ID
 from rastrainer.study.database.study_trials import decoded, json_text
 from rastrainer.study.database.values import utc_now
-from rastrainer.study.protocol.progress import (
+from rastrainer.study.protocol.questionnaires import find_questionnaire
+from rastrainer.study.protocol.step_progress import (
     DONE,
     SKIPPED,
-    Progress,
     StepEntry,
+    StepProgress,
     aborted_before,
     played_next,
 )
-from rastrainer.study.protocol.questionnaires import find_questionnaire
 from rastrainer.study.protocol.steps import Step, StepKind, steps_for
 from rastrainer.study.protocol.study_protocol import StudyProtocol, study_protocol_from_json
 
@@ -93,7 +93,7 @@ class StudyProgress:
                 )
             return place
 
-    def progress(self, pseudonym: str) -> Progress:
+    def progress(self, pseudonym: str) -> StepProgress:
         """Return the progress of a trainee.
 
         Raises:
@@ -104,7 +104,7 @@ class StudyProgress:
 
     def finish(
         self, pseudonym: str, step: str, details: Mapping[str, Any] | None = None
-    ) -> Progress:
+    ) -> StepProgress:
         """Store that the next step was done and return the new progress.
 
         Args:
@@ -125,7 +125,7 @@ class StudyProgress:
             _store(connection, pseudonym, step, DONE, checked)
             return _progress(connection, pseudonym)
 
-    def skip(self, pseudonym: str, step: str, reason: str) -> Progress:
+    def skip(self, pseudonym: str, step: str, reason: str) -> StepProgress:
         """Skip the next step for a reason and return the new progress.
 
         Raises:
@@ -136,7 +136,7 @@ class StudyProgress:
             _store(connection, pseudonym, step, SKIPPED, checked)
             return _progress(connection, pseudonym)
 
-    def explain_repeat(self, pseudonym: str, reason: str) -> Progress:
+    def explain_repeat(self, pseudonym: str, reason: str) -> StepProgress:
         """Store why the next step is repeated after an abort; return the new progress.
 
         Raises:
@@ -170,7 +170,7 @@ class StudyProgress:
                 (pseudonym, step, float(seconds)),
             )
 
-    def count_played(self, pseudonym: str) -> Progress:
+    def count_played(self, pseudonym: str) -> StepProgress:
         """Count stored trials for the next steps, and return the new progress.
 
         Trials count if started after enrollment and after the last counted trial, also if they
@@ -187,7 +187,7 @@ class StudyProgress:
                 _store(connection, pseudonym, entry.step, entry.outcome, dict(entry.details))
             return _progress(connection, pseudonym)
 
-    def played(self, pseudonym: str) -> Progress:
+    def played(self, pseudonym: str) -> StepProgress:
         """Return the progress that `count_played` would give, without storing it."""
         with self._database.reading() as connection:
             progress = _progress(connection, pseudonym)
@@ -217,7 +217,7 @@ class StudyProgress:
         )
 
 
-def _answers(pseudonym: str, progress: Progress) -> list[QuestionnaireAnswers]:
+def _answers(pseudonym: str, progress: StepProgress) -> list[QuestionnaireAnswers]:
     found = []
     for step, entry in zip(progress.steps, progress.entries, strict=False):
         if step.kind is StepKind.QUESTIONNAIRE and entry.outcome == DONE:
@@ -227,7 +227,7 @@ def _answers(pseudonym: str, progress: Progress) -> list[QuestionnaireAnswers]:
     return found
 
 
-def _progress(connection: Connection, pseudonym: str) -> Progress:
+def _progress(connection: Connection, pseudonym: str) -> StepProgress:
     protocol = _require_protocol(connection)
     place = _place(connection, pseudonym)
     if place is None:
@@ -244,7 +244,7 @@ def _progress(connection: Connection, pseudonym: str) -> Progress:
         StepEntry(step, outcome, decoded(details, dict), utc)
         for step, outcome, details, utc in rows
     ]
-    progress = Progress.of(steps_for(protocol, place), entries, enrolled_utc)
+    progress = StepProgress.of(steps_for(protocol, place), entries, enrolled_utc)
     return replace(
         progress,
         practiced_s=_practiced(connection, pseudonym, progress.next_step),
@@ -280,7 +280,7 @@ def _place(connection: Connection, pseudonym: str) -> int | None:
 
 
 def _check_trial(
-    connection: Connection, pseudonym: str, progress: Progress, step: Step, trial_id: str
+    connection: Connection, pseudonym: str, progress: StepProgress, step: Step, trial_id: str
 ) -> None:
     record = study_trials.find_record(connection, trial_id)
     played = (record.trainee, record.mode, record.task, record.method.value)

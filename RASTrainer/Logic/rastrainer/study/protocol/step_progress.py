@@ -1,4 +1,4 @@
-"""A trainee's progress through a study, and which stored trials belong to the next steps.
+"""A trainee's progress through a study's steps, and which stored trials belong to the next ones.
 
 A trial, finished or aborted, belongs to a step if it was started after enrollment and after the
 last counted trial.
@@ -46,7 +46,7 @@ class StepEntry:
 
 
 @dataclass(frozen=True)
-class Progress:
+class StepProgress:
     """A trainee's steps and their outcomes.
 
     Attributes:
@@ -66,7 +66,7 @@ class Progress:
     @classmethod
     def of(
         cls, steps: Sequence[Step], entries: Sequence[StepEntry], enrolled_utc: str = ""
-    ) -> Progress:
+    ) -> StepProgress:
         """Return the progress described by a log.
 
         Raises:
@@ -250,7 +250,7 @@ def _checked_minutes(step: Step, minutes: Any) -> float:
     return float(minutes)
 
 
-def played_next(connection: Connection, pseudonym: str, progress: Progress) -> list[StepEntry]:
+def played_next(connection: Connection, pseudonym: str, progress: StepProgress) -> list[StepEntry]:
     """Return the entries of next steps whose trials are stored but not counted yet.
 
     It reads in the caller's transaction.
@@ -270,7 +270,7 @@ def played_next(connection: Connection, pseudonym: str, progress: Progress) -> l
 
 
 def _played_for(
-    connection: Connection, pseudonym: str, progress: Progress, step: Step
+    connection: Connection, pseudonym: str, progress: StepProgress, step: Step
 ) -> str | None:
     """Return the UUID of the next step's trial, or None; a repeat needs a reason to count."""
     counted = set(progress.counted_trials)
@@ -321,7 +321,7 @@ def _number(extracted: object) -> float:
     return decoded(str(extracted or 0), float)
 
 
-def _since(connection: Connection, pseudonym: str, progress: Progress) -> datetime:
+def _since(connection: Connection, pseudonym: str, progress: StepProgress) -> datetime:
     """Return the earliest start of the next step's trial."""
     counted = set(progress.counted_trials)
     after = [when for when, trial, *_ in _trials_of(connection, pseudonym) if trial in counted]
@@ -329,7 +329,7 @@ def _since(connection: Connection, pseudonym: str, progress: Progress) -> dateti
 
 
 def aborted_before(
-    connection: Connection, pseudonym: str, progress: Progress
+    connection: Connection, pseudonym: str, progress: StepProgress
 ) -> tuple[AbortedTrial, ...]:
     """Return the aborted trials of the next step without a reason."""
     step = progress.next_step
