@@ -36,9 +36,9 @@ from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkStatus
+from rastrainer.slicer.logic.aborted_trial_logic import AbortedTrialLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
-from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.error_colors import magnification
 from rastrainer.slicer.scene.nodes import labelsOf, localPoints
@@ -84,7 +84,7 @@ class HeadlessHost:
             self._work,
             () if cohort is None else read_trials(cohort),
         )
-        self._aborted = AbortedTrialsLogic(self.link, lambda: _openStudy(output), self._work)
+        self._aborted = AbortedTrialLogic(self.link, lambda: _openStudy(output), self._work)
         self._aborted.kept.connect(
             lambda trial: printEvent("aborted", trialId=trial.trial_id, reason=trial.reason)
         )

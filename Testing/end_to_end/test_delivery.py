@@ -15,7 +15,7 @@ import pytest
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
+from rastrainer.slicer.logic.aborted_trial_logic import AbortedTrialLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
@@ -146,7 +146,7 @@ def slicer_side_for_aborted(path, port):
     return SlicerSide(
         path,
         port,
-        lambda _scene, link, open_study, work: AbortedTrialsLogic(link, open_study, work),
+        lambda _scene, link, open_study, work: AbortedTrialLogic(link, open_study, work),
     )
 
 

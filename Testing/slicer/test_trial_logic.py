@@ -14,13 +14,13 @@ from rastrainer.protocol import DeviceName
 from rastrainer.slicer import background_work
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic import trial_delivery, trial_logic
+from rastrainer.slicer.logic import delivery_queue, trial_logic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.registration_nodes import isApplied
 from rastrainer.study.database.database import LockWait, StudyUnreachableError
 from rastrainer.study.database.study import Study
-from rastrainer.study.trial_review import review
+from rastrainer.study.delivered_trial import score_by_protocol
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until, run_until_received
@@ -352,10 +352,10 @@ def reviews(monkeypatch):
 
     def scored(analysis, *arguments):
         done.append((analysis.record.trial_id, threading.get_ident()))
-        return review(analysis, *arguments)
+        return score_by_protocol(analysis, *arguments)
 
-    monkeypatch.setattr("rastrainer.slicer.logic.trial_work.analyze_trial", registered)
-    monkeypatch.setattr("rastrainer.slicer.logic.trial_logic.review", scored)
+    monkeypatch.setattr("rastrainer.slicer.logic.trial_computations.analyze_trial", registered)
+    monkeypatch.setattr("rastrainer.slicer.logic.trial_logic.score_by_protocol", scored)
     return done
 
 
@@ -398,7 +398,7 @@ def test_a_flood_of_forged_trials_waits_in_a_short_queue_and_the_excess_is_repor
     lab, make_record, monkeypatch
 ):
     waiting = 8
-    monkeypatch.setattr(trial_delivery, "MAX_WAITING", waiting)
+    monkeypatch.setattr(delivery_queue, "MAX_WAITING", waiting)
     lab.logic.trialKept.connect(lambda _record: kept.append(True))
     kept = []
     for number in range(3 * waiting):

@@ -19,7 +19,7 @@ from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import InputError
 from rastrainer.protocol import TRIAL_RUN, CommandName, Phase
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.trial_review import scored_with_journal, with_progress_among
+from rastrainer.study.delivered_trial import scored_with_journal, with_progress_among
 from rastrainer.trial.analysis import (
     RevealedTruth,
     TrialAnalysis,

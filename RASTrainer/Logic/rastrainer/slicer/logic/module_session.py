@@ -13,6 +13,7 @@ from rastrainer.scenario.scenario import Scenario, playable_methods
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
+from rastrainer.slicer.logic.aborted_trial_logic import AbortedTrialLogic
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
@@ -31,7 +32,6 @@ from rastrainer.slicer.logic.target_plan_logic import PlanLogic
 from rastrainer.slicer.logic.trace_logic import TraceLogic
 from rastrainer.slicer.logic.trainee_logic import CurriculumLogic, TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
-from rastrainer.slicer.logic.trial_delivery import AbortedTrialsLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.own_process import OwnProcess
@@ -170,7 +170,7 @@ class ModuleSession:
             places.records,
             run,
         )
-        self.aborted = AbortedTrialsLogic(self.link, self.openStudyPatiently, self.work)
+        self.aborted = AbortedTrialLogic(self.link, self.openStudyPatiently, self.work)
         self.replay = ReplayLogic(
             scene,
             self.openStudyPatiently,

@@ -21,15 +21,16 @@ from rastrainer.protocol import OPEN_PHASES
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.trial_delivery import Delivery, DeliveryQueue, TrialScoring
-from rastrainer.slicer.logic.trial_work import REGISTER, SCORE
+from rastrainer.slicer.logic.delivery_queue import Delivery, DeliveryQueue
+from rastrainer.slicer.logic.trial_computations import REGISTER, SCORE
+from rastrainer.slicer.logic.trial_scoring import TrialScoring
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
-from rastrainer.study.trial_review import DeliveredTrial, review, store_delivered
+from rastrainer.study.delivered_trial import DeliveredTrial, score_by_protocol, store_delivered
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
@@ -82,7 +83,7 @@ class TrialLogic:
         self._cohort = cohort
         self._records = records
         self._run = run
-        self._scoring = TrialScoring(link, work, openStudy, self._review)
+        self._scoring = TrialScoring(link, work, openStudy, self._scoreByProtocol)
         self._beingScored: set[str] = set()
         self._scored: set[str] = set()
         self._unscored: deque[TrialRecord] = deque()
@@ -163,13 +164,15 @@ class TrialLogic:
         scenario = self._findScenario(record.scenario)
         return self._run(REGISTER, self._work.checkWanted, record, scenario, self._cohort)
 
-    def _review(self, analysis: TrialAnalysis, study: Study, truth: RevealedTruth) -> TrialAnalysis:
+    def _scoreByProtocol(
+        self, analysis: TrialAnalysis, study: Study, truth: RevealedTruth
+    ) -> TrialAnalysis:
         scenario = self._findScenario(analysis.record.scenario)
 
         def score(*values: Any) -> TrialAnalysis:
             return self._run(SCORE, self._work.checkWanted, *values, self._records)
 
-        return review(analysis, truth, scenario, study, score)
+        return score_by_protocol(analysis, truth, scenario, study, score)
 
     def _resume(self) -> None:
         """Score the trials that were not scored before connection or study were lost."""

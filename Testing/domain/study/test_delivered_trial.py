@@ -11,9 +11,9 @@ import pytest
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
+from rastrainer.study.delivered_trial import score_by_protocol, store_delivered, with_progress
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
-from rastrainer.study.trial_review import review, store_delivered, with_progress
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
@@ -51,7 +51,7 @@ def reviewed(study, number, task="task-1"):
     """A trial with exact touches, stored with its results."""
     record = exact_touches(number, task)
     registered = analyze_trial(TrialRecord.from_json(record), SCENARIO)
-    analysis = review(registered, TRUTH, SCENARIO, study)
+    analysis = score_by_protocol(registered, TRUTH, SCENARIO, study)
     study.add_trial(record, [analysis.rigid], score=analysis.score)
     return with_progress(analysis, study)
 
@@ -97,7 +97,7 @@ def test_scoring_a_registered_trial_neither_registers_nor_estimates_again(study,
     registered = analyze_trial(TrialRecord.from_json(exact_touches(1)), SCENARIO)
     monkeypatch.setattr("rastrainer.trial.touch_registration.register_all_kinds", None)
     monkeypatch.setattr("rastrainer.trial.touch_registration.target_error", None)
-    scored = review(registered, TRUTH, SCENARIO, study)
+    scored = score_by_protocol(registered, TRUTH, SCENARIO, study)
     assert scored.fits is registered.fits
     assert scored.target_errors is registered.target_errors
     assert (scored.truth, scored.feedback.score) == (TRUTH, scored.score)

@@ -1,4 +1,4 @@
-"""What is done with a trial in a separate process: registered, scored, judged, read for its replay.
+"""What is computed of a trial in a separate process: registration, score, feedback, its replay.
 
 A trial's journal holds thousands of lines, and a registration calls numpy hundreds of times. In a
 thread of Slicer's, both would keep its window from answering. The study stays with Slicer.
@@ -13,7 +13,7 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.journal.recording import ReplayTrack, find_track
 from rastrainer.scenario.scenario import Scenario
-from rastrainer.study.trial_review import scored_with_journal, trajectory_of
+from rastrainer.study.delivered_trial import scored_with_journal, trajectory_of
 from rastrainer.trial import ctps
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
 from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome

@@ -100,7 +100,7 @@ def scored_with_journal(
     return analysis.scored(scenario, truth, references, trajectory)
 
 
-def review(
+def score_by_protocol(
     analysis: TrialAnalysis,
     truth: RevealedTruth,
     scenario: Scenario,

@@ -1,0 +1,134 @@
+"""Trials that the simulator delivers: stored in the background, in their order, and acknowledged.
+
+Nothing is lost and nothing counts twice: the simulator offers a trial until it is acknowledged, and
+it is acknowledged only when it is in the study.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import Any, Generic, TypeVar
+
+from rastrainer.protocol import CommandName
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.link.link import Link
+from rastrainer.slicer.signal import Signal
+from rastrainer.study.database.study_trainees import DeletedTrialError
+
+T = TypeVar("T")
+Delivery = Mapping[str, Any]
+"""The record of a trial as it was delivered, not yet checked."""
+
+MAX_WAITING = 32
+"""Trials that wait to be stored; a simulator that has more offers them again."""
+
+
+class DeliveryQueue(Generic[T]):
+    """Stores the trials that a signal delivers, in their order.
+
+    Attributes:
+        problemFound: emits a sentence about a trial that was not stored, or not scored.
+    """
+
+    def __init__(
+        self,
+        link: Link,
+        delivered: Signal,
+        work: BackgroundWork,
+        store: Callable[[Delivery], Callable[[], T]],
+        accept: Callable[[T], None],
+        refusal: str,
+        tooMany: str = "",
+        inTurn: bool = True,
+    ) -> None:
+        """Receive what is delivered from now on.
+
+        Args:
+            link: to the simulator.
+            delivered: signal of the link that emits each delivery.
+            work: in which trials are stored.
+            store: returns what stores a delivery, called in the background.
+            accept: is given what that has returned, after the trial was acknowledged.
+            refusal: sentence about a trial that was not stored, with a place for its `{error}`.
+            tooMany: sentence where too many trials wait; without it nothing is said.
+            inTurn: whether one is stored only after the one before was accepted; otherwise all are
+                stored before whatever is received after them.
+        """
+        self.problemFound = Signal()
+        self._link = link
+        self._delivered = delivered
+        self._work = work
+        self._store = store
+        self._accept = accept
+        self._refusal = refusal
+        self._tooMany = tooMany
+        self._inTurn = inTurn
+        self._waiting: deque[Delivery] = deque()
+        self._underWay: list[Delivery] = []
+        self._lastProblem = ""
+        delivered.connect(self._receive)
+
+    def close(self) -> None:
+        """Stop listening to the link, and start nothing more."""
+        self._delivered.disconnect(self._receive)
+        self.forgetWaiting()
+
+    def forgetWaiting(self) -> None:
+        """Drop what has not started: the simulator offers it again, for another study."""
+        self._waiting.clear()
+        self._lastProblem = ""
+
+    def isStoring(self, trialId: str) -> bool:
+        """Whether a trial is being stored."""
+        return any(each.get("trialId") == trialId for each in self._underWay)
+
+    def report(self, sentence: str) -> None:
+        """Report a problem once, though the trial is offered every two seconds."""
+        if sentence and sentence != self._lastProblem:
+            self._lastProblem = sentence
+            self.problemFound.emit(sentence)
+
+    def _receive(self, delivery: Delivery) -> None:
+        """Queue a delivered trial; what is dropped is offered again."""
+        trialId = delivery.get("trialId")
+        known = (*self._underWay, *self._waiting)
+        if any(each.get("trialId") == trialId for each in known):
+            return
+        if len(known) >= MAX_WAITING:
+            self.report(self._tooMany)
+            return
+        self._waiting.append(delivery)
+        self._storeNext()
+
+    def _storeNext(self) -> None:
+        if not self._waiting or (self._underWay and self._inTurn):
+            return
+        delivery = self._waiting.popleft()
+        self._underWay.append(delivery)
+        self._work.do(
+            self._store(delivery),
+            lambda stored: self._finish(delivery, lambda: self._take(delivery, stored)),
+            lambda error: self._finish(delivery, lambda: self._refuse(delivery, error)),
+        )
+
+    def _finish(self, delivery: Delivery, conclude: Callable[[], None]) -> None:
+        self._underWay = [each for each in self._underWay if each is not delivery]
+        try:
+            conclude()
+        finally:
+            self._storeNext()
+
+    def _take(self, delivery: Delivery, stored: T) -> None:
+        self._acknowledge(delivery)
+        self._accept(stored)
+
+    def _refuse(self, delivery: Delivery, error: Exception) -> None:
+        if isinstance(error, DeletedTrialError):
+            # Its trainee was deleted for good: it must not be offered for ever.
+            self._acknowledge(delivery)
+        else:
+            self.report(self._refusal.format(error=error))
+
+    def _acknowledge(self, delivery: Delivery) -> None:
+        self._link.send(CommandName.ACKNOWLEDGE_TRIAL, {"trialId": delivery["trialId"]})
