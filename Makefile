@@ -69,16 +69,16 @@ docs: .venv/docs-installed
 # Hashes, but no addresses: the locks hold at whatever index a site uses.
 lock: .venv/installed
 	$(BIN)/pip install -q uv==0.13.9
-	$(COMPILE) --extra lti --extra page --extra slicer -o requirements.lock
-	$(COMPILE) --extra test --constraints requirements.lock -o requirements-test.lock
-	$(COMPILE) --extra bench --constraints requirements-test.lock -o requirements-bench.lock
-	$(COMPILE) --extra soak --constraints requirements-test.lock -o requirements-soak.lock
-	$(subst pyproject.toml,requirements-ralph.in,$(COMPILE)) -o requirements-ralph.lock
-	$(subst pyproject.toml,requirements-icp.in,$(COMPILE)) -o requirements-icp.lock
-	$(subst pyproject.toml,requirements-openedx.in,$(COMPILE)) -o requirements-openedx.lock
-	$(COMPILE) --extra supply --constraints requirements.lock -o requirements-supply.lock
-	$(COMPILE) --extra docs --constraints requirements-test.lock -o requirements-docs.lock
-	$(COMPILE) --constraints requirements.lock --excludes tools/simulator-leaves-out.txt -o $(SIMULATOR)/requirements.lock
+	$(COMPILE) --extra lti --extra page --extra slicer -o requirements/base.lock
+	$(COMPILE) --extra test --constraints requirements/base.lock -o requirements/test.lock
+	$(COMPILE) --extra bench --constraints requirements/test.lock -o requirements/bench.lock
+	$(COMPILE) --extra soak --constraints requirements/test.lock -o requirements/soak.lock
+	$(subst pyproject.toml,requirements/ralph.in,$(COMPILE)) -o requirements/ralph.lock
+	$(subst pyproject.toml,requirements/icp.in,$(COMPILE)) -o requirements/icp.lock
+	$(subst pyproject.toml,requirements/openedx.in,$(COMPILE)) -o requirements/openedx.lock
+	$(COMPILE) --extra supply --constraints requirements/base.lock -o requirements/supply.lock
+	$(COMPILE) --extra docs --constraints requirements/test.lock -o requirements/docs.lock
+	$(COMPILE) --constraints requirements/base.lock --excludes tools/simulator-leaves-out.txt -o $(SIMULATOR)/requirements.lock
 	$(BIN)/python tools/measure_simulator.py
 
 # Notices and bills of materials go to build; the audit asks a service in the internet.
@@ -94,36 +94,36 @@ COMPILE := $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-ver
 $(VENV_PYTHON):
 	$(PYTHON) -m venv .venv || (echo "RASTrainer needs Python 3.10 or newer with the venv module (Debian: python3-venv)." >&2; exit 1)
 
-.venv/installed: $(VENV_PYTHON) requirements.lock pyproject.toml
-	$(BIN)/python -m pip install -q --no-compile --require-hashes -r requirements.lock
+.venv/installed: $(VENV_PYTHON) requirements/base.lock pyproject.toml
+	$(BIN)/python -m pip install -q --no-compile --require-hashes -r requirements/base.lock
 	$(BIN)/python -m pip install -q --no-deps --no-build-isolation -e .
 	touch $@
 
-.venv/test-installed: .venv/installed requirements-test.lock
-	$(BIN)/python -m pip install -q --no-compile --require-hashes -r requirements-test.lock
+.venv/test-installed: .venv/installed requirements/test.lock
+	$(BIN)/python -m pip install -q --no-compile --require-hashes -r requirements/test.lock
 	touch $@
 
-.venv/bench-installed: .venv/test-installed requirements-bench.lock
-	$(BIN)/python -m pip install -q --require-hashes -r requirements-bench.lock
+.venv/bench-installed: .venv/test-installed requirements/bench.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements/bench.lock
 	touch $@
 
 # A peer has an environment of its own: it wants other versions of the same packages.
-.venv/soak-installed: .venv/test-installed requirements-soak.lock requirements-ralph.lock requirements-icp.lock requirements-openedx.lock
-	$(BIN)/python -m pip install -q --require-hashes -r requirements-soak.lock
+.venv/soak-installed: .venv/test-installed requirements/soak.lock requirements/ralph.lock requirements/icp.lock requirements/openedx.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements/soak.lock
 	$(BIN)/python -m venv .venv/ralph
-	.venv/ralph/bin/python -m pip install -q --require-hashes -r requirements-ralph.lock
+	.venv/ralph/bin/python -m pip install -q --require-hashes -r requirements/ralph.lock
 	$(BIN)/python -m venv .venv/icp
-	.venv/icp/bin/python -m pip install -q --require-hashes -r requirements-icp.lock
+	.venv/icp/bin/python -m pip install -q --require-hashes -r requirements/icp.lock
 	$(BIN)/python -m venv .venv/openedx
-	.venv/openedx/bin/python -m pip install -q --require-hashes -r requirements-openedx.lock
+	.venv/openedx/bin/python -m pip install -q --require-hashes -r requirements/openedx.lock
 	touch $@
 
-.venv/supply-installed: .venv/installed requirements-supply.lock
-	$(BIN)/python -m pip install -q --require-hashes -r requirements-supply.lock
+.venv/supply-installed: .venv/installed requirements/supply.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements/supply.lock
 	touch $@
 
-.venv/docs-installed: .venv/installed requirements-docs.lock
-	$(BIN)/python -m pip install -q --require-hashes -r requirements-docs.lock
+.venv/docs-installed: .venv/installed requirements/docs.lock
+	$(BIN)/python -m pip install -q --require-hashes -r requirements/docs.lock
 	touch $@
 
 clean:

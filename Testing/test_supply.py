@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-LOCKS = sorted(ROOT.glob("requirements*.lock"))
+REQUIREMENTS = ROOT / "requirements"
+LOCKS = sorted(REQUIREMENTS.glob("*.lock"))
 RESOURCES = ROOT / "RASTrainer" / "Resources" / "RASTrainerSimulator"
 SIMULATORS_LOCK = RESOURCES / "requirements.lock"
 LEFT_OUT = ROOT / "tools" / "simulator-leaves-out.txt"
@@ -25,15 +26,15 @@ audit_packages, bill_of_materials, third_party_notices, wheel_page = map(
 )
 
 EXTRAS = {
-    "requirements.lock": ("lti", "page", "slicer"),
-    "requirements-test.lock": ("test",),
-    "requirements-bench.lock": ("bench",),
-    "requirements-soak.lock": ("soak",),
-    "requirements-supply.lock": ("supply",),
-    "requirements-docs.lock": ("docs",),
+    "base.lock": ("lti", "page", "slicer"),
+    "test.lock": ("test",),
+    "bench.lock": ("bench",),
+    "soak.lock": ("soak",),
+    "supply.lock": ("supply",),
+    "docs.lock": ("docs",),
 }
 """What `make lock` makes each lock from, beside the project's own dependencies."""
-PEERS_LOCKS = tuple(ROOT / f"requirements-{name}.lock" for name in ("ralph", "icp", "openedx"))
+PEERS_LOCKS = tuple(REQUIREMENTS / f"{name}.lock" for name in ("ralph", "icp", "openedx"))
 """Of peers in the tests, which have environments and files of requirements of their own."""
 NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")
 
@@ -47,7 +48,7 @@ def _kind(line: str) -> str:
     return "hash" if HASH.match(line) else line
 
 
-@pytest.mark.parametrize("lock", [*LOCKS, SIMULATORS_LOCK], ids=lambda lock: lock.parent.name)
+@pytest.mark.parametrize("lock", [*LOCKS, SIMULATORS_LOCK], ids=lambda lock: lock.stem)
 def test_every_locked_package_is_pinned_by_hashes_and_by_no_address(lock):
     lines = lock.read_text(encoding="utf-8").splitlines()
     kinds = [_kind(line) for line in lines]
@@ -102,7 +103,7 @@ def pinned(lock: Path) -> dict[str, set[str]]:
 
 
 def test_slicer_sets_up_the_simulator_from_what_is_tested_minus_what_it_never_imports():
-    ours, whole = pinned(SIMULATORS_LOCK), pinned(ROOT / "requirements.lock")
+    ours, whole = pinned(SIMULATORS_LOCK), pinned(REQUIREMENTS / "base.lock")
     assert {name: whole.get(name) for name in ours} == ours
     lines = LEFT_OUT.read_text(encoding="utf-8").splitlines()
     left_out = {line for line in lines if not line.startswith("#")}
@@ -188,7 +189,7 @@ def test_an_audit_reports_what_is_known_and_whether_it_was_checked(
     monkeypatch, answer, status, words
 ):
     answering(monkeypatch, answer)
-    found = audit_packages.audit_python(ROOT / "requirements.lock")
+    found = audit_packages.audit_python(REQUIREMENTS / "base.lock")
     assert found[0] == status
     assert words in found[1]
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import build_page
 
 ROOT = Path(__file__).resolve().parents[1]
-LOCKS = tuple(sorted(path.name for path in ROOT.glob("requirements*.lock")))
+LOCKS = tuple(sorted((ROOT / "requirements").glob("*.lock")))
 TIMEOUT_S = 300
 NOTHING_KNOWN, VULNERABLE, NOT_CHECKED = 0, 1, 3
 
@@ -67,7 +67,7 @@ def _page_findings(answer: dict) -> list[str]:
 
 def main() -> int:
     """Check everything, print the results, and return the worst status."""
-    answers = [audit_python(ROOT / lock) for lock in LOCKS] + [audit_page()]
+    answers = [audit_python(lock) for lock in LOCKS] + [audit_page()]
     for _status, sentence in answers:
         print(sentence)
     statuses = {status for status, _sentence in answers}

@@ -14,13 +14,14 @@ from pathlib import Path
 import build_page
 
 ROOT = Path(__file__).resolve().parents[1]
+LOCK = ROOT / "requirements" / "base.lock"
 BUILD = ROOT / "build"
 PYTHON_BILL = BUILD / "rastrainer.cdx.json"
 NO_VERSION = "0.0.0"
 PAGE_BILL = BUILD / "rastrainer-page.cdx.json"
 
 
-def write_python_bill(lock: Path = ROOT / "requirements.lock", output: Path = PYTHON_BILL) -> int:
+def write_python_bill(lock: Path = LOCK, output: Path = PYTHON_BILL) -> int:
     """Write the bill of a lock and return how many packages it names.
 
     Raises:

@@ -1,7 +1,7 @@
 """Write build/third-party-notices.txt: the packages that come with RASTrainer, and their licenses.
 
-It is made from what is installed: the packages that requirements.lock names, with their metadata
-and license files, and the packages that go into the browser page.
+It is made from what is installed: the packages that requirements/base.lock names, with their
+metadata and license files, and the packages that go into the browser page.
 """
 
 import importlib.metadata
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-LOCK = ROOT / "requirements.lock"
+LOCK = ROOT / "requirements" / "base.lock"
 WEB = ROOT / "RASTrainerSimulatorServer" / "web"
 OUTPUT = ROOT / "build" / "third-party-notices.txt"
 LONGEST_FILE = 200_000

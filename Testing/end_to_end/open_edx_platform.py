@@ -2,7 +2,7 @@
 
     python open_edx_platform.py PORT FOLDER TOOL
 
-runs in the environment of requirements-openedx.lock. Whatever Open edX says and checks in a launch
+runs in the environment of requirements/openedx.lock. Whatever Open edX says and checks in a launch
 and for a grade is its own; only who is in the course, and how the gradebook is read, is made here.
 """
 
