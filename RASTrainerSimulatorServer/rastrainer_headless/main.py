@@ -277,7 +277,7 @@ def _writePicture(path: Path, scenario: Scenario, analysis: TrialAnalysis) -> No
         f"FRE {analysis.rigid.fre_mm:.2f} mm"
     )
     caption = [
-        "Ball and number: fiducial in the MRI and its residual in mm. Arrow: towards where the "
+        "Ball and number: fiducial in the MRI and its residual in mm. Arrow: toward where the "
         f"registration puts the touch, {magnification(analysis.rigid):g} times as long.",
         f"At the target ({scenario.target_name}): expected TRE {expected.expected_mm:.2f} mm "
         f"(95 %: {low:.2f} to {high:.2f} mm){true}. "

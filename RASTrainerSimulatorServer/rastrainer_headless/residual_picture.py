@@ -131,7 +131,7 @@ def _glyphView(
     rows: np.ndarray,
     colors: vtk.vtkColorTransferFunction,
 ) -> vtk.vtkRenderer:
-    """Return a layer over the head, so that arrows that point inwards are seen as well."""
+    """Return a layer over the head, so that arrows that point inward are seen as well."""
     layer = vtk.vtkRenderer()
     layer.SetLayer(1)
     layer.SetViewport(headView.GetViewport())
@@ -248,7 +248,7 @@ def outwardDirections(points: np.ndarray, center: np.ndarray) -> np.ndarray:
 
 
 def chooseTwoViews(outward: np.ndarray) -> np.ndarray:
-    """Return (2, 3) unit vectors, from the head towards two cameras.
+    """Return (2, 3) unit vectors, from the head toward two cameras.
 
     Of all pairs in a grid, the one in which the point that is seen worst is seen best; among
     equals, the one that shows the points best on the whole.
@@ -302,7 +302,7 @@ def fitScreen(
     Args:
         shown: (n, 3) float, the points.
         center: (3,) float, a point in the depth that is in focus.
-        direction: (3,) float, unit vector towards the camera, not along S.
+        direction: (3,) float, unit vector toward the camera, not along S.
         width: pixels.
         height: pixels.
     """

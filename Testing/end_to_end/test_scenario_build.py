@@ -1,4 +1,4 @@
-"""Building scenarios through the real processes: what is broken or cancelled leaves nothing."""
+"""Building scenarios through the real processes: what is broken or canceled leaves nothing."""
 
 import os
 import signal
@@ -25,7 +25,7 @@ from Testing.slicer.simulator_double import wait_until
 RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main"]
 
 
-class CancelledError(Exception):
+class CanceledError(Exception):
     """Nobody wants the scenario any more."""
 
 
@@ -82,10 +82,10 @@ def test_canceling_also_ends_the_process_that_extracts_the_head(ct, temporary, m
             started.append(self)
 
     def progress(_step, _share):
-        raise CancelledError
+        raise CanceledError
 
     monkeypatch.setattr(subprocess, "Popen", Recorded)
-    with pytest.raises(CancelledError), head_process(ct, []) as process:
+    with pytest.raises(CanceledError), head_process(ct, []) as process:
         process.head(progress, lambda _warning: None)
     assert [process.returncode in (None, 0) for process in started] == [False]
     assert not list(temporary.iterdir())
@@ -140,12 +140,12 @@ def test_a_canceled_build_leaves_nothing(tmp_path):
     def progress(_step, share):
         # At the planner's second step, or at the next that is seen.
         if share > HEAD_SHARE:
-            raise CancelledError
+            raise CanceledError
 
     sphere = sphere_mesh(3)
     vertices = np.maximum(sphere.vertices, [-np.inf, -np.inf, -70.0])
     draft = HeadDraft(HeadMesh(vertices, sphere.triangles), "made up")
-    with pytest.raises(CancelledError):
+    with pytest.raises(CanceledError):
         planScenario(
             lambda _tell: (draft, []), tmp_path / "made", (), RASTRAINER, progress=progress
         )

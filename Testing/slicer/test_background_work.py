@@ -177,7 +177,7 @@ def _usual_switches():
 
 
 @pytest.mark.usefixtures("_usual_switches")
-def test_a_worker_soon_releases_the_lock_and_afterwards_everything_is_restored():
+def test_a_worker_soon_releases_the_lock_and_afterward_everything_is_restored():
     may_end = threading.Event()
     job = Job(may_end.wait)
     assert sys.getswitchinterval() < USUAL_SWITCH_INTERVAL_S / 10

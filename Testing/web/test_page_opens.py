@@ -216,7 +216,7 @@ def try_code(page, code):
 
 
 def test_an_expired_code_is_reported_as_such_and_so_is_a_new_one(place, browser):
-    # The place has another code afterwards: this test is the last.
+    # The place has another code afterward: this test is the last.
     page = new_page(browser, locale="de-DE")
     draw_nothing(page)
     wrong = "000000" if place.simulator.code != "000000" else "000001"

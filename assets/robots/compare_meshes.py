@@ -2,7 +2,7 @@
 
     python assets/robots/compare_meshes.py --official FOLDER [--samples N]
 
-FOLDER holds link_0.stl … link_7.stl, in metres, all in the base frame at q = 0 (or a folder
+FOLDER holds link_0.stl … link_7.stl, in meters, all in the base frame at q = 0 (or a folder
 `collision` with them). Points are drawn evenly over each robot's surface at q = 0 and kept where
 they can be seen from outside: not on the ground, and with at least one in twenty of the directions
 over the point open. From each of these the distance to the nearest point of the other robot is
@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def our_robot() -> list[trimesh.Trimesh]:
-    """Return links 0 to 7 as they look, at q = 0, in the base frame, in metres."""
+    """Return links 0 to 7 as they look, at q = 0, in the base frame, in meters."""
     parts, origins = visual_parts(), link_origins()
     return [
         trimesh.util.concatenate(list(parts[name].values())).apply_translation(origins[name])
@@ -52,7 +52,7 @@ def our_robot() -> list[trimesh.Trimesh]:
 
 
 def official_robot(folder: Path) -> list[trimesh.Trimesh]:
-    """Return the official links 0 to 7 at q = 0, in the base frame, in metres."""
+    """Return the official links 0 to 7 at q = 0, in the base frame, in meters."""
     if (folder / "collision").is_dir():
         folder = folder / "collision"
     return [trimesh.load_mesh(folder / f"link_{number}.stl") for number in range(8)]

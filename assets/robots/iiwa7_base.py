@@ -19,7 +19,7 @@ def base(segments: int) -> dict[str, trimesh.Trimesh]:
     lugs = [moved(_lug_pocket(), turn_z_deg=angle) for angle in LUG_ANGLES]
     bolts = [moved(_bolt(), turn_z_deg=angle) for angle in LUG_ANGLES]
     return {
-        "grey": difference(body, *lugs, _panel_recess()),
+        "gray": difference(body, *lugs, _panel_recess()),
         "dark": trimesh.util.concatenate([*bolts, _panel()]),
         "metal": _sockets(),
     }
@@ -32,7 +32,7 @@ def plain_base(segments: int) -> trimesh.Trimesh:
 
 
 def _connector_box() -> trimesh.Trimesh:
-    """Return the box behind the column, widening downwards, with an arched top."""
+    """Return the box behind the column, widening downward, with an arched top."""
     half = ((62.5, 3.0), (44.5, 143.0), (40.0, 148.0), (26.0, 150.6), (0.0, 152.0))
     outline = np.array([*half, *((-y, z) for y, z in half)])
     back = np.column_stack([np.full(len(outline), PANEL_X), outline])

@@ -1,6 +1,6 @@
 """Published kinematic and physical data of the KUKA LBR iiwa 7 R800, and of our pointer tool.
 
-Metres, kilograms, degrees (turned into radians by the URDF writer), at the joint angles zero.
+Meters, kilograms, degrees (turned into radians by the URDF writer), at the joint angles zero.
 """
 
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ LINK_NAMES = (*(f"{LINK_PREFIX}{number}" for number in range(len(LINK_MASSES))),
 MASSES = dict(zip(LINK_NAMES, (*LINK_MASSES, TOOL_MASS), strict=True))
 
 COLORS: dict[str, Color] = {
-    "grey": (0.75, 0.76, 0.77, 1.0),
+    "gray": (0.75, 0.76, 0.77, 1.0),
     "orange": (0.95, 0.40, 0.05, 1.0),
     "dark": (0.10, 0.10, 0.11, 1.0),
     "metal": (0.62, 0.63, 0.65, 1.0),
@@ -53,7 +53,7 @@ COLORS: dict[str, Color] = {
 
 
 def link_origins() -> dict[str, Vector]:
-    """Return each link's origin in the base frame with all joint angles zero, in metres."""
+    """Return each link's origin in the base frame with all joint angles zero, in meters."""
     origins = {LINK_NAMES[0]: (0.0, 0.0, 0.0)}
     position = (0.0, 0.0, 0.0)
     for link, joint in zip(LINK_NAMES[1:8], JOINTS, strict=True):

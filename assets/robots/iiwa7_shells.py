@@ -108,7 +108,7 @@ def _ringed(shell: trimesh.Trimesh, face: Station) -> Parts:
     outline = ((radius - 0.8, y - RING_WIDTH), (radius, y - RING_WIDTH + 1.0), (radius, y - 1.2))
     ring = revolve((*outline, (radius - 0.9, y - 0.2)), RING_SEGMENTS)
     upright = trimesh.transformations.rotation_matrix(-np.pi / 2, (1, 0, 0))
-    return {"grey": shell, "orange": ring.apply_transform(upright)}
+    return {"gray": shell, "orange": ring.apply_transform(upright)}
 
 
 def _covered(
@@ -117,8 +117,8 @@ def _covered(
     """Set an orange cover off the shell beyond the plane through `line` and the x direction."""
     (y0, z0), (y1, z1) = line
     normal = np.array([0.0, z1 - z0, y0 - y1]) / np.hypot(z1 - z0, y0 - y1)
-    grey, seam, cover = _split(shell, normal, float(normal @ (0.0, y0, z0)))
-    return {"grey": grey, "orange": cover, "dark": seam}
+    gray, seam, cover = _split(shell, normal, float(normal @ (0.0, y0, z0)))
+    return {"gray": gray, "orange": cover, "dark": seam}
 
 
 def _split(

@@ -23,7 +23,7 @@ HEADER = "<!-- KUKA LBR iiwa 7 R800 with a pointer tool. Written by make_iiwa7.p
 class LinkBody:
     """What a link is made of: mesh files (relative to the URDF), mass and its distribution.
 
-    `visuals` pairs a mesh file with a color's name. `center_of_mass` is in metres in the link's
+    `visuals` pairs a mesh file with a color's name. `center_of_mass` is in meters in the link's
     frame; `inertia` is (xx, xy, xz, yy, yz, zz) in kg·m² about the center of mass.
     """
 

@@ -58,29 +58,29 @@ def write_robot(folder: Path) -> None:
 
 
 def visual_parts() -> dict[str, dict[str, trimesh.Trimesh]]:
-    """Return the colored parts of each link, in its frame, in metres."""
+    """Return the colored parts of each link, in its frame, in meters."""
     parts = {f"{LINK_PREFIX}0": base(ROUND_SEGMENTS)}
     for number, link_parts in shells(RINGS, SEGMENTS).items():
         parts[f"{LINK_PREFIX}{number}"] = link_parts
     parts[TOOL_LINK] = tool(TOOL_SEGMENTS)
     parts[TOOL_TIP_LINK] = {"blue": tip(TOOL_SEGMENTS)}
     return {
-        link: {color: in_metres(part) for color, part in link_parts.items()}
+        link: {color: in_meters(part) for color, part in link_parts.items()}
         for link, link_parts in parts.items()
     }
 
 
 def plain_parts(rings: int, segments: int) -> dict[str, trimesh.Trimesh]:
-    """Return each link in one piece, in its frame, in metres: for collisions and inertia."""
+    """Return each link in one piece, in its frame, in meters: for collisions and inertia."""
     parts = {f"{LINK_PREFIX}0": plain_base(segments)}
     for number, part in plain_shells(rings, segments).items():
         parts[f"{LINK_PREFIX}{number}"] = part
     parts[TOOL_LINK] = plain_tool(segments)
-    return {link: in_metres(part) for link, part in parts.items()}
+    return {link: in_meters(part) for link, part in parts.items()}
 
 
-def in_metres(part: trimesh.Trimesh) -> trimesh.Trimesh:
-    """Round a part to whole micrometres, in metres, its triangles in a fixed order.
+def in_meters(part: trimesh.Trimesh) -> trimesh.Trimesh:
+    """Round a part to whole micrometers, in meters, its triangles in a fixed order.
 
     Rounding and sorting take out what could differ from machine to machine: the last bits of
     sines, and the order in which cuts and hulls return their triangles.

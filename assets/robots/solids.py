@@ -155,7 +155,7 @@ def _outline(row: np.ndarray, segments: int, scale: float) -> np.ndarray:
 
 
 def _chamfered(outline: np.ndarray) -> np.ndarray:
-    """Pull an end's outline inwards by the chamfer, within its plane."""
+    """Pull an end's outline inward by the chamfer, within its plane."""
     spokes = outline - outline.mean(axis=0)
     length = np.linalg.norm(spokes, axis=1, keepdims=True)
     return outline - spokes * (CHAMFER / length)

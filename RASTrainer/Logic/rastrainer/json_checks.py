@@ -101,7 +101,7 @@ def _finite_float(digits: str) -> float:
 def _is_finite(value: Any) -> bool:
     """Return whether decoded JSON has no infinity, which digits like 1e999 become.
 
-    Checking afterwards is much faster than a callback for each number.
+    Checking afterward is much faster than a callback for each number.
     """
     values = [value]
     # The list grows during iteration.

@@ -62,7 +62,7 @@ def copy_study(source: Study, target: Study) -> dict[str, int]:
     The numbers of rows stay, and with them the order of storing; every float keeps each bit.
 
     Raises:
-        InputError: the target holds something, or has other values afterwards; it stays empty.
+        InputError: the target holds something, or has other values afterward; it stays empty.
         StudyUnreachableError: a server cannot be reached.
     """
     counts = {}

@@ -85,7 +85,7 @@ class DistanceBounds:
     """
 
     def __init__(self, count: int, closing: float = 1.0) -> None:
-        """Track `count` distances, each of which shrinks at most by `closing` m per metre."""
+        """Track `count` distances, each of which shrinks at most by `closing` m per meter."""
         self._count = count
         self._closing = closing
         self.forget()
@@ -94,48 +94,48 @@ class DistanceBounds:
         """Make all due, as after something else than the arm has moved."""
         self._due = [(-1.0, row) for row in range(self._count)]
 
-    def due(self, travelled: float, rough: Callable[[], np.ndarray] | None = None) -> list[int]:
+    def due(self, traveled: float, rough: Callable[[], np.ndarray] | None = None) -> list[int]:
         """Return the rows that may be below FAR, rising; each must then be `put_off`.
 
         Args:
-            travelled: total motion of the arm, m.
+            traveled: total motion of the arm, m.
             rough: gives a lower bound of each distance, (count,) float, m.
         """
         due, rows = self._due, []
-        while due and due[0][0] <= travelled:
+        while due and due[0][0] <= traveled:
             rows.append(heappop(due)[1])
             if rough is not None and len(rows) > _FEW:
-                rows = self._roughly_near(rows, rough(), travelled)
+                rows = self._roughly_near(rows, rough(), traveled)
                 break
         rows.sort()
         return rows
 
     def nearest(
-        self, travelled: float, distance: Callable[[int], float], rough: Callable[[], np.ndarray]
+        self, traveled: float, distance: Callable[[int], float], rough: Callable[[], np.ndarray]
     ) -> tuple[float, int | None]:
         """Return the least distance, m, and its row; FAR and None where all are farther.
 
         `distance` gives that of a row, m; for the others see `due`.
         """
         best, nearest = FAR, None
-        for row in self.due(travelled, rough):
+        for row in self.due(traveled, rough):
             found = distance(row)
-            self.put_off(row, found, travelled)
+            self.put_off(row, found, traveled)
             if found < best:
                 best, nearest = found, row
         return best, nearest
 
-    def put_off(self, row: int, distance: float, travelled: float) -> None:
+    def put_off(self, row: int, distance: float, traveled: float) -> None:
         """Make a row due again when it may be below FAR; it is now at least `distance`, m."""
-        until = travelled + (distance - FAR - _ROUNDING) / self._closing
+        until = traveled + (distance - FAR - _ROUNDING) / self._closing
         heappush(self._due, (until, row))
 
-    def _roughly_near(self, rows: list[int], bounds: np.ndarray, travelled: float) -> list[int]:
+    def _roughly_near(self, rows: list[int], bounds: np.ndarray, traveled: float) -> list[int]:
         """Put off those of `rows` and of the other due ones that are far; return the rest."""
-        rows = rows + [row for moment, row in self._due if moment <= travelled]
-        until = (travelled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
+        rows = rows + [row for moment, row in self._due if moment <= traveled]
+        until = (traveled + (bounds - FAR - _ROUNDING) / self._closing).tolist()
         far = (bounds >= _ROUGHLY_FAR).tolist()
-        waiting = [entry for entry in self._due if entry[0] > travelled]
+        waiting = [entry for entry in self._due if entry[0] > traveled]
         self._due = [*waiting, *((until[row], row) for row in rows if far[row])]
         heapify(self._due)
         return [row for row in rows if not far[row]]
@@ -201,18 +201,18 @@ class HeadClearance:
         found, _ = self._nearest(posed, rows, self._bounds(posed, rows), limit)
         return None if found is None else self._in_world(found)
 
-    def nearest_to_links(self, posed: PosedArm, travelled: float) -> tuple[float, str]:
+    def nearest_to_links(self, posed: PosedArm, traveled: float) -> tuple[float, str]:
         """Return the clearance of the links, m, and the nearest of them.
 
-        The clearance is at most FAR, and then no link is named. `travelled` is how far the arm has
+        The clearance is at most FAR, and then no link is named. `traveled` is how far the arm has
         moved in all, m.
         """
-        rows = self._distance_bounds.due(travelled)
+        rows = self._distance_bounds.due(traveled)
         if not rows:
             return FAR, ""
         found, nearest = self._nearest(posed, rows, self._bounds(posed, rows), FAR)
         for row, bound in zip(rows, self._bounds(posed, rows), strict=True):
-            self._distance_bounds.put_off(row, bound, travelled)
+            self._distance_bounds.put_off(row, bound, traveled)
         return (FAR, "") if found is None else (found.distance_m, self._arm.names[nearest])
 
     def are_links_off(self, posed: PosedArm, clearance: float) -> bool:

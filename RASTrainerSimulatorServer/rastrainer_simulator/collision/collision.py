@@ -65,14 +65,14 @@ class TableClearance:
         self._stand = ((x, y, self._table), (x, y, top)) if upright else None
         self._distance_bounds.forget()
 
-    def nearest(self, posed: PosedArm, travelled: float) -> tuple[float, str]:
+    def nearest(self, posed: PosedArm, traveled: float) -> tuple[float, str]:
         """Return the least signed distance to table and stand, m, and the link.
 
-        The distance is at most FAR, and then no link is named. `travelled` is how far the arm has
+        The distance is at most FAR, and then no link is named. `traveled` is how far the arm has
         moved in all, m.
         """
         best, row = self._distance_bounds.nearest(
-            travelled, partial(self._distance, posed), partial(self._bounds, posed)
+            traveled, partial(self._distance, posed), partial(self._bounds, posed)
         )
         name = "" if row is None else self._arm.names[row]
         # The tip is no part of a capsule; it is the tool's, which is last.
@@ -116,14 +116,14 @@ class SelfClearance:
         # Both of a pair may move toward each other.
         self._distance_bounds = DistanceBounds(len(self._pairs), closing=2.0)
 
-    def nearest(self, posed: PosedArm, travelled: float) -> tuple[float, tuple[str, ...]]:
+    def nearest(self, posed: PosedArm, traveled: float) -> tuple[float, tuple[str, ...]]:
         """Return the least signed distance of two links, m, and the two.
 
-        The distance is at most FAR, and then no links are named. `travelled` is how far the arm has
+        The distance is at most FAR, and then no links are named. `traveled` is how far the arm has
         moved in all, m.
         """
         best, pair = self._distance_bounds.nearest(
-            travelled, partial(self._distance, posed), partial(self._bounds, posed)
+            traveled, partial(self._distance, posed), partial(self._bounds, posed)
         )
         return best, () if pair is None else self._names[pair]
 
@@ -169,7 +169,7 @@ class Collision:
         self.table_height = surroundings.table_height
         self._table = TableClearance(self._arm, surroundings)
         self._ends = np.zeros((len(self._arm.capsules), 2, 3))
-        self._travelled = 0.0
+        self._traveled = 0.0
         self.set_head_pose(np.eye(4))
 
     def set_head_pose(self, head_to_world: np.ndarray) -> None:
@@ -188,14 +188,14 @@ class Collision:
         them, as `Kinematics.links` gives them.
         """
         posed = self._arm.pose(link_to_world)
-        travelled = self._travel(posed)
+        traveled = self._travel(posed)
         tip = self._head.nearest_to_point(posed.tip)
         return Clearance(
             tip,
             self._head.nearest_to_shaft(posed, max(tip.distance_m, SHAFT_NEAR)),
-            *self._head.nearest_to_links(posed, travelled),
-            *self._self.nearest(posed, travelled),
-            *self._table.nearest(posed, travelled),
+            *self._head.nearest_to_links(posed, traveled),
+            *self._self.nearest(posed, traveled),
+            *self._table.nearest(posed, traveled),
         )
 
     def is_clear(self, link_to_world: Mapping[str, np.ndarray], clearance: float) -> bool:
@@ -206,20 +206,20 @@ class Collision:
         one that is too near.
         """
         posed = self._arm.pose(link_to_world)
-        travelled = self._travel(posed)
+        traveled = self._travel(posed)
         return (
-            self._table.nearest(posed, travelled)[0] >= clearance
+            self._table.nearest(posed, traveled)[0] >= clearance
             and self._head.nearest_to_shaft(posed, 0.0) is None
             and self._head.are_links_off(posed, clearance)
-            and self._self.nearest(posed, travelled)[0] >= clearance
+            and self._self.nearest(posed, traveled)[0] >= clearance
         )
 
     def _travel(self, posed: PosedArm) -> float:
         """Return how far the arm has moved in all, m: in each tick its fastest point counts."""
         moved = posed.ends - self._ends
         self._ends = posed.ends
-        self._travelled += math.sqrt(np.einsum("ijk,ijk->ij", moved, moved).max())
-        return self._travelled
+        self._traveled += math.sqrt(np.einsum("ijk,ijk->ij", moved, moved).max())
+        return self._traveled
 
     def line_of_sight(self, link_to_world: Mapping[str, np.ndarray]) -> LineOfSight:
         """Return what determines which points are seen while the arm has such a posture."""

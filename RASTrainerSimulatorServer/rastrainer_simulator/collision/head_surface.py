@@ -202,7 +202,7 @@ class HeadSurface:
         vertices = self._surface.vertices
         base = vertices[vertices[:, 2] <= vertices[:, 2].min() + _BASE_THICKNESS]
         self.base = (base.min(axis=0) + base.max(axis=0)) / 2.0
-        """(3,) float: the middle of the lowest millimetre, on which the head is."""
+        """(3,) float: the middle of the lowest millimeter, on which the head is."""
         self.middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
         """(3,) float: the middle of the sphere around the whole head."""
         self.radius = float(np.linalg.norm(vertices - self.middle, axis=1).max())

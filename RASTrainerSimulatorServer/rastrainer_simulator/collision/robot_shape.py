@@ -257,7 +257,7 @@ def capsules_along(points: np.ndarray, start: float, count: int = 5) -> tuple[Ca
 
     The tool's tip is at the origin. The tool is cut into `count` pieces such that they look
     slenderest from there, so that a taper stays a taper. `points` are
-    `surface_points` spaced by at most half a millimetre.
+    `surface_points` spaced by at most half a millimeter.
 
     Raises:
         InputError: no point is that far up the axis.
@@ -272,7 +272,7 @@ def capsules_along(points: np.ndarray, start: float, count: int = 5) -> tuple[Ca
 
 
 def _profile(points: np.ndarray, start: float) -> np.ndarray:
-    """Return the radius of each slice of half a millimetre, from z = start on."""
+    """Return the radius of each slice of half a millimeter, from z = start on."""
     slices = np.floor((points[:, 2] - start) / _SLICE).astype(int)
     kept = slices >= 0
     radii = np.zeros(slices.max() + 1)

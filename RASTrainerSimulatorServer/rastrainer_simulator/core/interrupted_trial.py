@@ -61,13 +61,13 @@ class RecordedFeed:
     def before(self, effect: Mapping[str, Any]) -> Feed:
         """Return the feed at which a command had an effect."""
         ahead = _ahead(effect) or self._ahead
-        drilled = metres(effect.get("drilledMm", 0.0))
-        return Feed(metres(effect.get("feedMm", 0.0)), drilled, ahead)
+        drilled = meters(effect.get("drilledMm", 0.0))
+        return Feed(meters(effect.get("feedMm", 0.0)), drilled, ahead)
 
     def take(self, entry: Mapping[str, Any]) -> None:
         """Take the next entry."""
         if entry["kind"] == "sample" and "feedMm" in entry:
-            depth = metres(entry["feedMm"])
+            depth = meters(entry["feedMm"])
             deepest = depth if self._stage is Phase.DRILLING else 0.0
             drilled = max(self.feed.drilled, deepest)
             self.feed = replace(self.feed, depth=depth, drilled=drilled)
@@ -90,10 +90,10 @@ def _ahead(effect: Mapping[str, Any]) -> HeadAhead | None:
         return None
     found = effect["ahead"]
     names = ("skinMm", "outerMm", "innerMm")
-    return HeadAhead(*(None if found[name] is None else metres(found[name]) for name in names))
+    return HeadAhead(*(None if found[name] is None else meters(found[name]) for name in names))
 
 
-def metres(value_mm: float) -> float:
+def meters(value_mm: float) -> float:
     """Return the number that times 1000 is the given one to the last bit."""
     near = value_mm / MM_PER_M
     candidates = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
@@ -231,7 +231,7 @@ def _steps(
                 yield OperatorCommand(INTERRUPTED), TouchMoment(entry["since"], ZERO, 0.0)
             if entry["kind"] == "trace":
                 # It was left at the end of its tick, unlike the effect of a command.
-                place = vector(map(metres, entry["positionMm"]))
+                place = vector(map(meters, entry["positionMm"]))
                 yield OperatorCommand(TRACED), TouchMoment(entry["simTime"], place, 0.0)
             if entry["kind"] != "command" or entry["name"] not in _EFFECTS:
                 continue
@@ -241,7 +241,7 @@ def _steps(
                 # Commands are carried out at the state reached, one tick before their line.
                 moment = TouchMoment(
                     sim_time=entry["simTime"] - tick_s,
-                    tip=vector(map(metres, effect.get("positionMm", ZERO))),
+                    tip=vector(map(meters, effect.get("positionMm", ZERO))),
                     # Older journals lack it: then every height counted.
                     tip_clearance=float(effect.get("clearanceMm", 0.0)) / MM_PER_M,
                     direction=vector(effect.get("direction", ZERO)),

@@ -68,7 +68,7 @@ class ServerConnection:
             self._outgoing.put_nowait({"type": message, **members})
 
     async def run(self) -> None:
-        """Stay connected until cancelled."""
+        """Stay connected until canceled."""
         headers = {"Authorization": f"Bearer {self._key}"}
         async with aiohttp.ClientSession(headers=headers) as session:
             while True:

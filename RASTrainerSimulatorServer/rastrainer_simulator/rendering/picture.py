@@ -46,7 +46,7 @@ from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 
 def _look_through(camera: Camera, renderer: vtkRenderer) -> None:
-    """Set a renderer's camera; the scenario's is in mm, what is rendered in metres."""
+    """Set a renderer's camera; the scenario's is in mm, what is rendered in meters."""
     view = renderer.GetActiveCamera()
     view.SetPosition(*(camera.position / MM_PER_M))
     view.SetFocalPoint(*(camera.focal_point / MM_PER_M))

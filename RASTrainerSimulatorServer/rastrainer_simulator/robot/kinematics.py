@@ -17,7 +17,7 @@ VARIABLE = "RASTRAINER_KINEMATICS"
 
 
 class Kinematics(Protocol):
-    """Forward kinematics of a `RobotModel`; q is seven angles in rad, World in metres.
+    """Forward kinematics of a `RobotModel`; q is seven angles in rad, World in meters.
 
     It works in its own memory: each thread makes its own.
     """

@@ -1,4 +1,4 @@
-"""Open the mesh files of a robot's links: checked, in metres, each in its link's frame.
+"""Open the mesh files of a robot's links: checked, in meters, each in its link's frame.
 
 A file that could unfold into far more than it holds is refused before it is opened.
 """
@@ -30,7 +30,7 @@ FARTHEST = 10.0
 def load_meshes(model: RobotModel, kind: str = "visual") -> dict[str, list[ColoredMesh]]:
     """Return the meshes of every link that has some, each with its color (RGBA, 0…1).
 
-    `kind` is "visual" or "collision". Vertices are in metres in the link's frame. Meshes that
+    `kind` is "visual" or "collision". Vertices are in meters in the link's frame. Meshes that
     replace the URDF's own may also lie where they are on the robot at q = 0, in the base frame, as
     some published sets do: they are recognized by where they lie, and moved.
 
@@ -107,7 +107,7 @@ def _lie_in_base_frame(model: RobotModel, meshes: Iterable[tuple[str, trimesh.Tr
 
 
 def _outstretched(model: RobotModel) -> dict[str, np.ndarray]:
-    """Return each link's pose (4, 4) in the base frame at q = 0, in metres."""
+    """Return each link's pose (4, 4) in the base frame at q = 0, in meters."""
     bases = [np.eye(4)]
     for joint in model.joints:
         bases.append(bases[-1] @ joint.origin)

@@ -42,7 +42,7 @@ class RobotLink:
 
 @dataclass(frozen=True)
 class RobotModel:
-    """A 7R S-R-S arm. World is the frame of the URDF's root link; metres and radians."""
+    """A 7R S-R-S arm. World is the frame of the URDF's root link; meters and radians."""
 
     name: str
     joints: tuple[Joint, ...]
@@ -240,7 +240,7 @@ KINDS = ("visual", "collision")
 _SUFFIXES = (".glb", ".dae", ".obj", ".ply", ".stl")
 Color = tuple[float, float, float, float]
 """RGBA, 0…1."""
-_GREY = (0.8, 0.8, 0.8, 1.0)
+_GRAY = (0.8, 0.8, 0.8, 1.0)
 
 
 @dataclass(frozen=True)
@@ -277,7 +277,7 @@ def _mesh_parts(
             other = _replacement(link.name, kind, mesh_folder) if mesh_folder else None
             if other:
                 replaced = True
-                parts.append(MeshPart(link.name, kind, other, np.eye(4), (1.0,) * 3, _GREY, True))
+                parts.append(MeshPart(link.name, kind, other, np.eye(4), (1.0,) * 3, _GRAY, True))
             else:
                 parts.extend(_own_parts(link, kind, urdf_folder, colors))
     if mesh_folder and not replaced:
@@ -340,8 +340,8 @@ def mesh_inside(folder: Path, path: Path, link: str) -> Path:
 
 def _color(material: yourdfpy.Material | None, colors: dict[str, Color]) -> Color:
     if material is None:
-        return _GREY
-    return _rgba(material) if material.color is not None else colors.get(material.name, _GREY)
+        return _GRAY
+    return _rgba(material) if material.color is not None else colors.get(material.name, _GRAY)
 
 
 def _rgba(material: yourdfpy.Material) -> Color:

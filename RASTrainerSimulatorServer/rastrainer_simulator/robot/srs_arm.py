@@ -43,7 +43,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class SrsGeometry:
-    """The canonical chain of an S-R-S arm; metres and radians."""
+    """The canonical chain of an S-R-S arm; meters and radians."""
 
     base: np.ndarray  # (3, 3) float: rotates World into the canonical base frame
     shoulder: np.ndarray  # (3,) float: in World

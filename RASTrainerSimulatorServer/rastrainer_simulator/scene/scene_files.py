@@ -191,7 +191,7 @@ class SceneFiles:
         try:
             _, errors = await process.communicate(json.dumps(wanted).encode())
         finally:
-            # The waiting task may have been cancelled.
+            # The waiting task may have been canceled.
             if process.returncode is None:
                 process.kill()
                 await process.wait()

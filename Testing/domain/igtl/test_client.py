@@ -72,13 +72,13 @@ def reply_to(message: Message, body: str = "{}", metadata=SUCCESS) -> Message:
 def test_answers_are_matched_by_number_in_any_order(peer):
     held, has_first = [], threading.Event()
 
-    def answer_backwards(server, message):
+    def answer_backward(server, message):
         held.append(message)
         has_first.set()
         if len(held) == 2:
             server.send(*(reply_to(m, f'{{"to": "{m.content.name}"}}') for m in reversed(held)))
 
-    with Client(port=peer(answer_backwards).port) as client:
+    with Client(port=peer(answer_backward).port) as client:
         first = []
         thread = threading.Thread(target=lambda: first.append(client.send_command("A")))
         thread.start()

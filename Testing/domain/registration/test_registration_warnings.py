@@ -83,9 +83,9 @@ def test_two_swapped_labels_are_reported(touched_head, seeds):
 
 def test_a_reversed_or_shifted_list_is_reported(touched_head):
     moving, fixed, _ = touched_head(1)
-    backwards = register(moving[::-1], fixed).warnings
-    assert [w.code for w in backwards] == ["order"]
-    assert "reverse order" in backwards[0].message
+    backward = register(moving[::-1], fixed).warnings
+    assert [w.code for w in backward] == ["order"]
+    assert "reverse order" in backward[0].message
     shifted = register(np.roll(moving, 2, axis=0), fixed).warnings
     assert [w.code for w in shifted] == ["order"]
     assert "the one at 3 belongs to the fixed point 1" in shifted[0].message

@@ -59,7 +59,7 @@ def test_the_fiducials_of_a_task_cannot_be_changed(task_file):
         pytest.param(LABELS[::-1], POINTS, "in the order to touch", id="wrong order"),
         pytest.param((), POINTS, "15 points labeled", id="no labels"),
         pytest.param(LABELS, np.vstack([POINTS[:14], POINTS[:1]]), "same place", id="one twice"),
-        pytest.param(LABELS, POINTS * 1e4, "not within ±2000 mm", id="in metres? far away"),
+        pytest.param(LABELS, POINTS * 1e4, "not within ±2000 mm", id="in meters? far away"),
     ],
 )
 def test_an_invalid_task_file_is_refused_with_a_message(tmp_path, labels, points, sentence):

@@ -261,7 +261,7 @@ def test_a_window_waits_only_once_for_a_lock(locked):
     assert sum(lock_wait.allowed) == 0.1
 
 
-def test_an_open_study_reports_a_lock_and_is_usable_afterwards(tmp_path):
+def test_an_open_study_reports_a_lock_and_is_usable_afterward(tmp_path):
     path, lock_wait = tmp_path / "study.db", CountedLockWait()
     with Study.open(path, lock_wait) as study:
         other = sqlite3.connect(path, isolation_level=None)

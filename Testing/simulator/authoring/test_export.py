@@ -162,7 +162,7 @@ def middle_of_face(head):
 
 
 @pytest.mark.soak
-def test_skin_extracted_afterwards_from_the_images_shows_nothing_of_the_face(colin27):
+def test_skin_extracted_afterward_from_the_images_shows_nothing_of_the_face(colin27):
     head, before, after = colin27
     face = middle_of_face(head)
     assert np.median(np.abs(distances_to_skin_in(before, face))) <= 1.0
@@ -170,7 +170,7 @@ def test_skin_extracted_afterwards_from_the_images_shows_nothing_of_the_face(col
 
 
 @pytest.mark.soak
-def test_skin_extracted_afterwards_from_the_images_of_a_ball_shows_nothing_of_its_face():
+def test_skin_extracted_afterward_from_the_images_of_a_ball_shows_nothing_of_its_face():
     head = ball_with_a_face()
     after = without_face_in(images_of(head, np.eye(3) * 2.0), head)
     assert distances_to_skin_in(after, middle_of_face(head)).min() > 4.0

@@ -53,7 +53,7 @@ def test_nothing_but_the_face_changes(face, faceless):
     assert faceless.vertices[:, 2].min() == BASE
 
 
-def test_the_face_is_smooth_afterwards(face, faceless):
+def test_the_face_is_smooth_afterward(face, faceless):
     is_face = face_vertices(face)
     assert is_face.sum() > 500
     distance = np.linalg.norm(faceless.vertices[is_face], axis=1)

@@ -1,4 +1,4 @@
-"""Closed surfaces whose shape is known: heads, plates and grooves to bump into; metres."""
+"""Closed surfaces whose shape is known: heads, plates and grooves to bump into; meters."""
 
 import numpy as np
 import trimesh

@@ -11,15 +11,15 @@ COUNT, TICKS = 40, 3000
 def walk(rough):
     """A point among others: in each tick its distances, and which of them were looked at."""
     random = np.random.default_rng(26)
-    others, point, travelled = random.uniform(-0.3, 0.3, (COUNT, 3)), np.zeros(3), 0.0
+    others, point, traveled = random.uniform(-0.3, 0.3, (COUNT, 3)), np.zeros(3), 0.0
     bounds = DistanceBounds(COUNT)
     for _ in range(TICKS):
         step = random.normal(size=3) * 0.002 - 0.0002 * point
-        point, travelled = point + step, travelled + np.linalg.norm(step)
+        point, traveled = point + step, traveled + np.linalg.norm(step)
         distances = np.linalg.norm(others - point, axis=1)
-        rows = bounds.due(travelled, (lambda found=distances: found - 0.01) if rough else None)
+        rows = bounds.due(traveled, (lambda found=distances: found - 0.01) if rough else None)
         for row in rows:
-            bounds.put_off(row, distances[row], travelled)
+            bounds.put_off(row, distances[row], traveled)
         yield distances, rows
 
 

@@ -12,7 +12,7 @@ from Testing.simulator.collision.brute_force import (
 )
 from Testing.simulator.collision.heads_and_arms import ball, box, bumpy_head, together
 
-MICROMETRE = 1e-6
+MICROMETER = 1e-6
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def around(vertices, count, seed):
 
 
 def near(vertices, triangles, count, seed):
-    """Points at faces, edges and vertices, from a nanometre to a millimetre away."""
+    """Points at faces, edges and vertices, from a nanometer to a millimeter away."""
     random = np.random.default_rng(seed)
     shares = random.dirichlet((1.0, 1.0, 1.0), count)
     shares[: count // 3] = np.eye(3)[random.integers(3, size=count // 3)]
@@ -67,7 +67,7 @@ def test_the_sign_is_right_inside_outside_and_at_every_feature(bumpy):
     points = np.concatenate([around(bumpy[0], 3000, 4), near(*bumpy, 6000, 5)])
     truth = np.array(list(map(vtk_distance(*bumpy), points)))
     np.testing.assert_allclose(
-        distances(HeadSurface(*bumpy), points), truth, rtol=0, atol=MICROMETRE
+        distances(HeadSurface(*bumpy), points), truth, rtol=0, atol=MICROMETER
     )
 
 
@@ -77,7 +77,7 @@ def test_the_sign_is_right_on_the_default_head(scenario):
     points = np.concatenate([around(head[0], 1000, 6), near(*head, 3000, 7)])
     truth = np.array(list(map(vtk_distance(*head), points)))
     np.testing.assert_allclose(
-        distances(HeadSurface(*head), points), truth, rtol=0, atol=MICROMETRE
+        distances(HeadSurface(*head), points), truth, rtol=0, atol=MICROMETER
     )
 
 

@@ -64,7 +64,7 @@ def test_every_link_with_a_collision_mesh_is_covered():
     assert SHAPE.tool.name == "iiwa_link_tool"
 
 
-def test_the_tool_is_covered_except_for_its_last_three_millimetres():
+def test_the_tool_is_covered_except_for_its_last_three_millimeters():
     ((mesh, _),) = MESHES[SHAPE.tool.name]
     points = sampled(mesh, 20000) - [0.0, 0.0, 0.2]
     shaft = points[points[:, 2] < -SHAFT_START]
@@ -153,7 +153,7 @@ def test_the_flange_is_the_tool_if_it_carries_none(tmp_path):
     assert len(shape.links) == 7
 
 
-def test_a_tool_one_millimetre_long_is_covered_too():
+def test_a_tool_one_millimeter_long_is_covered_too():
     stub = trimesh.creation.cylinder(0.004, 0.001)
     stub.apply_translation([0.0, 0.0, 0.0028])
     points = surface_points(stub.vertices, stub.faces, 0.0005)
@@ -168,7 +168,7 @@ def test_a_tool_that_lies_in_front_of_its_tip_is_refused(shift):
         capsules_along(points, 0.003)
 
 
-def test_a_mesh_with_kilometres_of_edges_is_refused():
+def test_a_mesh_with_kilometers_of_edges_is_refused():
     vertices = np.random.default_rng(1).uniform(-10.0, 10.0, (3000, 3))
     with pytest.raises(InputError, match="should be a coarse hull"):
         surface_points(vertices, np.arange(3000).reshape(-1, 3), 0.0005)

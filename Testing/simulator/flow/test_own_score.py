@@ -20,7 +20,7 @@ from rastrainer_simulator.texts.german import GERMAN
 from rastrainer_simulator.trial_state import Tool
 
 OWN = "This score is the simulator's own and is not stored in a study."
-A_MICROMETRE = 1e-3
+A_MICROMETER = 1e-3
 
 
 @pytest.fixture
@@ -73,8 +73,8 @@ def test_without_slicer_the_trainee_gets_the_simulators_own_score_until_slicers_
     errors_are_drawn_as_revealed(trainee, submitted)
     (own,) = entries_of(outside, trial, "scored")
     assert own["details"]["scoreVersion"] == SCORE_VERSION
-    # Who has seen the truth cannot register again, not by a micrometre; the same is answered.
-    moved = [*submitted["matrix"][:3], submitted["matrix"][3] + A_MICROMETRE]
+    # Who has seen the truth cannot register again, not by a micrometer; the same is answered.
+    moved = [*submitted["matrix"][:3], submitted["matrix"][3] + A_MICROMETER]
     other = {**submitted, "matrix": [*moved, *submitted["matrix"][4:]]}
     refused = trainee.submit("SubmitRegistration", **other)
     assert (refused.ok, "final" in refused.message) == (False, True)

@@ -36,7 +36,7 @@ from Testing.without_tutorial import WITHOUT_TUTORIAL
 
 OFF_MM = (2.0, -1.0, 1.5)
 """The registration is off by so much, as one by biased touches is."""
-DRILLED_M, MICROMETRE = 0.052, 1e-6
+DRILLED_M, MICROMETER = 0.052, 1e-6
 
 
 class Operation:
@@ -175,7 +175,7 @@ def begin(operation: Operation) -> None:
 def is_aligned(trainee: Trainee):
     def is_aligned() -> bool:
         alignment = trainee.state.alignment
-        return alignment.is_exact and abs(alignment.stand_off - 0.03) < MICROMETRE
+        return alignment.is_exact and abs(alignment.stand_off - 0.03) < MICROMETER
 
     return is_aligned
 
@@ -286,14 +286,14 @@ def test_the_current_line_is_drawn_where_the_registration_places_it(operation, n
         arrow for arrow in screen.errors if arrow.tone is Tone.GOOD and arrow.begin != arrow.end
     ]
     target, entry = (shown_in_world(operation, each[number]) for each in (TARGETS, ENTRIES))
-    assert line.end == pytest.approx(target, abs=MICROMETRE)
+    assert line.end == pytest.approx(target, abs=MICROMETER)
     toward = (target - entry) / np.linalg.norm(target - entry)
-    assert line.begin == pytest.approx(entry - 0.05 * toward, abs=MICROMETRE)
+    assert line.begin == pytest.approx(entry - 0.05 * toward, abs=MICROMETER)
     tables = [arrow.begin for arrow in screen.errors if arrow.tone is Tone.WARNING]
     assert len(tables) == 2
     for table in tables:
         beside = np.cross(np.array(table) - entry, toward)
-        assert np.linalg.norm(beside) < MICROMETRE
+        assert np.linalg.norm(beside) < MICROMETER
 
 
 def test_the_bulls_eye_agrees_with_the_numbers_until_the_guide_is_on_the_line(operation):
@@ -360,10 +360,10 @@ def test_the_lines_on_the_head_show_plan_registration_and_instrument(operation):
     for number, errors in enumerate(operation.outcome.analysis.trajectories):
         planned, shown, placed = screen.errors[3 * number : 3 * number + 3]
         true_target = truth.in_world(np.array(TARGETS[number])) / MM_PER_M
-        assert planned.end == pytest.approx(true_target, abs=MICROMETRE)
+        assert planned.end == pytest.approx(true_target, abs=MICROMETER)
         assert shown.end == pytest.approx(shown_in_world(operation, TARGETS[number]), abs=1e-6)
         tip = truth.in_world(errors.tip) / MM_PER_M
-        assert placed.end == pytest.approx(tip, abs=MICROMETRE)
+        assert placed.end == pytest.approx(tip, abs=MICROMETER)
 
 
 def test_the_replayed_trial_draws_the_plan_as_it_was_seen(operation):
@@ -392,7 +392,7 @@ def test_the_picture_of_a_procedure_shows_the_same_lines_as_the_head_in_the_view
     truth = operation.trainee.loop.truth
     drawn = [truth.in_world(np.array(line[1])) / MM_PER_M for three in lines for line in three]
     ends = [arrow.end for arrow in screen_of(operation, "lines").errors]
-    np.testing.assert_allclose(drawn, ends, atol=MICROMETRE)
+    np.testing.assert_allclose(drawn, ends, atol=MICROMETER)
     path = tmp_path / "procedure.png"
     draw_procedure(path, read_head_mesh(scenario.head_mesh), procedure, lines)
     pixels = read_png(path).reshape(-1, 3)

@@ -44,7 +44,7 @@ def test_anything_the_file_leaves_out_keeps_its_default(tmp_path):
         ([], "must be a JSON object with any of clients, views, trials"),
         ({"robots": {}}, "must be a JSON object with any of clients, views, trials"),
         ({"views": 5}, "views must be a JSON object with any of views, spectators"),
-        ({"views": {"colour": 5}}, "views must be a JSON object with any of"),
+        ({"views": {"color": 5}}, "views must be a JSON object with any of"),
         ({"clients": {"clients": 0}}, "clients.clients must be a whole number above 0"),
         ({"clients": {"clients": 2.5}}, "clients.clients must be a whole number above 0"),
         ({"clients": {"clients": True}}, "clients.clients must be a whole number above 0"),

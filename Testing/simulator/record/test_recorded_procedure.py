@@ -33,7 +33,7 @@ def simulation(planned):
     return Simulation(planned, 3)
 
 
-class Theatre(Server):
+class Theater(Server):
     """A server on which a procedure is carried out with the sticks and by commands."""
 
     def must(self, command, **arguments):
@@ -130,7 +130,7 @@ class Theatre(Server):
 def finished(simulation, tmp_path_factory):
     """The journal of a whole procedure: registered again, realigned, paused."""
     folder = tmp_path_factory.mktemp("records")
-    with Theatre(simulation, folder) as server:
+    with Theater(simulation, folder) as server:
         server.to_verifying()
         server.use_exact_registration()
         server.must(CommandName.CAPTURE)
@@ -241,7 +241,7 @@ def test_the_procedure_is_replayed_in_the_views(finished, planned):
 
 
 def assert_nearly_equal(resumed, before):
-    """Compare states of lines; a journal's millimeters give metres back but for the last bit."""
+    """Compare states of lines; a journal's millimeters give meters back but for the last bit."""
     for one, other in zip(resumed, before, strict=True):
         assert replace(one, guide=None) == replace(other, guide=None)
         assert (one.guide is None) == (other.guide is None)
@@ -262,14 +262,14 @@ def assert_nearly_equal(resumed, before):
 def test_a_server_that_ends_in_a_phase_is_resumed_there_and_everything_replays(
     simulation, planned, tmp_path, phase, procedure, count
 ):
-    with Theatre(simulation, tmp_path) as server:
+    with Theater(simulation, tmp_path) as server:
         server.to(phase, procedure)
         before = server.training.procedure
         server.loop.stop()
         size = server.path.read_bytes().rindex(b'{"n"')
         feed = server.loop.latest.feed
     cut(server.path, size)
-    with Theatre(simulation, tmp_path) as server:
+    with Theater(simulation, tmp_path) as server:
         state = server.taken_up
         assert (state.training.phase, state.training.procedure.stage) == (Phase.PAUSED, phase)
         assert "everything is kept" in state.training.instruction
@@ -291,7 +291,7 @@ def test_a_server_that_ends_in_a_phase_is_resumed_there_and_everything_replays(
 
 @pytest.mark.parametrize("phase", PROCEDURE_PHASES, ids=str)
 def test_an_abort_in_a_phase_is_recorded_with_the_phase(simulation, tmp_path, phase):
-    with Theatre(simulation, tmp_path) as server:
+    with Theater(simulation, tmp_path) as server:
         server.to(phase)
         elapsed = server.loop.latest.elapsed
         server.must(CommandName.ABORT, reason="trainee")
@@ -306,7 +306,7 @@ def test_an_abort_in_a_phase_is_recorded_with_the_phase(simulation, tmp_path, ph
 
 
 def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simulation, tmp_path):
-    with Theatre(simulation, tmp_path) as server:
+    with Theater(simulation, tmp_path) as server:
         server.to(Phase.DRILLING)
         server.must(CommandName.PAUSE)
         server.loop._writer.submit(lambda: None).result()
@@ -318,7 +318,7 @@ def test_a_paused_procedure_is_aborted_in_the_phase_in_which_it_was_paused(simul
 
 
 def test_a_procedure_that_nobody_resumes_counts_as_aborted_in_its_phase(simulation, tmp_path):
-    with Theatre(simulation, tmp_path) as server:
+    with Theater(simulation, tmp_path) as server:
         server.to(Phase.DRILLING)
         server.loop.stop()
         elapsed = server.loop.latest.elapsed
@@ -342,7 +342,7 @@ def test_a_trial_with_touches_only_has_no_procedure_in_its_journal(simulation, t
 @pytest.fixture(scope="module")
 def drilled(simulation, tmp_path_factory):
     """The entries of a procedure that ended while it was drilled."""
-    with Theatre(simulation, tmp_path_factory.mktemp("drilled")) as server:
+    with Theater(simulation, tmp_path_factory.mktemp("drilled")) as server:
         server.to(Phase.DRILLING)
     return read_journal(server.path).entries
 

@@ -92,7 +92,7 @@ def far(picture) -> np.ndarray:
     return picture(camera=FAR, shadows=Shadows.FULL)
 
 
-def test_the_far_picture_shows_an_orange_and_grey_robot_beside_a_head(far):
+def test_the_far_picture_shows_an_orange_and_gray_robot_beside_a_head(far):
     assert far.shape == (SIZE[1], SIZE[0], 3)
     assert 0.005 < _orange(far) < 0.1
     assert 0.005 < _skin(far) < 0.1

@@ -146,14 +146,14 @@ def test_neighboring_links_meet_without_a_visible_gap(visuals):
         assert nearest * MM_PER_M < 3
 
 
-def test_the_links_are_grey_with_orange_rings_and_covers(visuals):
+def test_the_links_are_gray_with_orange_rings_and_covers(visuals):
     for number in range(1, 7):
         colors = [color for _mesh, color in visuals[f"iiwa_link_{number}"]]
-        assert any(_is_grey(color) for color in colors)
+        assert any(_is_gray(color) for color in colors)
         assert any(color[0] > 0.8 and color[2] < 0.2 for color in colors), "orange"
 
 
-def _is_grey(color) -> bool:
+def _is_gray(color) -> bool:
     return max(color[:3]) - min(color[:3]) < 0.05 and min(color[:3]) > 0.5
 
 

@@ -1,4 +1,4 @@
-"""A deleted trainee leaves no trace in the database, the journals, or exports made afterwards."""
+"""A deleted trainee leaves no trace in the database, the journals, or exports made afterward."""
 
 import pytest
 

@@ -136,7 +136,7 @@ def test_the_same_volume_gives_the_same_head():
 
 
 def test_progress_is_reported_and_may_cancel():
-    class CancelledError(Exception):
+    class CanceledError(Exception):
         pass
 
     told = []
@@ -144,10 +144,10 @@ def test_progress_is_reported_and_may_cancel():
     def progress(step, share):
         told.append(share)
         if step == "Filling cavities":
-            raise CancelledError
+            raise CanceledError
 
     volume = phantom(around_head(axes((1, 1, 1)), (84, 90, 60)), (84, 90, 60))
-    with pytest.raises(CancelledError):
+    with pytest.raises(CanceledError):
         findHead(volume, HeadSettings(), progress)
     assert told == sorted(told)
     assert told[0] == 0.0

@@ -46,7 +46,7 @@ def incomplete_beta(a: float, b: float, x: float) -> float:
 
 
 def _continued_fraction(a: float, b: float, x: float) -> float:
-    """Return 1 + d₁/(1 + d₂/(1 + …)) of DLMF 8.17.22, evaluated from its last term backwards."""
+    """Return 1 + d₁/(1 + d₂/(1 + …)) of DLMF 8.17.22, evaluated from its last term backward."""
     value = 1.0
     for n in range(TERMS, 0, -1):
         m = n // 2

@@ -327,7 +327,7 @@ def _other_orders(count: int) -> np.ndarray:
 def _both_fit(moving: np.ndarray, fixed: np.ndarray, order: np.ndarray, squares: float) -> bool:
     """Return whether two exchanged points fit as well as the others.
 
-    One bad touch beyond another fiducial also gains by an exchange, but does not fit afterwards.
+    One bad touch beyond another fiducial also gains by an exchange, but does not fit afterward.
     """
     kept = (order == np.arange(len(order))).astype(float)
     left = int(kept.sum())

@@ -29,7 +29,7 @@ _TURNS = {
 }
 """Around the head to the right, and higher, degrees."""
 LONGER = 5.0
-"""An error of a millimetre would hardly be seen."""
+"""An error of a millimeter would hardly be seen."""
 
 
 class ErrorsPage(SessionPage):

@@ -1,6 +1,6 @@
 """The state as messages, each device at its rate, packed once for all clients.
 
-Metres become millimetres here and nowhere else.
+Meters become millimeters here and nowhere else.
 """
 
 from __future__ import annotations

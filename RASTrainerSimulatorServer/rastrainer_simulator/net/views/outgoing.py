@@ -40,7 +40,7 @@ BODIES = (*(f"link_{joint}" for joint in range(8)), "tool", "head", "stand", "pl
 GHOST_LINKS = (7,)
 """The links of the arm that are shown of a ghost, by the number of joints before each."""
 GHOST_BODIES = (*(f"link_{joint}" for joint in GHOST_LINKS), "tool")
-# A micrometre, and less than that at the reach of the arm.
+# A micrometer, and less than that at the reach of the arm.
 DECIMALS = 6
 NEWS_HZ = 5.0
 NOBODY = "null"
@@ -189,8 +189,8 @@ def _procedure(now: SimulationState, pictures: Pictures) -> dict[str, Any] | Non
     if alignment is not None and line is not None and now.tool is Tool.GUIDE:
         beside = aim(now.guide_axis, line, pictures)
         seen = {
-            "entryMm": _millimetres(beside.entry),
-            "targetMm": _millimetres(beside.target),
+            "entryMm": _millimeters(beside.entry),
+            "targetMm": _millimeters(beside.target),
             "entryDistanceMm": round(MM_PER_M * alignment.entry_distance, 2),
             "angleDeg": round(math.degrees(alignment.angle), 2),
         }
@@ -202,7 +202,7 @@ def _procedure(now: SimulationState, pictures: Pictures) -> dict[str, Any] | Non
     }
 
 
-def _millimetres(values: Sequence[float]) -> list[float]:
+def _millimeters(values: Sequence[float]) -> list[float]:
     return [round(MM_PER_M * value, 2) for value in values]
 
 

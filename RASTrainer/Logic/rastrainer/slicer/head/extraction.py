@@ -95,8 +95,8 @@ ROUNDING = 1 / 6
 def continued(level: np.ndarray, margin: int) -> np.ndarray:
     """Pad a level set (positive inside) by `margin` voxels on every side.
 
-    The first two axes are continued on both sides, the third upwards, all by the outline's own
-    trend; downwards the lowest slice is repeated. Beyond the image the level is a distance in
+    The first two axes are continued on both sides, the third upward, all by the outline's own
+    trend; downward the lowest slice is repeated. Beyond the image the level is a distance in
     voxels, within ±1.
     """
     padded = np.pad(level, [(0, 0), (0, 0), (margin, 0)], mode="edge")
@@ -192,7 +192,7 @@ def skinOf(head: HeadBody, settings: HeadSettings, progress: Progress) -> HeadMe
     for _ in range(MAX_DECIMATIONS):
         fewer = surface.decimated(skin, wanted, head.baseMm)
         mesh = _cut(fewer, head.baseMm)
-        # The base is not decimated with the rest; how many it adds shows only afterwards.
+        # The base is not decimated with the rest; how many it adds shows only afterward.
         over = len(mesh.triangles) - MAX_TRIANGLES
         if over <= 0:
             break

@@ -156,7 +156,7 @@ def _isOne(members: int, wanted: int, touching: list[int]) -> bool:
 
 
 def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return `body` carved towards `wanted`, with the topology of `body`.
+    """Return `body` carved toward `wanted`, with the topology of `body`.
 
     The voxels farthest from `wanted` go first, so that membranes stay where tunnels are narrow.
 
