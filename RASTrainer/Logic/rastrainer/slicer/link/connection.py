@@ -200,7 +200,7 @@ class SlicerConnection:
             return False
         if not wasOpen:
             self._noteOpened()
-        self._readHeartbeat()
+        self._countSilence()
         if self._silenceS > RECONNECT_AFTER_S:
             # Half-open: nothing will ever come over this connection again, if anything ever did.
             if self.connector is not None:
@@ -278,7 +278,8 @@ class SlicerConnection:
         self.connector = None
         self._heartbeatTime = None
 
-    def _readHeartbeat(self) -> None:
+    def _countSilence(self) -> None:
+        """Add the time since the last look to the silence; a new heartbeat ends it."""
         now = self._clock()
         self._silenceS += min(now - self._lastLook, LONGEST_LOOK_S)
         self._lastLook = now
