@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import day_of
 from rastrainer_simulator.board.class_table import ClassReader, class_table
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.simulator.board.class_study import as_in_narrow_columns
@@ -71,7 +72,7 @@ def test_a_curriculum_for_everybody_shows_the_class_as_a_board_does_and_follows_
             study.add_trial(record, score=gentle_score(60.0, 0.2))
     panel.widget.logic.session.trainees.changed.emit()
     panel.process_events()
-    day = make_record()["startedUtc"][:10]
+    day = day_of(make_record()["startedUtc"])
     assert cells(panel, "assignmentsTable")[0][:2] == ["Task 1", f"reached {day}"]
     shown = cells(panel, "classTable")
     assert shown[0][1] == "1 / 6"

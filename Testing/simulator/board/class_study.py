@@ -16,6 +16,7 @@ from rastrainer.study.curriculum.standing import standing_in
 from rastrainer.study.database import study_trainees, study_trials
 from rastrainer.study.database.database import Connection, StudyPlace
 from rastrainer.study.database.study import Study
+from rastrainer.study.database.values import day_of
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import PASS_MARK, score_version
 from Testing.domain.trial.trial_records import gentle_score, make_record
@@ -77,4 +78,4 @@ def _play(
 
 def as_in_narrow_columns(cell: dict[str, Any]) -> str:
     """Return what report, module and command show where the board's table has this cell."""
-    return f"{cell['progress'].replace(' / ', ' of ')} {cell['reachedUtc'][:10]}".rstrip()
+    return f"{cell['progress'].replace(' / ', ' of ')} {day_of(cell['reachedUtc'])}".rstrip()

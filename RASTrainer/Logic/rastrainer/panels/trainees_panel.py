@@ -29,7 +29,7 @@ from rastrainer.slicer.settings import STUDY, STUDY_ADDRESS
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.database import EXAMPLE, study_place
-from rastrainer.study.database.values import StoredTrial, Trainee
+from rastrainer.study.database.values import StoredTrial, Trainee, day_of
 
 
 class TraineesPanel:
@@ -275,7 +275,7 @@ class TraineesPanel:
                 _("{name}, since {day}. Trials: {count}. {aborted}"),
                 name=trainee.pseudonym,
                 count=len(history),
-                day=trainee.created_utc[:10],
+                day=day_of(trainee.created_utc),
                 aborted=_aborted(aborted),
             )
         elif not ui.traineeText.text:

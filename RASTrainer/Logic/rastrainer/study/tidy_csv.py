@@ -77,11 +77,11 @@ def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
         InputError: nobody consented, or the file cannot be written.
     """
     everyone = (*study.trainees(), *study.trainees(archived=True))
-    agreed = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
-    left_out = len(everyone) - len(agreed)
-    if not agreed:
+    consenting = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)
+    left_out = len(everyone) - len(consenting)
+    if not consenting:
         raise InputError(f"No trainee of this study consented to research ({left_out} did not).")
-    return write_history(study, agreed, path), left_out
+    return write_history(study, consenting, path), left_out
 
 
 def trials_csv(trials: Sequence[TrialRow]) -> str:

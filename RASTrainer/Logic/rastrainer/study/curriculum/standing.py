@@ -16,7 +16,7 @@ from rastrainer.number_text import fixed
 from rastrainer.procedure.score import PROCEDURE_SCORE_VERSION
 from rastrainer.protocol import AssignmentState, GoalKind, RegistrationMethod
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
-from rastrainer.study.database.values import moment
+from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
 from rastrainer.trial.scoring import passes, score_version
 from rastrainer.trial.trial_feedback import competence_of
@@ -282,9 +282,6 @@ PARTS = {
 }
 """Of the scores of touches and of procedures."""
 
-DAY = len("2026-01-31")
-"""Of a time as ISO 8601, what its day takes."""
-
 
 def title_of(assignment: Assignment) -> str:
     """Return what people call an assignment, such as "Task 3 by a trace over the skin"."""
@@ -314,7 +311,7 @@ def goal_of(standing: AssignmentStanding) -> str:
 def short_progress_of(standing: AssignmentStanding) -> str:
     """Return the state for a narrow column: of a reached one the day (UTC), of an open how far."""
     if standing.state is not AssignmentState.OPEN:
-        return f"{standing.state.value} {standing.reached_utc[:DAY]}".rstrip()
+        return f"{standing.state.value} {day_of(standing.reached_utc)}".rstrip()
     if standing.assignment.goal is GoalKind.COMPETENT:
         return f"{standing.done} %"
     return f"{standing.done} of {standing.needed}"

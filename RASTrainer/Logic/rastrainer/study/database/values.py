@@ -23,6 +23,11 @@ def utc_now() -> str:
     return datetime.now(timezone.utc).isoformat(timespec="milliseconds")
 
 
+def day_of(utc: str) -> str:
+    """Return the day of an ISO 8601 time, such as 2026-01-31."""
+    return utc[: len("2026-01-31")]
+
+
 def moment(utc: str) -> datetime:
     """Return the time of an ISO 8601 text; before Python 3.11, `fromisoformat` rejects Z."""
     return datetime.fromisoformat(utc.replace("Z", "+00:00"))
