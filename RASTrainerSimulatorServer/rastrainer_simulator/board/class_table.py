@@ -224,8 +224,8 @@ def _table(
 
 
 def _column(standing: AssignmentStanding, words: AssignmentTexts) -> dict[str, Any]:
-    told = AssignmentMessage.of(standing)
-    return {"name": told.name, "label": words.label(told), "goal": words.goal(told)}
+    message = AssignmentMessage.of(standing)
+    return {"name": message.name, "label": words.label(message), "goal": words.goal(message)}
 
 
 def _row(name: str, standing: CurriculumStanding, words: AssignmentTexts) -> dict[str, Any]:

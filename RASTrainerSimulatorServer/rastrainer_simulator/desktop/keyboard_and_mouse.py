@@ -70,7 +70,7 @@ class OperatorKeys:
     def __init__(self, connection: ServerConnection):
         self._connection = connection
         self._held: set[str] = set()
-        self._told = 0.0
+        self._sent_at = 0.0
 
     def take(self, event: pygame.event.Event) -> None:
         """Take one of SDL's events."""
@@ -93,9 +93,9 @@ class OperatorKeys:
     def keep_alive(self) -> None:
         """Say often enough that what is held is still held."""
         now = time.monotonic()
-        if self._held and now - self._told >= ALIVE_S:
+        if self._held and now - self._sent_at >= ALIVE_S:
             self._connection.send(ALIVE)
-            self._told = now
+            self._sent_at = now
 
     def tap(self, code: str) -> None:
         """Press and release a key."""
@@ -179,7 +179,7 @@ class MouseSticks:
         self.pushes: tuple[Push, Push] = ((0.0, 0.0), (0.0, 0.0))
         self._connection = connection
         self._dragged: int | None = None
-        self._told = 0.0
+        self._sent_at = 0.0
 
     def take(self, event: pygame.event.Event, size: tuple[int, int]) -> bool:
         """Take one of SDL's events while the sticks are shown; return whether it was for them.
@@ -209,9 +209,9 @@ class MouseSticks:
     def keep_alive(self) -> None:
         """Say often enough that what is held is still held."""
         now = time.monotonic()
-        if any(map(any, self.pushes)) and now - self._told >= ALIVE_S:
+        if any(map(any, self.pushes)) and now - self._sent_at >= ALIVE_S:
             self._connection.send(ALIVE)
-            self._told = now
+            self._sent_at = now
 
     def _push(self, place: tuple[int, int], size: tuple[int, int]) -> None:
         assert self._dragged is not None

@@ -37,8 +37,8 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
 
 
 def _assignments(session: TrainingSession) -> str:
-    told = session.curriculum
-    return "" if told is None else session.assignment_texts.in_brief(told)
+    curriculum = session.curriculum
+    return "" if curriculum is None else session.assignment_texts.in_brief(curriculum)
 
 
 def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text: str) -> str:

@@ -205,13 +205,13 @@ class RatingStore:
             raise InputError(f"{form.title} has no domain {domain[:40]!r}.")
         if mark is not None and (isinstance(mark, bool) or mark not in MARKS):
             raise InputError(f"A mark is a whole number from {MARKS[0]} to {MARKS[-1]}.")
-        told = (rater, trial_id, form.name, domain, mark)
+        given = (rater, trial_id, form.name, domain, mark)
         with self._database.writing() as connection:
             row = connection.execute(
                 "SELECT rater, trial_id, form, domain, mark FROM rating_marks WHERE mark_id = ?",
                 (mark_id,),
             ).fetchone()
-            if row is not None and row != told:
+            if row is not None and row != given:
                 raise InputError(f"Another mark is stored under the UUID {mark_id[:40]}.")
             if row is not None:
                 return False
@@ -220,7 +220,7 @@ class RatingStore:
             connection.execute(
                 "INSERT INTO rating_marks (mark_id, rater, trial_id, form, domain, mark, "
                 "stored_utc) VALUES (?, ?, ?, ?, ?, ?, ?)",
-                (mark_id, *told, utc_now()),
+                (mark_id, *given, utc_now()),
             )
             return True
 

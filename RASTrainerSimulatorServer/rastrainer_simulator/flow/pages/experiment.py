@@ -136,9 +136,9 @@ class ExperimentPage(SessionPage):
         scores = session.history.trend(session.trainee.strip(), session.mode)
         if not scores:
             return None
-        told = session.texts.listed(f"{score:.0f}" for score in scores)
+        shown = session.texts.listed(f"{score:.0f}" for score in scores)
         mark = PASS_MARK if self._step() is None else 0.0
-        return ScoreTrend(self.say("experiment.scores", scores=told), scores, mark)
+        return ScoreTrend(self.say("experiment.scores", scores=shown), scores, mark)
 
     def _method(self) -> tuple[MenuItem, ...]:
         """Return the choice of what is registered; none where the head has no landmarks."""
@@ -164,10 +164,14 @@ class ExperimentPage(SessionPage):
 
     def _assignments(self) -> tuple[MenuItem, ...]:
         """Return the button of the curriculum; none for who has none."""
-        told, words = self.session.curriculum, self.session.assignment_texts
-        if told is None:
+        curriculum, words = self.session.curriculum, self.session.assignment_texts
+        if curriculum is None:
             return ()
-        return (self.button("assignments", value=words.summary(told), help=words.advice(told)),)
+        return (
+            self.button(
+                "assignments", value=words.summary(curriculum), help=words.advice(curriculum)
+            ),
+        )
 
     def _tutorial(self) -> tuple[MenuItem, ...]:
         """Return the tutorial's button; none where there is no tutorial."""
@@ -286,23 +290,23 @@ class AssignmentsPage(SessionPage):
 
     def __init__(self, session: TrainingSession) -> None:
         super().__init__(session)
-        told = session.curriculum
-        self.first = "" if told is None else _ASSIGNMENT + told.next
+        curriculum = session.curriculum
+        self.first = "" if curriculum is None else _ASSIGNMENT + curriculum.next
 
     def menu(self) -> Menu:
         """Return the list as Slicer told it last."""
-        told = self.session.curriculum
+        curriculum = self.session.curriculum
         back = self.button("back")
-        if told is None:
+        if curriculum is None:
             return Menu(self.name, self.say("assignments.title"), items=(back,))
-        said = (told.title, self.session.assignment_texts.advice(told))
-        items = tuple(self._item(each) for each in told.assignments)
+        said = (curriculum.title, self.session.assignment_texts.advice(curriculum))
+        items = tuple(self._item(each) for each in curriculum.assignments)
         return Menu(self.name, self.say("assignments.title"), said, items=(*items, back))
 
     def accept(self, item: str) -> None:
         """Begin a trial of an assignment, or go back."""
-        session, told = self.session, self.session.curriculum
-        each = None if told is None else told.find(item.removeprefix(_ASSIGNMENT))
+        session, curriculum = self.session, self.session.curriculum
+        each = None if curriculum is None else curriculum.find(item.removeprefix(_ASSIGNMENT))
         if item == "back" or each is None:
             self.back()
             return

@@ -94,24 +94,24 @@ def obstacle(session: TrainingSession, task: str) -> str:
         if not is_asked:
             return session.texts.say("experiment.study", step=session.step_sentence(step))
         return _tutorial_first(session, task)
-    told = session.curriculum
+    curriculum = session.curriculum
     method, procedure = registration_method(session, task).value, procedure_of(session, task)
     played_as = (session.mode, method, procedure)
-    assigned = () if told is None else told.assignments
+    assigned = () if curriculum is None else curriculum.assignments
     head = session.scenario.name
     own = [each for each in assigned if each.is_played_as(head, task, *played_as)]
-    if told is not None and own and all(each.is_locked for each in own):
-        return session.assignment_texts.gate(told, own[0])
+    if curriculum is not None and own and all(each.is_locked for each in own):
+        return session.assignment_texts.gate(curriculum, own[0])
     return _missing_before(session, task, is_assigned=bool(own))
 
 
 def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> str:
     """Return why the trainee cannot begin a trial of an assignment; "" if nothing is in the way."""
-    unready, told = _unready(session), session.curriculum
-    if unready or told is None:
+    unready, curriculum = _unready(session), session.curriculum
+    if unready or curriculum is None:
         return unready
     if each.is_locked:
-        return session.assignment_texts.gate(told, each)
+        return session.assignment_texts.gate(curriculum, each)
     scenario = session.scenario
     is_on_head = (
         each.scenario in ("", scenario.name)

@@ -21,23 +21,23 @@ class Curricula:
     """
 
     def __init__(self) -> None:
-        self._told: dict[str, CurriculumMessage] = {}
+        self._messages: dict[str, CurriculumMessage] = {}
 
-    def take(self, told: CurriculumMessage) -> None:
+    def take(self, curriculum: CurriculumMessage) -> None:
         """Take what Slicer tells of a trainee."""
-        self._told.pop(told.trainee, None)
-        if told.assignments:
-            self._told[told.trainee] = told
-        if len(self._told) > MAX_TRAINEES:
-            del self._told[next(iter(self._told))]
+        self._messages.pop(curriculum.trainee, None)
+        if curriculum.assignments:
+            self._messages[curriculum.trainee] = curriculum
+        if len(self._messages) > MAX_TRAINEES:
+            del self._messages[next(iter(self._messages))]
 
     def forget_all(self) -> None:
         """Forget everybody, when no Slicer is connected any more."""
-        self._told.clear()
+        self._messages.clear()
 
     def of(self, trainee: str) -> CurriculumMessage | None:
         """Return where a trainee stands; None for who has no curriculum."""
-        return self._told.get(trainee)
+        return self._messages.get(trainee)
 
 
 def newly_reached(
@@ -102,28 +102,30 @@ class AssignmentTexts:
         key = "assignments.one trial" if each.needed == 1 else "assignments.trials"
         return self._say(key, needed=each.needed, mark=each.mark)
 
-    def gate(self, told: CurriculumMessage, each: AssignmentMessage) -> str:
+    def gate(self, curriculum: CurriculumMessage, each: AssignmentMessage) -> str:
         """Return what a locked assignment waits for."""
-        missing = [found for name in each.missing if (found := told.find(name)) is not None]
+        missing = [found for name in each.missing if (found := curriculum.find(name)) is not None]
         names = self._texts.listed(self.title(one) for one in missing) or "–"
         return self._say("assignments.gate", assignments=names)
 
-    def summary(self, told: CurriculumMessage) -> str:
+    def summary(self, curriculum: CurriculumMessage) -> str:
         """Return how many assignments are reached."""
-        return self._say("assignments.summary", reached=told.reached, count=len(told.assignments))
+        return self._say(
+            "assignments.summary", reached=curriculum.reached, count=len(curriculum.assignments)
+        )
 
-    def in_brief(self, told: CurriculumMessage) -> str:
+    def in_brief(self, curriculum: CurriculumMessage) -> str:
         """Return what a teacher reads of it: how many are reached, and how far the next one is."""
-        best = told.find(told.next)
+        best = curriculum.find(curriculum.next)
         if best is None:
-            return self.summary(told)
+            return self.summary(curriculum)
         label, progress = self.label(best), self.progress(best)
         following = self._say("assignments.next in brief", assignment=label, progress=progress)
-        return f"{self.summary(told)} · {following}"
+        return f"{self.summary(curriculum)} · {following}"
 
-    def advice(self, told: CurriculumMessage) -> str:
+    def advice(self, curriculum: CurriculumMessage) -> str:
         """Return what to practice next, and why."""
-        best = told.find(told.next)
+        best = curriculum.find(curriculum.next)
         if best is None:
             return self._say("assignments.all reached")
         if not best.played:

@@ -139,7 +139,7 @@ class TrainingSession:
         self._controls = controls
         self._asked: list[tuple[str, Future[Answer]]] = []
         self.notices = Notices()
-        self._told: CurriculumMessage | None = None
+        self._noted: CurriculumMessage | None = None
         self.state: SimulationState = control_loop.latest
 
     @property
@@ -196,8 +196,8 @@ class TrainingSession:
     @property
     def next_assignment(self) -> AssignmentMessage | None:
         """The assignment to practice next; None where no open one is left, or no curriculum."""
-        told = self.curriculum
-        return None if told is None else told.find(told.next)
+        curriculum = self.curriculum
+        return None if curriculum is None else curriculum.find(curriculum.next)
 
     @property
     def assignment_texts(self) -> AssignmentTexts:
@@ -333,8 +333,8 @@ class TrainingSession:
 
     def _note_reached(self) -> None:
         """Say which assignment the trainee has reached since Slicer told of it before."""
-        before, self._told = self._told, self.curriculum
-        for each in newly_reached(before, self._told):
+        before, self._noted = self._noted, self.curriculum
+        for each in newly_reached(before, self._noted):
             title = self.assignment_texts.title(each)
             said = self.texts.say("assignments.just reached", assignment=title)
             self.notices.add(said, Tone.GOOD, REACHED_S)

@@ -41,7 +41,7 @@ class Boards:
 
     def __init__(self) -> None:
         self._joined: dict[int, ViewSocket] = {}
-        self._told = ""
+        self._seat = ""
         self._pacer = Pacer(NEWS_HZ)
 
     def __bool__(self) -> bool:
@@ -55,7 +55,7 @@ class Boards:
         self._joined[board.number] = board
         try:
             board.outbox.put_latest(outgoing.WELCOME, outgoing.welcome(board.number))
-            board.outbox.put_latest(outgoing.SEAT, self._told)
+            board.outbox.put_latest(outgoing.SEAT, self._seat)
             await board.serve()
         finally:
             del self._joined[board.number]
@@ -67,8 +67,8 @@ class Boards:
     def tell(self, now: SimulationState, seat: Seat) -> None:
         """Tell all boards how the seat is, if that has changed."""
         text = seat_text(now, seat)
-        if text != self._told:
-            self._told = text
+        if text != self._seat:
+            self._seat = text
             for board in self._joined.values():
                 board.outbox.put_latest(outgoing.SEAT, text)
 

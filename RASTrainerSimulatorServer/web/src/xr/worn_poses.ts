@@ -9,7 +9,7 @@ const PERIOD_S = 1 / 30;
 const DIGITS = 5;
 
 export class WornPoses {
-  private told = -Infinity;
+  private sentAt = -Infinity;
   private readonly toWorld = new Matrix4();
   private readonly matrix = new Matrix4();
   private readonly place = new Vector3();
@@ -24,8 +24,8 @@ export class WornPoses {
 
   /** Tell the poses at `now` (s) if it is time; a hand that is not there is null. */
   tell(now: number, eyes: Object3D, left: Object3D | null, right: Object3D | null): void {
-    if (now - this.told < PERIOD_S) return;
-    this.told = now;
+    if (now - this.sentAt < PERIOD_S) return;
+    this.sentAt = now;
     this.toWorld.copy(this.world.matrixWorld).invert();
     this.connection.send("worn", {
       eyes: this.pose(eyes),

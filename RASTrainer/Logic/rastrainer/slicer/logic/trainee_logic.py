@@ -197,7 +197,7 @@ class TraineeLogic:
             The number of trials, and of the trainees who are left out.
 
         Raises:
-            InputError: nobody agreed, or the file cannot be written.
+            InputError: nobody consented, or the file cannot be written.
         """
 
         def write(_report: Progress) -> tuple[int, int]:
@@ -247,7 +247,7 @@ class CurriculumLogic:
         self.changed = Signal()
         self._trainees = trainees
         self._link = link
-        self._told: dict[str, CurriculumMessage] = {}
+        self._sent: dict[str, CurriculumMessage] = {}
         self._standings: dict[str, CurriculumStanding] = {}
         self._stamps: dict[str, tuple[int | None, ...]] = {}
         self._followed: Study | None = None
@@ -294,7 +294,7 @@ class CurriculumLogic:
 
     def _sendEverybody(self) -> None:
         """Tell the simulator, which may know nothing yet, where everybody stands."""
-        self._told.clear()
+        self._sent.clear()
         self._stamps.clear()
         self._followTrainees()
 
@@ -305,7 +305,7 @@ class CurriculumLogic:
             store = CurriculumStore(self._trainees.study)
             stamps = store.stamps()
             isSame = self._trainees.study is self._followed
-            known = self._told.keys() | self._standings.keys()
+            known = self._sent.keys() | self._standings.keys()
             for name in sorted(known - stamps.keys()):
                 self._tell(name, None)
             for name, stamp in stamps.items():
@@ -315,14 +315,14 @@ class CurriculumLogic:
         self.changed.emit()
 
     def _tell(self, name: str, standing: CurriculumStanding | None) -> None:
-        told = CurriculumMessage.of(name, standing)
+        message = CurriculumMessage.of(name, standing)
         self._standings.pop(name, None)
         if standing is not None:
             self._standings[name] = standing
-        if self._told.get(name, CurriculumMessage(name)) == told:
+        if self._sent.get(name, CurriculumMessage(name)) == message:
             return
-        self._told[name] = told
+        self._sent[name] = message
         if standing is None:
-            del self._told[name]
+            del self._sent[name]
         # Without a connection nothing is sent; a new connection is told everything.
-        self._link.send(CommandName.CURRICULUM, told.arguments())
+        self._link.send(CommandName.CURRICULUM, message.arguments())

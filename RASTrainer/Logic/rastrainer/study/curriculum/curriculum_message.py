@@ -112,21 +112,25 @@ class CurriculumMessage:
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:
         """Return what checked command arguments tell."""
-        told = tuple(AssignmentMessage(**each) for each in arguments["assignments"])
-        return cls(**{**arguments, "assignments": told})
+        assignments = tuple(AssignmentMessage(**each) for each in arguments["assignments"])
+        return cls(**{**arguments, "assignments": assignments})
 
     def arguments(self) -> dict[str, Any]:
         """Return the command arguments, without empty ones."""
-        told = [
+        assignments = [
             {name: value for name, value in asdict(each).items() if value not in ("", 0, ())}
             for each in self.assignments
         ]
-        for each in told:
+        for each in assignments:
             if "missing" in each:
                 each["missing"] = list(each["missing"])
         texts = {"title": self.title, "next": self.next}
         others = {name: value for name, value in texts.items() if value}
-        return {"trainee": self.trainee, **others, **({"assignments": told} if told else {})}
+        return {
+            "trainee": self.trainee,
+            **others,
+            **({"assignments": assignments} if assignments else {}),
+        }
 
     @property
     def reached(self) -> int:
