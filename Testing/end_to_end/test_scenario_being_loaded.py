@@ -19,7 +19,7 @@ from rastrainer.scenario.writer import new_folder, write_scenario
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
-from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.texts import ENGLISH
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.end_to_end.window_process import wait_until

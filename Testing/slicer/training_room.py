@@ -9,7 +9,7 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.scene.nodes import findNode
 from rastrainer_headless.connector import headlessKit
-from rastrainer_simulator.texts.english import ENGLISH
+from rastrainer_simulator.texts.texts import ENGLISH
 from Testing.slicer.simulator_double import SimulatorDouble, run_link_until, run_until_received
 
 TRIAL = str(uuid.UUID(int=5))

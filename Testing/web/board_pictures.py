@@ -21,7 +21,6 @@ from rastrainer_simulator.flow.session.curricula import AssignmentTexts
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
 from rastrainer_simulator.presentation.presenter import Seat
 from rastrainer_simulator.state import TouchStage
-from rastrainer_simulator.texts.english import ENGLISH
 from rastrainer_simulator.texts.texts import Texts
 from Testing.simulator.board.class_study import play_class
 from Testing.simulator.board.conftest import BoardClient
@@ -31,12 +30,12 @@ from Testing.web.chromium import launch
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
 SIZE, WIDE = {"width": 1180, "height": 640}, {"width": 1300, "height": 640}
-SAY = Texts(ENGLISH).say
+SAY = Texts().say
 
 
 def assignments(found: ClassStanding, trainee: str) -> str:
     """Return where a trainee stands, as the seat says it."""
-    words = AssignmentTexts(Texts(ENGLISH), lambda task: SAY(f"task.{task}"), str.capitalize)
+    words = AssignmentTexts(Texts(), lambda task: SAY(f"task.{task}"), str.capitalize)
     return words.in_brief(CurriculumMessage.of(trainee, found.standings[trainee]))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -10,14 +11,6 @@ import pytest
 from rastrainer_simulator.texts.texts import LANGUAGES
 
 TEXTS = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web" / "src" / "texts"
-FILES = {
-    "en": "english.ts",
-    "de": "german.ts",
-    "fr": "french.ts",
-    "es": "spanish.ts",
-    "zh-Hans": "chinese.ts",
-}
-ENTRY = re.compile(r'^  "?([^"\n]+?)"?:\s+"((?:[^"\\\n]|\\.)*)",$', re.MULTILINE)
 DRAWN = {
     "part.leftStick": "gamepad.leftstick",
     "part.rightStick": "gamepad.rightstick",
@@ -36,9 +29,8 @@ DRAWN = {
 
 def tables(language: str) -> list[dict[str, str]]:
     """Return the texts of the page and of the board by their names."""
-    source = (TEXTS / FILES[language]).read_text(encoding="utf-8")
-    _, page, board = re.split(r"^export const (?:PAGE|BOARD)", source, flags=re.MULTILINE)
-    return [dict(ENTRY.findall(part)) for part in (page, board)]
+    texts = json.loads((TEXTS / f"{language}.json").read_text(encoding="utf-8"))
+    return [texts["page"], texts["board"]]
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -1,23 +1,40 @@
-"""Say a sentence in a language, and say it again in another."""
+"""Say a sentence in a language, and say it again in another.
+
+The sentences are in one JSON file a language, sorted into sections for translators
+(docs/how-to/translate.md).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import json
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from string import Formatter
+from types import MappingProxyType
 
-from rastrainer_simulator.texts.chinese import CHINESE
-from rastrainer_simulator.texts.english import ENGLISH
-from rastrainer_simulator.texts.french import FRENCH
-from rastrainer_simulator.texts.german import GERMAN
-from rastrainer_simulator.texts.spanish import SPANISH
+from rastrainer.trial import wording
+from rastrainer_simulator.texts import typesetting
 
-LANGUAGES: Mapping[str, Mapping[str, str]] = {
-    "en": ENGLISH,
-    "de": GERMAN,
-    "fr": FRENCH,
-    "es": SPANISH,
-    "zh-Hans": CHINESE,
+_TYPESETTING: Mapping[str, Callable[[str], str]] = {
+    "fr": typesetting.french,
+    "zh-Hans": typesetting.chinese,
 }
+
+
+def _table(tag: str) -> dict[str, str]:
+    content = Path(__file__).with_name(f"{tag}.json").read_text(encoding="utf-8")
+    typeset = _TYPESETTING.get(tag, str)
+    sections = json.loads(content).values()
+    return {key: typeset(text) for section in sections for key, text in section.items()}
+
+
+ENGLISH: Mapping[str, str] = MappingProxyType(
+    # Slicer sends a trial's feedback as keys and values, for others as English sentences.
+    _table("en") | {f"feedback.{key}": text for key, text in wording.ENGLISH.items()}
+)
+LANGUAGES: Mapping[str, Mapping[str, str]] = MappingProxyType(
+    {"en": ENGLISH} | {tag: MappingProxyType(_table(tag)) for tag in ("de", "fr", "es", "zh-Hans")}
+)
 """BCP 47 tag → table. What a table lacks is said in English."""
 
 

@@ -1,28 +1,28 @@
 /** What the page says itself, because the simulator cannot or does not know. */
 
-import * as chinese from "./texts/chinese";
-import * as english from "./texts/english";
-import * as french from "./texts/french";
-import * as german from "./texts/german";
-import * as spanish from "./texts/spanish";
-import { writtenLanguage } from "./texts/typesetting";
+import { page as german } from "./texts/de.json";
+import { page as english } from "./texts/en.json";
+import { page as spanish } from "./texts/es.json";
+import { page as frenchTexts } from "./texts/fr.json";
+import { chinese, french, writtenLanguage } from "./texts/typesetting";
+import { page as chineseTexts } from "./texts/zh-Hans.json";
 
-export type TextName = keyof english.PageTexts;
+export type TextName = keyof typeof english;
 
-const TABLES: Readonly<Record<string, english.PageTexts>> = {
-  en: english.PAGE,
-  de: german.PAGE,
-  fr: french.PAGE,
-  es: spanish.PAGE,
-  zh: chinese.PAGE,
+const TABLES: Readonly<Record<string, Readonly<Record<TextName, string>>>> = {
+  en: english,
+  de: german,
+  fr: french(frenchTexts),
+  es: spanish,
+  zh: chinese(chineseTexts),
 };
-let table = english.PAGE;
+let table = TABLES.en!;
 useLanguage(navigator.language);
 
 /** Speak the language that the simulator's texts are in; English where there is no table of it. */
 export function useLanguage(tag: string): void {
   const language = tag.slice(0, 2);
-  table = TABLES[language] ?? english.PAGE;
+  table = TABLES[language] ?? english;
   document.documentElement.lang = language in TABLES ? writtenLanguage(tag) : "en";
 }
 

@@ -16,7 +16,7 @@ from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.presentation.screen import Tone
-from rastrainer_simulator.texts.german import GERMAN
+from rastrainer_simulator.texts.texts import LANGUAGES
 from rastrainer_simulator.trial_state import Tool
 
 OWN = "This score is the simulator's own and is not stored in a study."
@@ -140,7 +140,7 @@ def test_a_slicer_that_returns_within_seconds_finds_the_trial_unscored(trainee, 
 
 def test_the_page_is_shown_in_german_too():
     for key in ("waiting.own", "waiting.problem", "result.own"):
-        assert key in GERMAN
+        assert key in LANGUAGES["de"]
 
 
 def commands_of(outside, trial_id, name):

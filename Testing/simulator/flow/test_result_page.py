@@ -9,8 +9,7 @@ from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.screen import Tone
-from rastrainer_simulator.texts.german import GERMAN
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.conftest import Outside, put_back
 from Testing.simulator.flow.trainee import RATE_HZ, Keys, Trainee
 
@@ -138,7 +137,7 @@ def test_an_error_in_the_brain_beyond_the_limit_is_a_warning_however_small_it_lo
 
 
 def test_the_page_is_shown_in_german_too():
-    texts = Texts(GERMAN)
+    texts = Texts(LANGUAGES["de"])
     for key in (
         "region tre",
         "unacceptable score",
@@ -147,5 +146,5 @@ def test_the_page_is_shown_in_german_too():
         "not unbiased",
         "common bias",
     ):
-        assert f"result.{key}" in GERMAN
+        assert f"result.{key}" in LANGUAGES["de"]
     assert texts.say("result.unacceptable score", score=12.4) == "12 / 100, nicht zulässig"

@@ -8,8 +8,7 @@ import pytest
 from rastrainer.scenario.library import ListedScenario
 from rastrainer_simulator.flow.session.chosen_trial import start_task
 from rastrainer_simulator.state import Answer
-from rastrainer_simulator.texts.english import ENGLISH
-from rastrainer_simulator.texts.german import GERMAN
+from rastrainer_simulator.texts.texts import ENGLISH, LANGUAGES
 
 LOADING = ENGLISH["being set up"]
 
@@ -108,5 +107,5 @@ def test_a_trial_that_is_refused_since_a_head_is_being_loaded_says_so_in_the_tra
     start_task(session, "trial-run")
     at_heads.until(lambda: at_heads.presenter.screen.warnings, "the reason")
     (warning,) = at_heads.presenter.screen.warnings
-    assert warning.text == GERMAN["being set up"]
+    assert warning.text == LANGUAGES["de"]["being set up"]
     at_heads.loop.end_replacement()

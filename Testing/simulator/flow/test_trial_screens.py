@@ -14,8 +14,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.flow import trial_screen
 from rastrainer_simulator.flow.session.trainee_history import DoneTasks
 from rastrainer_simulator.presentation.screen import ScreenMessage, Tone
-from rastrainer_simulator.texts.german import GERMAN
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.trainee import STEP_S
 
 
@@ -401,6 +400,6 @@ def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):
     assert depth_mm > 1.0
     (warning,) = pilot.presenter.screen.warnings
     assert warning.text == f"Pressing {depth_mm:.1f} mm: ease off."
-    german = Texts(GERMAN).again(warning.text)
+    german = Texts(LANGUAGES["de"]).again(warning.text)
     assert german == f"Du drückst {depth_mm:.1f} mm tief: Lass nach.".replace(".", ",", 1)
     assert len(pilot.watcher.screens) - told < 20

@@ -1,8 +1,10 @@
 """Every sentence is there in every language, and can be said again in another."""
 
 import copy
+import json
 import pickle
 import re
+from pathlib import Path
 from string import Formatter
 
 import pytest
@@ -10,8 +12,18 @@ import pytest
 from rastrainer_simulator.flow.session.preferences import OPTIONS
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
 from rastrainer_simulator.input.inputs import GAMEPAD_INPUTS, ControlName, InputDevice, SourceKind
-from rastrainer_simulator.texts.english import ENGLISH
-from rastrainer_simulator.texts.texts import LANGUAGES, Texts, input_label, pair_label
+from rastrainer_simulator.texts.texts import ENGLISH, LANGUAGES, Texts, input_label, pair_label
+
+SERVER = Path(__file__).parents[3] / "RASTrainerSimulatorServer"
+FOLDER = SERVER / "rastrainer_simulator" / "texts"
+FEEDBACK = "Feedback on a trial (in English in rastrainer/trial/wording.py)"
+
+
+def sections(language):
+    """What a language's file holds, in its order: titles, and the keys below each."""
+    content = (FOLDER / f"{language}.json").read_text(encoding="utf-8")
+    read = json.loads(content, object_pairs_hook=lambda pairs: [*pairs])
+    return {title: [key for key, _text in pairs] for title, pairs in read}
 
 
 def fields(sentence):
@@ -24,6 +36,16 @@ def test_a_language_has_every_sentence_with_the_same_placeholders(language):
     assert set(table) == set(ENGLISH)
     assert [key for key in ENGLISH if fields(table[key]) != fields(ENGLISH[key])] == []
     assert [key for key in table if not table[key].strip()] == []
+
+
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+def test_a_language_has_the_sections_of_english_in_their_order_and_each_key_once(language):
+    found = sections(language)
+    assert (FEEDBACK in found) == (language != "en")
+    found.pop(FEEDBACK, None)
+    assert list(found.items()) == list(sections("en").items())
+    keys = [key for each in found.values() for key in each]
+    assert len(keys) == len(set(keys))
 
 
 def test_every_language_is_offered_by_its_own_name_in_all_of_them():

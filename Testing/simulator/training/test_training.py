@@ -10,8 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, TouchRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import EventKind
-from rastrainer_simulator.texts.english import ENGLISH
-from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.texts.texts import ENGLISH, Texts
 from rastrainer_simulator.training.rules import (
     RECORDING_FAILED,
     REFUSALS,

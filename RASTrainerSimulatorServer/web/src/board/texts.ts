@@ -1,32 +1,37 @@
 /** What the teacher's board says, in the language of the browser. */
 
-import * as chinese from "../texts/chinese";
-import * as english from "../texts/english";
-import * as french from "../texts/french";
-import * as german from "../texts/german";
-import * as spanish from "../texts/spanish";
-import { writtenLanguage } from "../texts/typesetting";
+import * as german from "../texts/de.json";
+import * as english from "../texts/en.json";
+import * as spanish from "../texts/es.json";
+import * as frenchTexts from "../texts/fr.json";
+import { chinese, french, writtenLanguage } from "../texts/typesetting";
+import * as chineseTexts from "../texts/zh-Hans.json";
 
-export type BoardText = keyof english.BoardTexts;
+export type BoardText = keyof typeof english.board;
 
 interface Texts {
-  PAGE: english.PageTexts;
-  BOARD: english.BoardTexts;
+  page: Readonly<Record<string, string>>;
+  board: Readonly<Record<BoardText, string>>;
 }
 
-const LANGUAGES: Readonly<Record<string, Texts>> = { en: english, de: german, fr: french, es: spanish, zh: chinese };
+const LANGUAGES: Readonly<Record<string, Texts>> = {
+  en: english,
+  de: german,
+  fr: { page: french(frenchTexts.page), board: french(frenchTexts.board) },
+  es: spanish,
+  zh: { page: chinese(chineseTexts.page), board: chinese(chineseTexts.board) },
+};
 const language = navigator.language.slice(0, 2);
-const { PAGE, BOARD } = LANGUAGES[language] ?? english;
+const { page, board } = LANGUAGES[language] ?? english;
 document.documentElement.lang = language in LANGUAGES ? writtenLanguage(language) : "en";
 
 /** What drives an arm, as the page of its seat calls it. */
 export function holderName(holder: string): string {
-  const name = `source.${holder}`;
-  return name in PAGE ? PAGE[name as keyof english.PageTexts] : holder;
+  return page[`source.${holder}`] ?? holder;
 }
 
 export function say(name: BoardText, values: Readonly<Record<string, string>> = {}): string {
-  return BOARD[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole);
+  return board[name].replace(/\{(\w+)\}/g, (whole, key: string) => values[key] ?? whole);
 }
 
 /** Return a figure with the language's decimal sign. */
