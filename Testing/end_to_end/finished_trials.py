@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
+from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
-from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.training.true_error import Truth
 

@@ -13,7 +13,7 @@ import random
 import pytest
 
 from rastrainer.journal.folder import SUFFIX
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
+from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.aborted_trial_logic import AbortedTrialLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
@@ -24,7 +24,6 @@ from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
-from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import TrialArchive, find_unacknowledged

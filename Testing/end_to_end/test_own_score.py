@@ -10,7 +10,7 @@ import pytest
 from rastrainer.command_arguments import check_arguments
 from rastrainer.igtl.client import Client
 from rastrainer.journal.folder import journals_of
-from rastrainer.journal.journal_file import read_journal
+from rastrainer.journal.journal_file import read_journal, stamp
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
@@ -27,7 +27,6 @@ from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE, registered_alone, score_alone
 from rastrainer_simulator.flow.session.trainee_history import ScoreHistory
-from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.faulty_proxy import SlicerSide

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import RASTrainerError
-from rastrainer.journal.journal_file import JournalReading
+from rastrainer.journal.journal_file import JournalReading, stamp
 from rastrainer.protocol import FINISHED_PHASES, OPEN_PHASES, CommandName
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TrialRecord
@@ -31,7 +31,6 @@ from rastrainer_simulator.loop.timing import (
     raise_thread_priority,
     sleep_until,
 )
-from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.trial_archive import TrialArchive
 from rastrainer_simulator.record.trial_context import NotedReport
 from rastrainer_simulator.record.trial_recorder import TrialRecorder

@@ -21,7 +21,7 @@ from pathlib import Path
 from rastrainer.errors import RASTrainerError
 from rastrainer.files.writing import make_private_folder, open_private
 from rastrainer.journal.folder import lock
-from rastrainer_simulator.ops.stamps import iso
+from rastrainer.journal.journal_file import iso
 
 LARGEST_FILE = 1_000_000
 OLDER_FILES = 5

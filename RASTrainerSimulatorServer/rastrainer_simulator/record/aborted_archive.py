@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal
+from rastrainer.journal.journal_file import Integrity, JournalReading, read_journal, stamp
 from rastrainer.journal.recording import WholeRecording
 from rastrainer.protocol import PROCEDURE_PHASES, AbortReason, CommandName, Phase
 from rastrainer.scenario.scenario import method_of
@@ -23,7 +23,6 @@ from rastrainer_simulator.core.interrupted_trial import (
     InterruptedTrial,
     refusing_malformed,
 )
-from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.journal_writer import Journal
 
 ATTEMPT = "attempt"

@@ -8,13 +8,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION
+from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.journal.recording import Recording
 from rastrainer.motion.trial_motion import trial_motion
 from rastrainer.protocol import PROCEDURE_PHASES, CommandName, Phase, RegistrationMethod
 from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.ops.stamps import stamp
 from rastrainer_simulator.record.trial_context import (
     DisplayReport,
     GhostReport,

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rastrainer.journal.folder import newest_journal, number_of
-from rastrainer.journal.journal_file import JournalReading
+from rastrainer.journal.journal_file import JournalReading, file_stamp, stamp
 from rastrainer.protocol import AbortReason, CommandName, Phase
-from rastrainer_simulator.ops.stamps import file_stamp, stamp
 from rastrainer_simulator.record.aborted_archive import attempt_entry
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_archive import SUFFIX, ArchivedTrial, TrialArchive

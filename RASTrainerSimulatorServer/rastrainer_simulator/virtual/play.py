@@ -15,6 +15,7 @@ from rastrainer.command_arguments import check_arguments
 from rastrainer.errors import RASTrainerError
 from rastrainer.head.mesh import HeadMesh, read_head_mesh
 from rastrainer.journal.folder import SUFFIX
+from rastrainer.journal.journal_file import file_stamp, iso
 from rastrainer.procedure.record import ProcedureRecord, UsedRegistration
 from rastrainer.protocol import CommandName, Mode, Phase, Proximity
 from rastrainer.scenario.scenario import Scenario
@@ -24,7 +25,6 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.ops.stamps import file_stamp, iso
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.record.trial_entries import TrialEntries
 from rastrainer_simulator.record.trial_records import UnmeasuredRecord

@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import pytest
 
 from rastrainer.command_arguments import check_arguments
+from rastrainer.journal import journal_file
 from rastrainer.journal.journal_file import Integrity, read_journal
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.loop.control_loop import ControlLoop
-from rastrainer_simulator.ops import stamps
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.replay.resimulation import replay
 
@@ -28,7 +28,7 @@ def jumping(monkeypatch):
     def now(zone):
         return datetime.now(zone) + jump.by
 
-    monkeypatch.setattr(stamps, "datetime", SimpleNamespace(now=now))
+    monkeypatch.setattr(journal_file, "datetime", SimpleNamespace(now=now))
     return jump
 
 

@@ -1,17 +1,19 @@
-"""A trial's journal: hashed lines, and whether a file is intact, cut short or altered.
+"""A trial's journal: stamped and hashed lines, and whether a file is intact, cut short or altered.
 
 A line is a JSON object with its own hash and that of the previous line:
 `{"n":…,"previous":"…",…,"sha256":"…"}` and a newline. `n` counts from 1, `previous` is the `sha256`
 of the previous line (64 zeros in the first), and `sha256` is that of the line's bytes before its
-comma, closed by `}`.
+comma, closed by `}`. The times of an entry are simulated time, the monotonic clock and UTC.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import datetime, timezone
 from enum import Enum
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -32,6 +34,26 @@ FIRST_BYTES = f'{{"n":1,"previous":"{NO_LINE}","kind":"header","format":"{FORMAT
 
 _SEAL = b',"sha256":"'
 _SEAL_LENGTH = len(_SEAL) + 64 + len(b'"}')
+
+
+def stamp(tick: int, sim_time: float) -> dict[str, Any]:
+    """Return the times that every entry of a journal carries, in s and as ISO 8601."""
+    return {
+        "tick": tick,
+        "simTime": sim_time,
+        "monotonic": time.monotonic(),
+        "utc": iso(datetime.now(timezone.utc)),
+    }
+
+
+def iso(moment: datetime) -> str:
+    """Return a moment in UTC as ISO 8601, such as `2024-05-17T09:30:00.250Z`."""
+    return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+
+
+def file_stamp(utc: str) -> str:
+    """Return an ISO 8601 moment as it goes into a file name, such as `20240517T093000Z`."""
+    return utc.replace("-", "").replace(":", "").split(".")[0] + "Z"
 
 
 class DamagedLineError(ValueError):

@@ -21,6 +21,8 @@ from rastrainer.journal.journal_file import (
     NO_LINE,
     DamagedLineError,
     decode_line,
+    file_stamp,
+    iso,
 )
 from rastrainer.protocol import TRIAL_RUN, AbortReason, Phase
 from rastrainer.trial.aborted_trial import AbortedTrial
@@ -28,7 +30,6 @@ from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.input.inputs import SourceKind
-from rastrainer_simulator.ops.stamps import file_stamp, iso
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 
 _REGISTERED = b'"kind":"registered"'
