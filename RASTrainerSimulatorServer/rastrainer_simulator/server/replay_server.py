@@ -21,7 +21,7 @@ from rastrainer_simulator.flow.session.preferences import (
     Preferences,
     read_preferences,
 )
-from rastrainer_simulator.net.state_feed import StateSource
+from rastrainer_simulator.loop.results import StateSource
 from rastrainer_simulator.net.views.start_view_server import start_view_server
 from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.folders import config_folder, log_folder

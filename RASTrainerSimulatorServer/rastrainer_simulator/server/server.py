@@ -31,11 +31,11 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.study_steps import StudySteps
 from rastrainer_simulator.loop.control_loop import ControlLoop
+from rastrainer_simulator.loop.results import StateFeed, TrialLog
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.listener import is_loopback
-from rastrainer_simulator.net.state_feed import StateFeed, TrialLog
 from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses

@@ -10,9 +10,9 @@ from collections.abc import Iterable, Sequence
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.core.setup import SimulationSetup
+from rastrainer_simulator.loop.results import StateSource
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.net.views.boards import Boards
 from rastrainer_simulator.net.views.incoming import DESKTOP, HEADSET

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_VIEW_PORT
+from rastrainer_simulator.loop.results import StateSource
 from rastrainer_simulator.net.limits import ViewLimits
-from rastrainer_simulator.net.state_feed import StateSource
 from rastrainer_simulator.net.views.access_control import LONGEST_KEY, SHORTEST_KEY
 from rastrainer_simulator.net.views.view_server import ViewServer
 from rastrainer_simulator.ops.instructor_pin import PinGuesses

@@ -15,9 +15,9 @@ from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
 from rastrainer_simulator.assets import NOT_BUILT, asset_path, page_folder
+from rastrainer_simulator.loop.results import StateFeed, StateSource
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import is_loopback
-from rastrainer_simulator.net.state_feed import StateFeed, StateSource
 from rastrainer_simulator.net.views.access_control import (
     BOARDS_FILE,
     ROLE,

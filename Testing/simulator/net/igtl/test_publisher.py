@@ -13,9 +13,9 @@ import pytest
 from rastrainer.igtl.content import Points, String
 from rastrainer.igtl.message import HEADER_BYTES, read_header, unpack
 from rastrainer.protocol import DeviceName, Phase, Proximity
+from rastrainer_simulator.loop.results import StateFeed
 from rastrainer_simulator.loop.timing import Pacer
 from rastrainer_simulator.net.igtl.publisher import PoseSubscription, Publisher
-from rastrainer_simulator.net.state_feed import StateFeed
 from rastrainer_simulator.state import StepResult, TrainingState
 from rastrainer_simulator.trial_state import (
     CheckedPoint,
