@@ -14,7 +14,12 @@ from rastrainer.journal.journal_file import read_journal, stamp
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
-from rastrainer.study.delivered_trial import score_by_protocol, store_delivered, with_progress
+from rastrainer.study.delivered_trial import (
+    score_references,
+    scored_with_journal,
+    store_delivered,
+    with_progress,
+)
 from rastrainer.trial.analysis import (
     RevealedTruth,
     analyze_trial,
@@ -99,7 +104,7 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
             )
             told = archive.answer("SubmitRegistration", registration, stamp(0, 0.0))
             truth = RevealedTruth.from_json(told)
-            scored = score_by_protocol(stored.analysis, truth, scenario, study)
+            scored = scored_with_journal(stored.analysis, truth, scenario, score_references(study))
             study.add_results(record.trial_id, score=scored.score)
             slicers = score_arguments(with_progress(scored, study))
             (own,) = alone.entries(record.trial_id, "scored")

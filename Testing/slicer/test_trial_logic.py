@@ -20,7 +20,7 @@ from rastrainer.slicer.scene.nodes import Role, findNode
 from rastrainer.slicer.scene.registration_nodes import isApplied
 from rastrainer.study.database.database import LockWait, StudyUnreachableError
 from rastrainer.study.database.study import Study
-from rastrainer.study.delivered_trial import score_by_protocol
+from rastrainer.study.delivered_trial import scored_with_journal
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer_headless.connector import headlessKit
 from Testing.slicer.simulator_double import SimulatorDouble, run_logic_until, run_until_received
@@ -352,10 +352,10 @@ def reviews(monkeypatch):
 
     def scored(analysis, *arguments):
         done.append((analysis.record.trial_id, threading.get_ident()))
-        return score_by_protocol(analysis, *arguments)
+        return scored_with_journal(analysis, *arguments)
 
     monkeypatch.setattr("rastrainer.slicer.logic.trial_computations.analyze_trial", registered)
-    monkeypatch.setattr("rastrainer.slicer.logic.trial_logic.score_by_protocol", scored)
+    monkeypatch.setattr("rastrainer.slicer.logic.trial_computations.scored_with_journal", scored)
     return done
 
 

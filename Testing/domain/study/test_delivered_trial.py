@@ -11,7 +11,12 @@ import pytest
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.study.database.study import Study
-from rastrainer.study.delivered_trial import score_by_protocol, store_delivered, with_progress
+from rastrainer.study.delivered_trial import (
+    score_references,
+    scored_with_journal,
+    store_delivered,
+    with_progress,
+)
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.trial.analysis import RevealedTruth, analyze_trial
@@ -51,7 +56,7 @@ def reviewed(study, number, task="task-1"):
     """A trial with exact touches, stored with its results."""
     record = exact_touches(number, task)
     registered = analyze_trial(TrialRecord.from_json(record), SCENARIO)
-    analysis = score_by_protocol(registered, TRUTH, SCENARIO, study)
+    analysis = scored_with_journal(registered, TRUTH, SCENARIO, score_references(study))
     study.add_trial(record, [analysis.rigid], score=analysis.score)
     return with_progress(analysis, study)
 
@@ -97,7 +102,7 @@ def test_scoring_a_registered_trial_neither_registers_nor_estimates_again(study,
     registered = analyze_trial(TrialRecord.from_json(exact_touches(1)), SCENARIO)
     monkeypatch.setattr("rastrainer.trial.touch_registration.register_all_kinds", None)
     monkeypatch.setattr("rastrainer.trial.touch_registration.target_error", None)
-    scored = score_by_protocol(registered, TRUTH, SCENARIO, study)
+    scored = scored_with_journal(registered, TRUTH, SCENARIO, score_references(study))
     assert scored.fits is registered.fits
     assert scored.target_errors is registered.target_errors
     assert (scored.truth, scored.feedback.score) == (TRUTH, scored.score)

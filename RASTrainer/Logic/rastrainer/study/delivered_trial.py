@@ -68,18 +68,21 @@ def store_delivered(
     return DeliveredTrial(record, analysis)
 
 
-References = Mapping[str, ScoreReference]
-"""References of the score, by task."""
-ScoreComputation = Callable[
-    [TrialAnalysis, RevealedTruth, Scenario, References | None], TrialAnalysis
-]
+def score_references(study: Study) -> Mapping[str, ScoreReference] | None:
+    """Return the score's references by task, as a study's protocol sets them; None without one.
+
+    Raises:
+        InputError: the study cannot be read.
+    """
+    protocol = StudyProgress(study).protocol()
+    return None if protocol is None else protocol.references
 
 
 def scored_with_journal(
     analysis: TrialAnalysis,
     truth: RevealedTruth,
     scenario: Scenario,
-    references: References | None = None,
+    references: Mapping[str, ScoreReference] | None = None,
     records: Path | None = None,
     pause: Callable[[], None] = lambda: None,
 ) -> TrialAnalysis:
@@ -89,7 +92,7 @@ def scored_with_journal(
         analysis: of the trial, as it was registered.
         truth: what the simulator has revealed.
         scenario: in which it was played.
-        references: as a study's protocol sets them; None without one.
+        references: those of the trial's study, as `score_references` returns them.
         records: folder of journals; None, or one that is not there, explains less of the touches.
         pause: called again and again while the journal is read; a thread may wait in it.
 
@@ -98,29 +101,6 @@ def scored_with_journal(
     """
     trajectory = trajectory_of(analysis.record, records, pause)
     return analysis.scored(scenario, truth, references, trajectory)
-
-
-def score_by_protocol(
-    analysis: TrialAnalysis,
-    truth: RevealedTruth,
-    scenario: Scenario,
-    study: Study,
-    score: ScoreComputation = scored_with_journal,
-) -> TrialAnalysis:
-    """Score a registered trial as its study's protocol says.
-
-    Args:
-        analysis: of the trial, as it was registered.
-        truth: what the simulator has revealed.
-        scenario: in which it was played.
-        study: whose protocol sets the references of the score.
-        score: computes the score with the protocol's references.
-
-    Raises:
-        InputError: the trial cannot be scored, or the study not be read.
-    """
-    protocol = StudyProgress(study).protocol()
-    return score(analysis, truth, scenario, None if protocol is None else protocol.references)
 
 
 def trajectory_of(

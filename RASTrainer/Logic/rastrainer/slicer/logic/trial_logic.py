@@ -30,7 +30,7 @@ from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
-from rastrainer.study.delivered_trial import DeliveredTrial, score_by_protocol, store_delivered
+from rastrainer.study.delivered_trial import DeliveredTrial, score_references, store_delivered
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
@@ -168,11 +168,9 @@ class TrialLogic:
         self, analysis: TrialAnalysis, study: Study, truth: RevealedTruth
     ) -> TrialAnalysis:
         scenario = self._findScenario(analysis.record.scenario)
-
-        def score(*values: Any) -> TrialAnalysis:
-            return self._run(SCORE, self._work.checkWanted, *values, self._records)
-
-        return score_by_protocol(analysis, truth, scenario, study, score)
+        references = score_references(study)
+        checkWanted = self._work.checkWanted
+        return self._run(SCORE, checkWanted, analysis, truth, scenario, references, self._records)
 
     def _resume(self) -> None:
         """Score the trials that were not scored before connection or study were lost."""
