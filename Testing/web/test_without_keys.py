@@ -120,8 +120,8 @@ def mouse(place, browser):
         trainee.go_home()
 
 
-@pytest.fixture
-def hand(place, browser):
+@contextmanager
+def hand_in_task_1(place, browser):
     """Somebody in Task 1, begun by a tracked hand."""
     with page_of(place, browser, "metaQuest3") as page:
         enter_headset(page)
@@ -248,16 +248,19 @@ def begin(trainee):
     trainee.begin_task("task-1")
 
 
-def test_a_tracked_hand_moves_the_tip_to_a_touch_undoes_it_and_opens_the_menu(place, hand):
-    hand.touch("1")
-    hand.press("undo", lambda: hand.touched == 0, "the undo")
-    hand.press("menu", lambda: hand.menu is not None, "the menu")
-    hand.choose("abort")
+def test_a_tracked_hand_moves_the_tip_to_a_touch_undoes_it_and_opens_the_menu(place, browser):
+    with hand_in_task_1(place, browser) as hand:
+        hand.touch("1")
+        hand.press("undo", lambda: hand.touched == 0, "the undo")
+        hand.press("menu", lambda: hand.menu is not None, "the menu")
+        hand.choose("abort")
     inputs = place.entries("input")
     assert {entry["operator"] for entry in inputs} <= {"headset's controllers", ""}
 
 
 @pytest.mark.soak
-def test_a_whole_trial_is_touched_and_scored_with_a_tracked_hand_alone(place, hand):
-    hand.play_to_result()
-    assert len(place.entries("touch")) == 15
+def test_a_whole_trial_is_touched_and_scored_with_a_tracked_hand_alone(tmp_path, browser):
+    slow = Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any")
+    with slow as place, hand_in_task_1(place, browser) as hand:
+        hand.play_to_result()
+        assert len(place.entries("touch")) == 15
