@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from Testing.test_architecture import FILES, named_in_strings, our_imports
+
 ROOT = Path(__file__).parents[1]
 TRACKED = [
     name
@@ -44,6 +46,7 @@ SHELL = re.compile(r"^(?:```sh\n.*?^```| {4,8}\S.*?)$", re.MULTILINE | re.DOTALL
 RUN = re.compile(r"python3? -m ((?:rastrainer|Testing)[\w.]*)")
 HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 SOURCE_FILE = re.compile(r"^[\w./-]+/[\w.-]+\.(?:py|ts|ui|md|json|cmake|toml|txt|lock|png|csv)$")
+WALK = re.compile(r"^\d\. \*(From .*?)\.\*(.*?)(?=^\S)", re.MULTILINE | re.DOTALL)
 MODULE = re.compile(r"^(rastrainer(?:_simulator|_headless)?(?:\.[A-Za-z_]\w*)+)$")
 
 
@@ -180,6 +183,27 @@ def test_the_architecture_page_describes_every_room():
     assert len(folders) > 20
     # `slicer` is told by its own rooms.
     assert {name for name in folders if name not in told} <= {"slicer"}
+
+
+def modules_of_walks() -> dict[str, list[str]]:
+    """Return the modules that a value passes through, by the walks that the design page tells."""
+    walks = WALK.findall(text_of("docs/design.md"))
+    return {name: [module_at(path) for path in CODE.findall(text)] for name, text in walks}
+
+
+def module_at(path: str) -> str:
+    (module,) = (name for name, file in FILES.items() if file.as_posix().endswith(f"/{path}"))
+    return module
+
+
+def test_each_file_of_a_walk_leads_to_another_one_of_it():
+    walks = modules_of_walks()
+    assert len(walks) == 3
+    for modules in walks.values():
+        leads_to = {name: {*our_imports()[name], *named_in_strings(name)} for name in modules}
+        for module in modules:
+            others = {name for name in modules if module in leads_to[name]} | leads_to[module]
+            assert others & set(modules) - {module}, module
 
 
 def test_a_missing_path_would_be_detected():
