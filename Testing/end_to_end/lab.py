@@ -107,9 +107,9 @@ class SlicerProcess:
 
     def events_until(self, event: str) -> list[dict]:
         """Return its events from now on, up to the first event of a kind."""
-        told = []
+        received = []
         for line in self._process.stdout:
-            told.append(json.loads(line))
-            if told[-1]["event"] == event:
-                return told
-        raise AssertionError(f"Slicer's side has told no {event}: {told}")
+            received.append(json.loads(line))
+            if received[-1]["event"] == event:
+                return received
+        raise AssertionError(f"Slicer's side has told no {event}: {received}")

@@ -159,8 +159,8 @@ class SurvivingPlayer:
             self.trial_id = ""
         else:
             self._go_to(client, len(kept))
-            told = self._send(client, CommandName.CAPTURE, killing)
-            kept.append((told["label"], tuple(told["positionMm"])))
+            answer = self._send(client, CommandName.CAPTURE, killing)
+            kept.append((answer["label"], tuple(answer["positionMm"])))
 
     def _begin(self, trial_id: str) -> None:
         self.trial_id = trial_id

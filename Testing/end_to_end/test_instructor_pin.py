@@ -91,9 +91,9 @@ def test_a_pin_typed_in_one_page_appears_in_no_other_page_and_in_no_file(place):
     assert PIN not in "".join(page.received)
     for unseeing in (other, spectator):
         unseeing.until_menu("settings")
-        told = "".join(unseeing.received)
-        assert PIN not in told
-        assert "•" not in told
+        text = "".join(unseeing.received)
+        assert PIN not in text
+        assert "•" not in text
     status, errors = simulator.stop()
     assert status == 0
     assert PIN not in errors

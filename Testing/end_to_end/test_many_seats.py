@@ -286,9 +286,9 @@ def check_trials(lab):
         reading = read_journal(journals[trial.record.trial_id])
         assert reading.integrity is Integrity.INTACT
         record = reading.of_kind("registered")[-1]["record"]
-        told = [(point["label"], tuple(point["positionMm"])) for point in record["points"]]
+        found = [(point["label"], tuple(point["positionMm"])) for point in record["points"]]
         kept = [(point.label, tuple(point.position_mm)) for point in trial.record.points]
-        assert kept == told
+        assert kept == found
         assert len(kept) == 15
 
 

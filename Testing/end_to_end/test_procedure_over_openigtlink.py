@@ -113,8 +113,8 @@ def perform(surgeon: Surgeon) -> dict:
     seen |= play(surgeon.player, scenario, procedure="dbs")
     trial_id = seen["StartTask"]["trialId"]
     surgeon.kill_and_resume()
-    told = surgeon.player.do("GetTrial", trialId=trial_id)
-    registered = register_trial(GivenPoints.of_answer(told), scenario)
+    answer = surgeon.player.do("GetTrial", trialId=trial_id)
+    registered = register_trial(GivenPoints.of_answer(answer), scenario)
     seen["UseRegistration"] = surgeon.player.do("UseRegistration", **registered.arguments(trial_id))
     head_to_world = transforms.inverse(registered.rigid.matrix)
     check = transforms.apply(head_to_world, scenario.procedures[0].checkpoints[0].position)
@@ -232,8 +232,8 @@ def test_the_record_holds_the_whole_procedure(seen):
 
 
 def test_the_truth_stays_secret_until_the_registration_is_submitted(seen):
-    told = [seen[name] for name in ("UseRegistration", "checked", "offer", "before")]
-    assert "headToWorld" not in json.dumps(told)
+    found = [seen[name] for name in ("UseRegistration", "checked", "offer", "before")]
+    assert "headToWorld" not in json.dumps(found)
     assert "headToWorld" in seen["truth"]
     assert seen["scored"]["phase"] == "scored"
 

@@ -30,10 +30,10 @@ def test_a_scenario_is_saved_without_face_and_names_and_the_panel_says_so(host, 
     host.answer("Save the scenario", tmp_path / "out.zip")
     host.press("exportScenarioButton")
     assert host.messages == []
-    told = host.text("scenarioText")
-    assert "out.zip was written. Removed: the face, the skull, its title, its name" in told
+    text = host.text("scenarioText")
+    assert "out.zip was written. Removed: the face, the skull, its title, its name" in text
     given = read_scenario(tmp_path)
-    assert given.title in told
+    assert given.title in text
     assert given.title.startswith("Head ")
     assert given.skull_mesh is None
     assert read_head_mesh(given.head_mesh).vertices[:, 1].max() < egg().vertices[:, 1].max() - 3.0

@@ -39,8 +39,8 @@ def test_the_tour_steps_that_need_no_trial_succeed_in_the_host(host, tmp_path):
 def test_the_release_tour_succeeds_in_the_host(host, tmp_path):
     steps = tour(host, tmp_path, FAST, "--patience", "1200")
     assert len(steps) > 32
-    told = json.loads((tmp_path / "tour" / "tour.json").read_text())
-    assert told["unused"] == sorted(NOT_IN_THE_TOUR)
+    content = json.loads((tmp_path / "tour" / "tour.json").read_text())
+    assert content["unused"] == sorted(NOT_IN_THE_TOUR)
 
 
 def tour(host, tmp_path, options, *words):
@@ -50,12 +50,12 @@ def tour(host, tmp_path, options, *words):
     # The usual port may be another test's, which runs beside this one.
     slicer.app.settings().setValue(PORT.key, free_port())
     status = host.run_script(TOUR, "--", "--output", str(tmp_path / "tour"), *words)
-    told = json.loads((tmp_path / "tour" / "tour.json").read_text())
-    assert [step["note"] for step in told["steps"] if not step["ok"]] == []
-    assert told["errors"] == []
+    content = json.loads((tmp_path / "tour" / "tour.json").read_text())
+    assert [step["note"] for step in content["steps"] if not step["ok"]] == []
+    assert content["errors"] == []
     assert status == 0
-    assert len(list((tmp_path / "tour").glob("*.png"))) == len(told["steps"])
-    return told["steps"]
+    assert len(list((tmp_path / "tour").glob("*.png"))) == len(content["steps"])
+    return content["steps"]
 
 
 def test_a_failing_step_and_an_error_in_the_log_end_slicer_with_an_error(host, tmp_path):
@@ -63,8 +63,8 @@ def test_a_failing_step_and_an_error_in_the_log_end_slicer_with_an_error(host, t
     status = host.run_script(
         TOUR, "--output", str(tmp_path / "tour"), "--program", str(tmp_path / "nowhere")
     )
-    told = json.loads((tmp_path / "tour" / "tour.json").read_text())
-    assert [step["ok"] for step in told["steps"]] == [True, True, False]
-    assert "There is no program" in told["errors"][0]
+    content = json.loads((tmp_path / "tour" / "tour.json").read_text())
+    assert [step["ok"] for step in content["steps"]] == [True, True, False]
+    assert "There is no program" in content["errors"][0]
     assert "| Start and connect | NO |" in (tmp_path / "tour" / "tour.md").read_text()
     assert status == 1

@@ -44,60 +44,60 @@ def test_results_arrive_on_the_main_thread_in_the_order_of_the_work(work):
 
 
 def test_an_error_in_the_work_is_reported_and_the_next_work_runs(work):
-    told = []
+    received = []
 
     def refuse():
         raise InputError("The disk is full.")
 
-    work.do(refuse, told.append, lambda error: told.append(str(error)))
-    work.do(lambda: "done", told.append)
+    work.do(refuse, received.append, lambda error: received.append(str(error)))
+    work.do(lambda: "done", received.append)
     run(work)
-    assert told == ["The disk is full.", "done"]
+    assert received == ["The disk is full.", "done"]
 
 
 def test_a_programming_error_is_raised_and_the_next_work_is_done(work):
-    told = []
-    work.do(lambda: 1 // 0, told.append, lambda error: told.append(type(error)))
-    work.do(lambda: "done", told.append)
+    received = []
+    work.do(lambda: 1 // 0, received.append, lambda error: received.append(type(error)))
+    work.do(lambda: "done", received.append)
     with pytest.raises(ZeroDivisionError):
         run(work)
     run(work)
-    assert told == [ZeroDivisionError, "done"]
+    assert received == [ZeroDivisionError, "done"]
 
 
 def test_a_result_handler_may_queue_more_work(work):
-    told = []
-    work.do(lambda: "first", lambda _result: work.do(lambda: "third", told.append))
-    work.do(lambda: "second", told.append)
+    received = []
+    work.do(lambda: "first", lambda _result: work.do(lambda: "third", received.append))
+    work.do(lambda: "second", received.append)
     run(work)
-    assert told == ["second", "third"]
+    assert received == ["second", "third"]
 
 
 def test_closing_hands_over_what_ends_soon_and_begins_nothing_more(work, monkeypatch):
     # Soon is a second, in which a busy machine may do nothing.
     monkeypatch.setattr(background_work, "CLOSING_S", 120.0)
-    may_end, told = threading.Event(), []
+    may_end, received = threading.Event(), []
 
     def take(result):
-        told.append(result)
-        work.do(lambda: told.append("begun"), told.append)
+        received.append(result)
+        work.do(lambda: received.append("begun"), received.append)
 
     work.do(lambda: may_end.wait(60), take)
-    work.do(lambda: told.append("begun"), told.append)
+    work.do(lambda: received.append("begun"), received.append)
     may_end.set()
     work.close()
-    work.do(lambda: told.append("begun"), told.append)
-    assert told == [True]
+    work.do(lambda: received.append("begun"), received.append)
+    assert received == [True]
     assert not work.isBusy
 
 
 def test_closing_does_not_wait_forever(work):
-    may_end, told = threading.Event(), []
-    work.do(may_end.wait, told.append)
+    may_end, received = threading.Event(), []
+    work.do(may_end.wait, received.append)
     work.close()
     may_end.set()
     work.process()
-    assert told == []
+    assert received == []
 
 
 def test_the_main_thread_waits_only_briefly_for_a_worker(monkeypatch):

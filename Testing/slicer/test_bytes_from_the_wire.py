@@ -113,15 +113,15 @@ def test_a_failing_listener_does_not_stop_the_others(link, simulator, contained_
     def fail(_value):
         raise KeyError("a listener's mistake")
 
-    told = []
+    received = []
     for signal in (link.stateChanged, link.pointsChanged, link.trialCompleted):
         signal.connect(fail)
-        signal.connect(told.append)
+        signal.connect(received.append)
     for number in range(3):
         simulator.send_command("TrialCompleted", {"number": number})
     simulator.send(DeviceName.CAPTURED_POINTS, POINTS)
     simulator.send(DeviceName.SIM_STATE, String("{}"))
-    run_link_until(link, lambda: len(told) == 5)
+    run_link_until(link, lambda: len(received) == 5)
     assert len(contained_failures) == 3
     assert "a listener's mistake" in contained_failures[0]
     contained_failures.clear()

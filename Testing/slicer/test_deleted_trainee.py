@@ -83,7 +83,7 @@ def test_a_deletion_that_has_not_begun_is_canceled(panel, journal):
 
 def test_a_deletion_that_has_begun_continues_and_says_so(panel, journal, monkeypatch):
     may_go_on = threading.Event()
-    erase_journals, told = trainee_data.erase_journals, []
+    erase_journals, received = trainee_data.erase_journals, []
 
     def erase(*values):
         assert may_go_on.wait(60.0)
@@ -92,9 +92,9 @@ def test_a_deletion_that_has_begun_continues_and_says_so(panel, journal, monkeyp
     def look():
         button = panel.find("deleteTraineeButton")
         if panel.text("traineeText") == f"Deleting {NAME}":
-            told.append((button.enabled, button.toolTip))
+            received.append((button.enabled, button.toolTip))
             panel.widget.logic.session.trainees.changed.emit()
-            told.append((button.enabled, button.toolTip))
+            received.append((button.enabled, button.toolTip))
             may_go_on.set()
 
     monkeypatch.setattr(trainee_data, "erase_journals", erase)
@@ -104,8 +104,8 @@ def test_a_deletion_that_has_begun_continues_and_says_so(panel, journal, monkeyp
     timer.start(5)
     panel.press("deleteTraineeButton")
     timer.stop()
-    assert {enabled for enabled, _tip in told} == {False}
-    assert "can no longer be canceled" in told[-1][1]
+    assert {enabled for enabled, _tip in received} == {False}
+    assert "can no longer be canceled" in received[-1][1]
     assert (journal.exists(), stored(panel)) == (False, [])
 
 

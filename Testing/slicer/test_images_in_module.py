@@ -110,8 +110,8 @@ def test_unusable_images_are_reported_with_the_scenario(host):
     host.unfold("showScenarioButton")
     host.choose("scenarioComboBox", "Broken images")
     host.press("showScenarioButton")
-    told = "There are no images in the slice views: "
-    host.wait_until(lambda: told in host.text("scenarioText"), "it is told")
+    text = "There are no images in the slice views: "
+    host.wait_until(lambda: text in host.text("scenarioText"), "it is told")
     assert "volume.nrrd must start as NRRD files do" in host.text("scenarioText")
     assert images(host) is None
     assert host.messages == []
@@ -167,8 +167,8 @@ class Trial:
         self._id = str(uuid.UUID(int=7))
 
     def tell(self, **state):
-        told = {"trialId": self._id, "phase": "running", "task": "task-1", "trainee": "T-001"}
-        self._simulator.send(DeviceName.SIM_STATE, String(json.dumps({**told, **state})))
+        values = {"trialId": self._id, "phase": "running", "task": "task-1", "trainee": "T-001"}
+        self._simulator.send(DeviceName.SIM_STATE, String(json.dumps({**values, **state})))
 
     def wait_for_slices_at(self, wanted):
         self._host.wait_until(

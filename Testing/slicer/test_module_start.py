@@ -65,7 +65,7 @@ def test_without_the_connector_the_user_learns_what_to_install_before_any_downlo
             host.press("nextStepButton")
         is_set_up = session.simulator.setup.isRunning
         host.press("connectButton")
-        told = host.text("stateText") + host.text("remedyText")
+        text = host.text("stateText") + host.text("remedyText")
     finally:
         host.close()
     assert (needs_setup, is_set_up) == (True, False)
@@ -73,7 +73,7 @@ def test_without_the_connector_the_user_learns_what_to_install_before_any_downlo
         "The extension SlicerOpenIGTLink is not installed. Install it in the Extensions Manager "
         "and restart Slicer."
     )
-    assert "SlicerOpenIGTLink" in told
+    assert "SlicerOpenIGTLink" in text
     assert host.errors == []
 
 

@@ -28,8 +28,8 @@ class Instructor:
         self.wait_until(lambda: host.text("linkText") == "Connected", "it is connected")
 
     def tell(self, **state):
-        told = {"trialId": str(uuid.UUID(int=5)), "trainee": "T001", "task": "task-1", **state}
-        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps(told)))
+        values = {"trialId": str(uuid.UUID(int=5)), "trainee": "T001", "task": "task-1", **state}
+        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps(values)))
 
     def wait_for(self, title):
         self.wait_until(lambda: self.host.text("nextStepButton") == title, f"it says {title}")

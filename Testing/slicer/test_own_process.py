@@ -34,13 +34,13 @@ def ignore(_step, _share):
 
 def test_a_head_found_in_a_separate_process_equals_one_found_in_this_process():
     scan, settings = phantom(spacing=(3.0, 3.0, 3.0), size=0.4), HeadSettings()
-    told = []
-    found = OwnProcess(PYTHON)(FIND_HEAD, lambda *step: told.append(step), scan, settings)
+    received = []
+    found = OwnProcess(PYTHON)(FIND_HEAD, lambda *step: received.append(step), scan, settings)
     expected = findHead(scan, settings, ignore)
     assert (found.baseMm, found.threshold) == (expected.baseMm, expected.threshold)
     np.testing.assert_array_equal(found.level, expected.level)
     np.testing.assert_array_equal(found.body, expected.body)
-    assert told[-1] == ("Closing tunnels", 0.7)
+    assert received[-1] == ("Closing tunnels", 0.7)
 
 
 def test_unusable_input_is_refused_in_the_same_words(tmp_path, monkeypatch):

@@ -70,10 +70,10 @@ class Trial:
         self.host.wait_until(beats, "the module knows")
 
     def tell(self, phase, number=5):
-        told = {"trialId": str(uuid.UUID(int=number)), "trainee": "T001", "task": "task-1"}
-        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**told, "phase": phase})))
+        values = {"trialId": str(uuid.UUID(int=number)), "trainee": "T001", "task": "task-1"}
+        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**values, "phase": phase})))
         progress = self.host.widget.logic.session.training
-        wanted = (phase, told["trialId"])
+        wanted = (phase, values["trialId"])
         self.wait_until(lambda: (progress.progress.phase, progress.progress.trialId) == wanted)
 
     @property

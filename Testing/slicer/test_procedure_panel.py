@@ -49,8 +49,8 @@ def surgery(host):
 
 def tell(host, simulator, phase, **procedure):
     """Have the simulator say how far the procedure is, and wait until it is shown."""
-    told = {"name": "seeg", "trajectory": 1, "trajectories": 5, "registrationInUse": True}
-    state = {**STATE, "phase": phase, "procedure": {**told, **procedure}}
+    values = {"name": "seeg", "trajectory": 1, "trajectories": 5, "registrationInUse": True}
+    state = {**STATE, "phase": phase, "procedure": {**values, **procedure}}
     logic = host.widget.logic.session.procedure
     before = logic.status
     simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
@@ -115,8 +115,8 @@ def test_each_phase_offers_its_steps_and_says_what_comes_next(surgery):
     for phase, buttons in BUTTONS.items():
         values, sentence = words[phase]
         tell(host, simulator, phase, **values)
-        told = host.text("procedureStateText") + " " + host.text("procedureInstructionText")
-        assert sentence in told
+        text = host.text("procedureStateText") + " " + host.text("procedureInstructionText")
+        assert sentence in text
         assert [name for name in ALL if host.find(name).enabled] == sorted(buttons)
         for button, command in buttons.items():
             before = len(sent(simulator, command))

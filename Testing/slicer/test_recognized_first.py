@@ -102,21 +102,21 @@ def test_a_simulator_of_another_version_is_not_connected_to(link):
 
 def test_a_connection_is_tested_without_being_made(link, simulator, clock):
     clock.stop()
-    told = []
-    asked = link.testConnection("localhost", simulator.port, told.append)
+    received = []
+    asked = link.testConnection("localhost", simulator.port, received.append)
     assert asked.state is LinkState.LOOKING
-    run_link_until(link, lambda: told)
-    assert told[0].state is LinkState.CONNECTED
-    assert f"A RASTrainer simulator answers at localhost:{simulator.port}" in told[0].sentence
+    run_link_until(link, lambda: received)
+    assert received[0].state is LinkState.CONNECTED
+    assert f"A RASTrainer simulator answers at localhost:{simulator.port}" in received[0].sentence
     assert link.status.state is LinkState.OFF
     assert link.connector is None
 
 
 def test_a_connection_test_names_another_program(link, clock):
     clock.stop()
-    told = []
+    received = []
     with web_server() as port:
-        link.testConnection("127.0.0.1", port, told.append)
-        run_link_until(link, lambda: told)
-    assert told[0].state is LinkState.OTHER_PROGRAM
-    assert WEB_PAGE in told[0].sentence
+        link.testConnection("127.0.0.1", port, received.append)
+        run_link_until(link, lambda: received)
+    assert received[0].state is LinkState.OTHER_PROGRAM
+    assert WEB_PAGE in received[0].sentence

@@ -31,11 +31,11 @@ def test_source_size_and_folder_are_reported_before_anything_is_downloaded(host,
     monkeypatch.setattr("platform.machine", lambda: "x86_64")
     host.find("setupGroupBox").collapsed = False
     host.type("indexLineEdit", "https://mirror.example/simple")
-    told = host.text("setupText")
+    text = host.text("setupText")
     sizes = setup.package.sizes()
-    assert "comes from the package index https://mirror.example/simple" in told
-    assert str(setup.folder) in told
-    assert f"About {sizes.downloadMB} MB will be downloaded, and {sizes.keptMB} MB kept." in told
+    assert "comes from the package index https://mirror.example/simple" in text
+    assert str(setup.folder) in text
+    assert f"About {sizes.downloadMB} MB will be downloaded, and {sizes.keptMB} MB kept." in text
     host.type("indexLineEdit", "")
     assert "comes from the public package index of Python" in host.text("setupText")
     host.type("wheelsPathLineEdit", "/media/wheels")

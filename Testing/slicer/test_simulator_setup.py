@@ -228,11 +228,11 @@ def test_in_a_checkout_the_sources_are_run_directly(tmp_path):
     assert not (setup.folder / "rastrainer").exists()
     source = tmp_path / "checkout" / "RASTrainerSimulatorServer/rastrainer_simulator/cli/main.py"
     source.write_text("print('Edited since.')", encoding="utf-8")
-    program, told = SimulatorProgram(), []
-    program.wroteLine.connect(told.append)
+    program, received = SimulatorProgram(), []
+    program.wroteLine.connect(received.append)
     program.start(setup.command(["simulator"]))
     wait_until(lambda: not program.isRunning, program.process)
-    assert told == ["Edited since."]
+    assert received == ["Edited since."]
 
 
 def test_removing_the_simulator_leaves_nothing(installed):
@@ -258,15 +258,15 @@ def test_an_installed_simulator_starts_reports_its_port_and_stops(installed):
 
 
 def test_the_pairing_of_a_headset_is_described_until_the_simulator_ends(installed):
-    program, told = SimulatorProgram(), []
-    program.pairingChanged.connect(lambda: told.append(program.pairingSentence))
+    program, received = SimulatorProgram(), []
+    program.pairingChanged.connect(lambda: received.append(program.pairingSentence))
     program.start(installed.command(["simulator", "--port", "1", "--lan"]))
     wait_until(lambda: program.pairingCode == "678901", program.process)
     program.stop()
     here = "In a browser or a headset open http://127.0.0.1:18945"
     everywhere = f"{here} or https://192.0.2.7:18946 or https://192.0.2.8:18946"
     warning = "The browser warns about a certificate made here; its SHA-256 fingerprint is AB:01."
-    assert told == [
+    assert received == [
         "",
         f"{here} and enter the code 012345.",
         f"{everywhere} and enter the code 012345. {warning}",

@@ -121,8 +121,8 @@ def test_an_aborted_trial_is_played_again_only_with_a_reason(begun):
     begun.widget.logic.session.aborted.kept.emit(AbortedTrial.from_json(record))
     begun.process_events()
     assert "aborted with 15 of 15 points touched" in begun.text("stepText")
-    told = "Aborted: 1, of them 1 after all touches"
-    begun.wait_until(lambda: told in begun.text("traineeText"), "it is counted")
+    text = "Aborted: 1, of them 1 after all touches"
+    begun.wait_until(lambda: text in begun.text("traineeText"), "it is counted")
     assert not begun.find("startStepButton").visible
     begun.answer("Why is the aborted trial repeated?", "no reason")
     begun.answer("only with a reason", "the tracking of the headset was lost")

@@ -59,8 +59,8 @@ class Tracing(Room):
         angles = np.radians(np.arange(count, dtype=float))
         self.places = 90.0 * np.stack([np.sin(angles), np.cos(angles), np.zeros(count)], axis=1)
         self.now += 1.0
-        told = {"on": on, "kept": count, "strokes": 1, "isGuided": is_guided}
-        self.tell(**{"method": "surface", "trace": told, "nextPoint": None, **state})
+        values = {"on": on, "kept": count, "strokes": 1, "isGuided": is_guided}
+        self.tell(**{"method": "surface", "trace": values, "nextPoint": None, **state})
 
     def run_until(self, condition):
         if not hasattr(self, "traces"):

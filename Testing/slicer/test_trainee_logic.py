@@ -67,11 +67,11 @@ def test_negative_results_are_shown_with_a_true_minus_sign():
 
 
 def test_a_new_trainee_is_chosen_and_all_listeners_are_notified(logic):
-    told = []
-    logic.changed.connect(lambda: told.append(logic.chosen))
+    received = []
+    logic.changed.connect(lambda: received.append(logic.chosen))
     assert logic.create("", consent=True).pseudonym == "T001"
     assert logic.create(" Blue ", consent=False).pseudonym == "Blue"
-    assert (told, logic.chosen) == (["T001", "Blue"], "Blue")
+    assert (received, logic.chosen) == (["T001", "Blue"], "Blue")
     with pytest.raises(InputError, match="taken"):
         logic.create("Blue", consent=False)
 

@@ -293,8 +293,8 @@ def test_each_score_is_sent_once_even_if_the_link_opens_again_meanwhile(lab, mak
     lab.link.opened.emit()
     lab.run_until(lambda: len(lab.scored) >= 4 and not lab.work.isBusy)
     lab.run_until(lambda: not any(map(lab.logic.isBeingScored, trials)))
-    told = [arguments["trialId"] for arguments in lab.sent("TrialScored")]
-    assert sorted(told) == trials
+    found = [arguments["trialId"] for arguments in lab.sent("TrialScored")]
+    assert sorted(found) == trials
     assert sorted(trial.record.trial_id for trial in lab.scored) == trials
 
 

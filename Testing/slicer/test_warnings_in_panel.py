@@ -109,9 +109,9 @@ UNMENDED = {
 def test_a_warning_without_a_remedy_names_its_points_and_good_touches_raise_none(panel, touches):
     for case, (change, named, advice) in UNMENDED.items():
         touch(panel, change(touches))
-        told = " ".join([*warnings(panel), panel.text("registrationText")])
-        assert named in told, case
-        assert advice in told, case
+        text = " ".join([*warnings(panel), panel.text("registrationText")])
+        assert named in text, case
+        assert advice in text, case
     touch(panel, touches)
     assert warnings(panel) == []
     assert panel.find("residualsTable").rowCount == 15

@@ -46,8 +46,8 @@ class Room:
         return {} if self.refusal is None or name == "Hello" else self.refusal
 
     def tell(self, **state):
-        told = {"trialId": TRIAL, "phase": "running", "task": "task-1", "trainee": "T001"}
-        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**told, **state})))
+        values = {"trialId": TRIAL, "phase": "running", "task": "task-1", "trainee": "T001"}
+        self.simulator.send(DeviceName.SIM_STATE, String(json.dumps({**values, **state})))
 
     def sent(self, name):
         return [arguments for sent, arguments in self.simulator.commands if sent == name]

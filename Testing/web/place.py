@@ -288,5 +288,5 @@ class CarriedTrainee(Trainee):
 def scored_trial(slicer: subprocess.Popen) -> dict:
     """Wait for the end of Slicer's side; return the results of its trial."""
     lines = slicer.communicate(timeout=PATIENCE_S)[0].splitlines()
-    told = [json.loads(line) for line in lines]
-    return next(line["results"] for line in told if line["event"] == "trial")
+    found = [json.loads(line) for line in lines]
+    return next(line["results"] for line in found if line["event"] == "trial")

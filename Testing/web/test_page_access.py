@@ -243,9 +243,9 @@ def test_the_browsers_focus_follows_the_simulators_and_has_a_name_and_a_role(pla
     trainee.focus(choice.name)
     before = trainee.value(choice.name)
     trainee.press("left", lambda: trainee.value(choice.name) != before, "another value")
-    told = f"{choice.label} {trainee.value(choice.name)}"
-    page.wait_for_selector(f"#menu [role=status]:has-text('{told}')", state="attached")
-    assert page.get_by_role("button", name=told, exact=True).count() == 1
+    text = f"{choice.label} {trainee.value(choice.name)}"
+    page.wait_for_selector(f"#menu [role=status]:has-text('{text}')", state="attached")
+    assert page.get_by_role("button", name=text, exact=True).count() == 1
     trainee.press("right", lambda: trainee.value(choice.name) == before, "the value before")
 
 

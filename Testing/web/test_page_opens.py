@@ -89,8 +89,8 @@ def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, way
     # Only the views of this computer are told how others are paired.
     if way == "loopback":
         stranger.wait_for_selector(f"#status:has-text('{place.simulator.code}')")
-    told = stranger.inner_text("#status")
-    assert (place.simulator.code in told, place.network in told) == (way == "loopback",) * 2
+    text = stranger.inner_text("#status")
+    assert (place.simulator.code in text, place.network in text) == (way == "loopback",) * 2
 
 
 @pytest.fixture(scope="module")

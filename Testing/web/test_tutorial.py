@@ -140,9 +140,9 @@ def test_the_tutorial_is_played_from_the_id_to_the_trial_run_with(way, tmp_path,
         step, words = SAYS[way.device]
         assert words in dict(player.read)[step]
         (path,) = place.records.glob("*.tutorial")
-        told = json.loads(path.read_text())
-        assert (told["device"], told["mode"]) == (way.device.value, mode)
-        assert max(told["firstErrorMm"], *told["errorsMm"]) < 10.0
+        content = json.loads(path.read_text())
+        assert (content["device"], content["mode"]) == (way.device.value, mode)
+        assert max(content["firstErrorMm"], *content["errorsMm"]) < 10.0
         trainee.until_menu("tutorial-done")
         assert item(trainee, "trial-run").is_enabled
         assert list(place.records.glob("*.journal")) == []

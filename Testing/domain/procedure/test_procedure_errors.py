@@ -166,9 +166,9 @@ def test_a_procedure_is_summarized_by_root_mean_squares():
     assert analysis.target_rms_mm == pytest.approx(np.sqrt(np.mean(np.square(lengths))))
     assert analysis.target_by_registration_rms_mm == pytest.approx(2.0)
     assert analysis.target_by_hand_rms_mm == pytest.approx(0.0, abs=1e-9)
-    told = json.loads(json.dumps(analysis.to_json()))
-    assert told["trajectories"][1]["targetPointError"]["mm"] == lengths[1]
-    assert told["alignments"] == 2
+    content = json.loads(json.dumps(analysis.to_json()))
+    assert content["trajectories"][1]["targetPointError"]["mm"] == lengths[1]
+    assert content["alignments"] == 2
 
 
 def test_the_record_of_another_plan_is_refused():

@@ -100,6 +100,6 @@ def test_the_simulator_accepts_the_score_of_the_longest_procedure():
         "procedure": ProcedureOutcome(analysis, score).summary(),
         "residualsMm": [DIGITS] * 15,
     }
-    told = json.dumps({"trialId": make_record()["trialId"], "score": 50.0, "details": details})
-    checked = check_arguments(CommandName.TRIAL_SCORED, decode_json_object(told))
+    text = json.dumps({"trialId": make_record()["trialId"], "score": 50.0, "details": details})
+    checked = check_arguments(CommandName.TRIAL_SCORED, decode_json_object(text))
     assert len(checked["details"]["procedure"]["trajectories"]) == MAX_TRAJECTORIES

@@ -120,10 +120,10 @@ def test_a_reason_never_becomes_a_formula_in_a_spreadsheet():
 
 def test_an_aborted_trial_is_a_statement_that_it_was_terminated(path):
     data = read_study_data(path)
-    told = [s for s in statements(data) if s["verb"]["display"]["en-US"] == "terminated"]
-    assert [statement["id"] for statement in told] == [s.record.trial_id for s in data.aborted]
-    assert all(statement["result"]["completion"] is False for statement in told)
-    assert [statement["result"].get("success") for statement in told] == [None, False, False]
+    found = [s for s in statements(data) if s["verb"]["display"]["en-US"] == "terminated"]
+    assert [statement["id"] for statement in found] == [s.record.trial_id for s in data.aborted]
+    assert all(statement["result"]["completion"] is False for statement in found)
+    assert [statement["result"].get("success") for statement in found] == [None, False, False]
 
 
 def test_the_commands_count_aborted_trials(path, tmp_path, capsys):
@@ -132,8 +132,8 @@ def test_the_commands_count_aborted_trials(path, tmp_path, capsys):
     assert main(["export", str(path), "-o", str(tmp_path / "export")]) == 0
     assert "3 aborted ones" in capsys.readouterr().out
     assert (tmp_path / "export" / "csv" / "aborted.csv").is_file()
-    told = json.loads((tmp_path / "export" / "xapi" / "statements.json").read_text())
-    assert sum(each["verb"]["display"]["en-US"] == "terminated" for each in told) == 3
+    content = json.loads((tmp_path / "export" / "xapi" / "statements.json").read_text())
+    assert sum(each["verb"]["display"]["en-US"] == "terminated" for each in content) == 3
 
 
 def test_a_trainees_history_is_written_with_the_aborted_trials(path, tmp_path):

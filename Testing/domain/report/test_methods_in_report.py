@@ -67,10 +67,10 @@ def test_each_method_has_n_residual_expected_and_true_error_with_intervals():
             continue
         true = np.array([t.values["true_tre_mm"] for t in data.trials if t.method == method])
         low, high = mean(true).interval
-        told = f"{true.mean():.2f} [{low:.2f}, {high:.2f}]"
+        text = f"{true.mean():.2f} [{low:.2f}, {high:.2f}]"
         residual = 0.5 if method == "surface" else 1.5
         assert f"{title} 12 12 {residual:.2f} [{residual:.2f}, {residual:.2f}]" in words
-        assert f"{told} 12 of 12" in words
+        assert f"{text} 12 of 12" in words
     assert "a small residual does not mean a small error" in words
     assert method_comparison(data).count("<svg") == 1
 
@@ -148,5 +148,5 @@ def test_the_published_error_rates_apply_to_the_decision_of_the_report():
         found = decisions(errors, places)
         for index, own in enumerate(errors):
             pairs = compare_methods(as_conditions(study_of(own, places)))
-            told = [p.adjusted_p < 0.05 for p in pairs if p.adjusted_p is not None]
-            assert told == found.adjusted[index].tolist()
+            entries = [p.adjusted_p < 0.05 for p in pairs if p.adjusted_p is not None]
+            assert entries == found.adjusted[index].tolist()

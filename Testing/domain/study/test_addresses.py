@@ -97,9 +97,9 @@ def test_another_computer_is_reached_over_tls_with_a_verified_certificate():
 def test_a_command_never_shows_the_password_in_its_address(capsys):
     with pytest.raises(SystemExit):
         main(["report", f"postgresql://seat:{SECRET}@host/study", "-o", "out"])
-    told = "".join(capsys.readouterr())
-    assert "must not hold a password" in told
-    assert SECRET not in told
+    text = "".join(capsys.readouterr())
+    assert "must not hold a password" in text
+    assert SECRET not in text
 
 
 def test_opening_a_study_by_address_without_the_driver_says_what_is_missing(monkeypatch):

@@ -295,8 +295,8 @@ def test_a_choice_is_exported_and_deleted_with_its_trainee(study, tmp_path):
 
 def record(number, **changes):
     utc = f"2024-05-17T10:{number:02d}:00Z"
-    told = {"trainee": "A", "startedUtc": utc, "completedUtc": utc}
-    return make_record(trialId=str(uuid.UUID(int=number)), **(told | changes))
+    values = {"trainee": "A", "startedUtc": utc, "completedUtc": utc}
+    return make_record(trialId=str(uuid.UUID(int=number)), **(values | changes))
 
 
 def test_stored_trials_count_in_order_of_starting_and_aborted_ones_as_failures(study):

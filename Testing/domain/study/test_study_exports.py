@@ -60,8 +60,8 @@ def test_a_score_is_exported_with_the_version_that_computed_it(data):
     unscored = replace(others[0], score_version="")
     mixed = replace(data, trials=(replace(first, score_version=OLD), unscored, *others[1:]))
     name = f"{HOME_PAGE}/xapi/score-version"
-    told = [s["context"]["extensions"].get(name) for s in statements(mixed)]
-    assert told[: len(mixed.trials)] == [OLD, None, *(t.score_version for t in others[1:])]
+    found = [s["context"]["extensions"].get(name) for s in statements(mixed)]
+    assert found[: len(mixed.trials)] == [OLD, None, *(t.score_version for t in others[1:])]
     assert f"{OLD}, {others[1].score_version}" in report_html(mixed)
 
 
@@ -147,5 +147,5 @@ def test_trainees_without_consent_are_left_out_of_exports_and_counted(tmp_path, 
     for name in ("trials", "touches", "scores", "answers"):
         rows = rows_of((tmp_path / "out" / "csv" / f"{name}.csv").read_text())
         assert {row["trainee"] for row in rows} <= {"B"}
-    told = json.loads((tmp_path / "out" / "xapi" / "statements.json").read_text())
-    assert {statement["actor"]["account"]["name"] for statement in told} == {"B"}
+    content = json.loads((tmp_path / "out" / "xapi" / "statements.json").read_text())
+    assert {statement["actor"]["account"]["name"] for statement in content} == {"B"}

@@ -338,18 +338,18 @@ def test_a_study_whose_tables_somebody_has_changed_is_refused(sql, words, place,
 def test_a_foreign_value_is_reported(sql, place, postgres_server, tmp_path, capsys):
     study_with_trials(place)
     postgres_server.execute(sql, place.database)
-    told = []
+    received = []
     with Study.open(place) as study:
         for ask in (study.past_trials, study.history):
             try:
                 ask("A")
             except InputError as error:
-                told.append(str(error))
+                received.append(str(error))
         if "Infinity" in sql or "NaN'" in sql:
             with pytest.raises(InputError, match="did not write"):
                 study.outcomes("task-1", "desktop")
             return
-    assert any("did not write" in each for each in told)
+    assert any("did not write" in each for each in received)
     assert main(["report", str(place), "-o", str(tmp_path / "report")]) == 2
     assert "did not write" in capsys.readouterr().err
 

@@ -67,9 +67,9 @@ def test_a_scenario_is_compared_by_every_method_with_text_csv_json_and_a_picture
 ):
     words = ["--trials", "1", "--skin-shift", "2", "--seed", "4", "-o", str(tmp_path / "out")]
     assert main(["compare-methods", "--scenario", str(landmarked), *words, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
+    content = json.loads(capsys.readouterr().out)
     names = ["bone-screws", "fiducials", "landmarks", "surface", "landmarks-surface", "scan"]
-    assert list(told["methods"]) == names
+    assert list(content["methods"]) == names
     rows = list(csv.DictReader((tmp_path / "out" / "methods.csv").open()))
     assert [row["method"] for row in rows] == names
     assert {row["trial"] for row in rows} == {"4"}
@@ -141,12 +141,12 @@ def test_a_traced_surface_is_registered_from_any_file(files, landmarked, traced,
     (files / "trace.csv").write_text(f"x,y,z\n{rows}\n")
     write_markups(files / "trace.mrk.json", PointList((), points))
     assert matched(files, landmarked, "--json", trace=form) == 0
-    told = json.loads(capsys.readouterr().out)
-    off = transforms.apply(np.array(told["matrix"]) @ traced[3], np.zeros(3))
+    content = json.loads(capsys.readouterr().out)
+    off = transforms.apply(np.array(content["matrix"]) @ traced[3], np.zeros(3))
     assert np.linalg.norm(off) < 0.2
-    assert told["rms_mm"] < 0.05
-    low, high = told["expected_tre"]["interval_mm"]
-    assert low < told["expected_tre"]["expected_mm"] < high
+    assert content["rms_mm"] < 0.05
+    low, high = content["expected_tre"]["interval_mm"]
+    assert low < content["expected_tre"]["expected_mm"] < high
 
 
 def test_a_match_is_reported_with_units_and_a_note_that_its_residual_is_not_its_error(

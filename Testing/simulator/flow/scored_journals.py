@@ -26,9 +26,9 @@ def write_scored(folder, number, *scores, version=SCORE_VERSION, is_safe=True, *
     record = TrialRecord.from_json(make_record(trialId=trial_id, trainee=TRAINEE, **changes))
     details = {"isAccurate": True, "isUnbiased": True, "isSafe": is_safe}
     details |= {"scoreVersion": version} if version else {}
-    told = [{"trialId": trial_id, "score": score, "details": details} for score in scores]
+    found = [{"trialId": trial_id, "score": score, "details": details} for score in scores]
     registered = {"kind": "registered", "record": record.to_json()}
-    scored = ({"kind": "scored", "arguments": arguments} for arguments in told)
+    scored = ({"kind": "scored", "arguments": arguments} for arguments in found)
     return _write(folder, number, record, registered, *scored)
 
 

@@ -60,8 +60,8 @@ def test_the_menu_shows_the_trainees_progress_and_what_comes_next(menu):
 
 
 def test_a_board_can_read_a_trainees_progress(menu, outside):
-    told = "1 of 6 reached · Next: Task 2 (1 / 3)"
-    assert menu.presenter.seat().assignments == told
+    text = "1 of 6 reached · Next: Task 2 (1 / 3)"
+    assert menu.presenter.seat().assignments == text
     outside.has_slicer = False
     assert menu.presenter.seat().assignments == ""
 

@@ -77,9 +77,9 @@ def test_touch_undo_proximity_contact_and_finish_give_sound_and_vibration_exactl
     assert pilot.submit("SubmitRegistration", trialId=trial_id, **REGISTRATION).ok
     assert pilot.submit("TrialScored", trialId=trial_id, **SCORE).ok
     pilot.until(lambda: pilot.state.training.phase == "scored")
-    told = [kind for kind in pilot.watcher.kinds if kind not in ("focus", "accept")]
-    assert told == [each.value for each in expected]
-    counted = Counter(told)
+    found = [kind for kind in pilot.watcher.kinds if kind not in ("focus", "accept")]
+    assert found == [each.value for each in expected]
+    counted = Counter(found)
     assert counted["touch"] == 16
     assert counted["undo"] == counted["finish"] == 1
     assert counted["proximity-in"] == counted["proximity-out"] >= 1

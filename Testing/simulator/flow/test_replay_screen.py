@@ -319,8 +319,8 @@ def test_a_trial_started_by_slicer_ends_the_replay_and_is_what_the_views_show(pl
     place.show_again()
     before = place.state.training.trial_id
     assert place.submit("StartTask", task="task-2", trainee="T-99").ok
-    told = "T-99, touch point 1."
-    place.until(lambda: place.presenter.screen.instruction.text == told, "the trial's screen")
+    text = "T-99, touch point 1."
+    place.until(lambda: place.presenter.screen.instruction.text == text, "the trial's screen")
     assert place.replay is place.loop.latest
     assert place.state.training.trial_id != before
     place.submit("Abort")

@@ -236,8 +236,8 @@ def drawn(scenario, where):
 def test_the_report_has_the_numbers_of_the_registration(landmarked):
     trial = drawn(landmarked, "face")
     report = match_report(trial, landmarked)
-    told = {"task": "task-1", "method": "surface", **given(trial)}
-    registered = register_trial(GivenPoints.of_answer(told), landmarked)
+    values = {"task": "task-1", "method": "surface", **given(trial)}
+    registered = register_trial(GivenPoints.of_answer(values), landmarked)
     assert report.residual_mm == registered.rigid.fre_mm < 0.2
     assert report.expected_mm == registered.arguments("x")["expectedTreMm"]
     assert report.interval_mm[0] < report.expected_mm < report.interval_mm[1]

@@ -357,8 +357,8 @@ def test_straying_from_the_path_to_the_next_point_is_reported_and_staying_on_it_
     )
     pilot.touch(first, center)
     pilot.touch(second, center)
-    told = [screen.instruction.text for screen in pilot.watcher.screens]
-    assert [text for text in told if "off the way" in text] == []
+    found = [screen.instruction.text for screen in pilot.watcher.screens]
+    assert [text for text in found if "off the way" in text] == []
     aside = np.cross(second - center, truth.in_world(truth.fiducials["3"]) / MM_PER_M - center)
     aside *= 0.09 / np.linalg.norm(aside)
     pilot.steer_to(1.4 * (second - center) + center, 0.02)

@@ -346,9 +346,9 @@ def test_a_trial_asked_for_before_another_simulation_is_begun_and_none_after_it(
         running.loop.begin_replacement(),
         running.loop.submit(*commands),
     ]
-    told = [answer.result(TIMEOUT_S) for answer in answers]
-    assert [answer.ok for answer in told] == [True, False, True, True, False]
-    assert told[-1].message == control_loop.BEING_SET_UP
+    found = [answer.result(TIMEOUT_S) for answer in answers]
+    assert [answer.ok for answer in found] == [True, False, True, True, False]
+    assert found[-1].message == control_loop.BEING_SET_UP
     running.loop.end_replacement()
     running.start()
 

@@ -216,13 +216,13 @@ def test_a_rater_who_has_rated_everything_is_told_so(copied, study, loader, rate
 def everything_shown(rater):
     """Return all that a view could have been sent."""
     presenter = rater.presenter
-    told = [outgoing.screen(m) for m in rater.messages if isinstance(m, Screen)]
-    told += [outgoing.event(m) for m in rater.messages if isinstance(m, Feedback)]
+    found = [outgoing.screen(m) for m in rater.messages if isinstance(m, Screen)]
+    found += [outgoing.event(m) for m in rater.messages if isinstance(m, Feedback)]
     state = presenter.shown.latest
-    told.append(outgoing.state(state, 0, presenter.pictures(state), None))
+    found.append(outgoing.state(state, 0, presenter.pictures(state), None))
     setup = presenter.shown.setup
-    told.append(outgoing.scene("0" * 64, setup.scenario, state.training.task, setup.settings.axes))
-    return "\n".join(told)
+    found.append(outgoing.scene("0" * 64, setup.scenario, state.training.task, setup.settings.axes))
+    return "\n".join(found)
 
 
 @pytest.mark.parametrize("language", ["en", "de"])

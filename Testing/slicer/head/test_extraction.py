@@ -139,18 +139,18 @@ def test_progress_is_reported_and_may_cancel():
     class CanceledError(Exception):
         pass
 
-    told = []
+    received = []
 
     def progress(step, share):
-        told.append(share)
+        received.append(share)
         if step == "Filling cavities":
             raise CanceledError
 
     volume = phantom(around_head(axes((1, 1, 1)), (84, 90, 60)), (84, 90, 60))
     with pytest.raises(CanceledError):
         findHead(volume, HeadSettings(), progress)
-    assert told == sorted(told)
-    assert told[0] == 0.0
+    assert received == sorted(received)
+    assert received[0] == 0.0
 
 
 def test_a_volume_without_a_head_is_refused_with_a_message():

@@ -132,10 +132,10 @@ class User:
 
     def _now(self) -> str:
         """Return what may explain why nothing happens."""
-        told = [message.text for message in self.messages]
+        found = [message.text for message in self.messages]
         work = None if self.widget is None else vars(self.widget.logic.session.work)
         return (
-            f"Messages: {told}. Work: {work}. The scene is being processed as a batch: "
+            f"Messages: {found}. Work: {work}. The scene is being processed as a batch: "
             f"{bool(self.scene.IsBatchProcessing())}. Clicks: {self.clicks}."
         )
 

@@ -20,12 +20,12 @@ def plan(tour: Tour) -> str:
     hands.wait_until(lambda: hands.find("sendPlanButton").enabled, "the plan can be sent")
     hands.click("sendPlanButton")
     hands.wait_until(lambda: "shows the plan" in hands.text("reachableText"), "it is shown")
-    told, plan = hands.text("reachableText"), hands.find("planComboBox").currentNode()
+    text, plan = hands.text("reachableText"), hands.find("planComboBox").currentNode()
     hands.click("removePlanPointButton")
     hands.must(plan.GetNumberOfControlPoints() == 0, "The target is not removed.")
     hands.click("undoPlanButton")
     hands.must(plan.GetNumberOfControlPoints() == 1, "The target is not brought back.")
-    return told
+    return text
 
 
 def keep_trajectory(tour: Tour) -> str:
@@ -43,9 +43,9 @@ def keep_trajectory(tour: Tour) -> str:
     hands.click("keepPlanButton")
     combo = hands.find("scenarioComboBox")
     hands.wait_until(lambda: combo.currentText == "Plan of the tour", "the copy is chosen")
-    told = hands.text("scenarioText")
+    text = hands.text("scenarioText")
     tour.remove_chosen_scenario()
-    return told
+    return text
 
 
 def replay(tour: Tour) -> str:

@@ -22,11 +22,11 @@ def curriculum(tour: Tour) -> str:
     hands.click("setCurriculumButton")
     table = hands.find("assignmentsTable")
     hands.wait_until(lambda: table.rowCount, "the assignments are listed")
-    told = hands.text("curriculumText")
+    text = hands.text("curriculumText")
     tour.dialogs.answer("End the curriculum", "Yes")
     hands.click("endCurriculumButton")
     hands.wait_until(lambda: not table.rowCount, "there is none any more")
-    return told
+    return text
 
 
 def study(tour: Tour) -> str:
@@ -41,7 +41,7 @@ def study(tour: Tour) -> str:
     hands.click("enrollButton")
     table = hands.find("stepsTable")
     hands.wait_until(lambda: table.rowCount, "the steps are listed")
-    told = hands.text("stepText")
+    text = hands.text("stepText")
     leads = ("Answer", "Start the step", "Break")
     hands.wait_until(lambda: hands.text("nextStepButton") in leads, "the button leads on")
     _answer_questionnaire(tour)
@@ -50,7 +50,7 @@ def study(tour: Tour) -> str:
     hands.click("skipStepButton")
     hands.wait_until(lambda: "a tour" in table.item(1, 1).text(), "a step is skipped")
     _abort_and_repeat_step(tour)
-    return f"{told} Then: {table.item(1, 1).text()}"
+    return f"{text} Then: {table.item(1, 1).text()}"
 
 
 def _abort_and_repeat_step(tour: Tour) -> None:
@@ -106,12 +106,12 @@ def delete_trainee_and_stop(tour: Tour) -> str:
     tour.dialogs.answer("cannot be undone", "Yes")
     hands.click("deleteTraineeButton")
     hands.wait_until(lambda: "was deleted" in hands.text("traineeText"), "the trainee is deleted")
-    told, group = hands.text("traineeText"), _group_of_simulator(tour)
+    text, group = hands.text("traineeText"), _group_of_simulator(tour)
     hands.must(_processes(group), "The simulator's process is not found.")
     hands.click("stopSimulatorButton")
     hands.wait_until(lambda: hands.text("nextStepButton") == "Start and connect", "it ends")
     hands.wait_until(lambda: not _processes(group), "no process of the simulator is left")
-    return told
+    return text
 
 
 def start_and_stop(tour: Tour) -> str:
@@ -120,10 +120,10 @@ def start_and_stop(tour: Tour) -> str:
     hands.open("simulatorCollapsibleButton")
     hands.click("startSimulatorButton")
     hands.wait_until(lambda: hands.text("linkText") == "Connected", "it connects")
-    told = hands.text("programText")
+    text = hands.text("programText")
     hands.click("stopSimulatorButton")
     hands.wait_until(lambda: hands.text("nextStepButton") == "Start and connect", "it ends")
-    return told
+    return text
 
 
 def _group_of_simulator(tour: Tour) -> int:

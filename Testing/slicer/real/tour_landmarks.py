@@ -34,7 +34,7 @@ def place(tour: Tour) -> str:
     hands.wait_until(
         lambda: "are proposed" in hands.text(text), "they are proposed", SCENARIO_TIMEOUT_S
     )
-    told = hands.text(text)
+    words = hands.text(text)
     hands.click("checkLandmarksButton")
     hands.wait_until(
         lambda: "can be used" in hands.text(text), "they are checked", SCENARIO_TIMEOUT_S
@@ -44,7 +44,7 @@ def place(tour: Tour) -> str:
     combo = hands.find("scenarioComboBox")
     hands.wait_until(lambda: combo.currentText == TITLE, "the copy is chosen", SCENARIO_TIMEOUT_S)
     tour.remove_chosen_scenario()
-    return told
+    return words
 
 
 def _place(tour: Tour) -> None:

@@ -38,13 +38,13 @@ def plan(tour: Tour) -> str:
     hands.wait_until(
         lambda: "can be carried out" in hands.text(text), "it is measured", SCENARIO_TIMEOUT_S
     )
-    told = f"angle {table.item(0, 2).text()}°, {table.item(0, 3).text()}"
+    words = f"angle {table.item(0, 2).text()}°, {table.item(0, 3).text()}"
     hands.find("procedureScenarioLineEdit").text = TITLE
     hands.click("saveProcedureButton")
     combo = hands.find("scenarioComboBox")
     hands.wait_until(lambda: combo.currentText == TITLE, "the copy is chosen", SCENARIO_TIMEOUT_S)
     tour.remove_chosen_scenario()
-    return told
+    return words
 
 
 def _place_line(tour: Tour) -> None:
@@ -85,10 +85,10 @@ def verify(tour: Tour) -> str:
     tour.play("--checkpoint", str(CHECKPOINT))
     text = "procedureInstructionText"
     hands.wait_until(lambda: "checkpoint was" in hands.text(text), "its error is told")
-    told = hands.text(text)
+    words = hands.text(text)
     hands.click("acceptButton")
     hands.wait_until(lambda: hands.find("alignButton").enabled, "the guide is aligned next")
-    return told
+    return words
 
 
 def align(tour: Tour) -> str:
@@ -105,10 +105,10 @@ def _align_and_lock(tour: Tour) -> str:
     hands, state = tour.hands, "procedureStateText"
     hands.click("alignButton")
     hands.wait_until(lambda: "0.00 mm and 0.00°" in hands.text(state), "the guide is on the line")
-    told = hands.text(state)
+    text = hands.text(state)
     hands.click("lockButton")
     hands.wait_until(lambda: hands.find("advanceButton").enabled, "the drill is in the guide")
-    return told
+    return text
 
 
 def drill(tour: Tour) -> str:
@@ -117,10 +117,10 @@ def drill(tour: Tour) -> str:
     _advance_and_withdraw(tour)
     _watch_slices(tour)
     tour.play("--drill")
-    told = hands.text(state)
+    text = hands.text(state)
     hands.click("startInsertionButton")
     hands.wait_until(lambda: hands.find("releaseButton").enabled, "the instrument is in the guide")
-    return told
+    return text
 
 
 def insert(tour: Tour) -> str:

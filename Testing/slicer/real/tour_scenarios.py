@@ -18,13 +18,13 @@ def zip_file(tour: Tour) -> str:
     hands.click("exportScenarioButton")
     hands.wait_until(path.is_file, "the file is written", SCENARIO_TIMEOUT_S)
     hands.wait_until(lambda: "was written" in hands.text("scenarioText"), "it is told")
-    told = hands.text("scenarioText")
+    text = hands.text("scenarioText")
     tour.dialogs.answer("Add a scenario", path)
     hands.click("importScenarioButton")
     hands.wait_until(lambda: "was added" in hands.text("scenarioText"), "it is added")
     hands.click("loadScenarioButton")
     tour.remove_chosen_scenario()
-    return told
+    return text
 
 
 def compare_methods(tour: Tour) -> str:
@@ -66,9 +66,9 @@ def scenario_from_volume(tour: Tour) -> str:
     hands.wait_until(
         lambda: "Head of the tour" in combo.currentText, "it is made", SCENARIO_TIMEOUT_S
     )
-    told = hands.text("newScenarioText")
+    text = hands.text("newScenarioText")
     tour.remove_chosen_scenario()
-    return told
+    return text
 
 
 def _choose_volume(tour: Tour) -> None:

@@ -51,14 +51,14 @@ def connect_to_web_page(tour: Tour) -> str:
         hands.wait_until(lambda: "web page" in hands.text("stateText"), "it is recognized")
         hands.click("connectButton")
         hands.wait_until(lambda: hands.text("linkText") == "No simulator", "it is told")
-        told = hands.text("stateText")
+        text = hands.text("stateText")
         hands.idle_for(3.0)
         hands.click("connectButton")
         hands.wait_until(lambda: hands.text("linkText") == "Not connected", "it is given up")
     finally:
         page.kill()
         port.value = former
-    return told
+    return text
 
 
 def start_and_connect(tour: Tour) -> str:
@@ -151,8 +151,8 @@ def touch_the_others(tour: Tour) -> str:
 def fix_registration(tour: Tour) -> str:
     hands = tour.hands
     hands.open("registrationCollapsibleButton", "residualsGroupBox", "pointListsGroupBox")
-    told = hands.text("warning0Text")
-    hands.must(f"Point {SLIP_AT}" in told, f"The slip is not found: {told}")
+    text = hands.text("warning0Text")
+    hands.must(f"Point {SLIP_AT}" in text, f"The slip is not found: {text}")
     hands.click("remedy0Button")
     table = hands.find("residualsTable")
     hands.wait_until(lambda: table.rowCount == 14, "the point is left out")
@@ -174,7 +174,7 @@ def fix_registration(tour: Tour) -> str:
     hands.choose("kindComboBox", "Rigid")
     hands.check("headColoredCheckBox")
     hands.check("headColoredCheckBox", wanted=False)
-    return told
+    return text
 
 
 def score(tour: Tour) -> str:

@@ -206,9 +206,9 @@ def test_a_trace_reports_its_progress_and_whether_it_is_guided(publisher, receiv
     publisher.publish(at_rest(sim_time=3.0, training=traced))
     publisher.is_guided = lambda: True
     publisher.publish(at_rest(sim_time=4.0, training=traced))
-    told = [json.loads(each.content.text)["trace"] for each in receiver.of("SimState")]
+    found = [json.loads(each.content.text)["trace"] for each in receiver.of("SimState")]
     expected = {"on": True, "kept": 1, "strokes": 1}
-    assert told == [{**expected, "isGuided": False}, {**expected, "isGuided": True}]
+    assert found == [{**expected, "isGuided": False}, {**expected, "isGuided": True}]
 
 
 def aligning(feed=0.0, phase=Phase.ALIGNING, **others):

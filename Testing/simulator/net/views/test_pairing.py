@@ -72,11 +72,11 @@ def test_five_wrong_codes_create_a_new_one_and_start_a_pause(served):
 def test_a_view_on_this_computer_is_told_how_to_pair_others(served, connect):
     view = connect(served)
     view.join()
-    told = {"type": "pairing", "code": served.code, "addresses": [served.url]}
-    assert view.next("pairing") == told
+    message = {"type": "pairing", "code": served.code, "addresses": [served.url]}
+    assert view.next("pairing") == message
     for _ in range(5):
         pair(served, wrong(served.code))
-    assert view.next("pairing") == {**told, "code": served.new_codes[0]}
+    assert view.next("pairing") == {**message, "code": served.new_codes[0]}
 
 
 def test_the_pause_ends_and_grows_until_the_right_code_is_entered():

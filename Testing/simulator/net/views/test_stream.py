@@ -204,8 +204,8 @@ def test_each_view_is_told_whether_it_has_control(served, connect):
     for view in views:
         view.next("control")
     served.tell(Control("keyboard", numbers[1]))
-    told = [view.next("control") for view in views]
-    assert told == [
+    found = [view.next("control") for view in views]
+    assert found == [
         {"type": "control", "holder": "keyboard", "isYou": False},
         {"type": "control", "holder": "keyboard", "isYou": True},
     ]

@@ -100,8 +100,8 @@ def test_views_are_sent_only_what_is_new_and_late_ones_the_whole_trace(traced, c
     assert (second["known"], second["points"]) == (5, traced.in_head(5))
     late = connect(traced.served)
     late.join()
-    told = late.next("trace")
-    assert (told["known"], told["points"]) == (0, traced.in_head(0))
+    message = late.next("trace")
+    assert (message["known"], message["points"]) == (0, traced.in_head(0))
 
 
 def test_an_undone_stroke_is_removed(traced, connect):
