@@ -36,7 +36,7 @@ class AssignmentMessage:
 
     @classmethod
     def of(cls, standing: AssignmentStanding) -> AssignmentMessage:
-        """Return what is told of a standing."""
+        """Return the message about a standing."""
         each = standing.assignment
         return cls(
             name=each.name,
@@ -98,7 +98,7 @@ class CurriculumMessage:
 
     @classmethod
     def of(cls, trainee: str, standing: CurriculumStanding | None) -> CurriculumMessage:
-        """Return what is told of where a trainee stands."""
+        """Return the message about where a trainee stands."""
         if standing is None:
             return cls(trainee)
         best = standing.next_best

@@ -63,7 +63,7 @@ class PostgresAddress:
 
     @property
     def connection_options(self) -> dict[str, str]:
-        """What libpq is told."""
+        """Options of libpq."""
         words = {"host": self.host, "dbname": self.database, **self.options}
         if self.user:
             words["user"] = self.user

@@ -141,7 +141,7 @@ class StepProgress:
         )
 
     def study_step(self, trainee: str, now: datetime) -> StudyStep:
-        """Return the next step as the simulator is told of it."""
+        """Return the next step as the simulator gets it."""
         step, count = self.next_step, len(self.steps)
         if step is None:
             return StudyStep(trainee, ALL_DONE, count, count)
