@@ -76,6 +76,9 @@ class Story:
         host.press("showScenarioButton")
         host.check("robotCheckBox")
         assert host.scene.GetFirstNodeByName("Robot link 7") is not None
+        # The MRI follows once the head is shown.
+        volumes = "vtkMRMLScalarVolumeNode"
+        host.wait_until(lambda: host.scene.GetFirstNodeByClass(volumes) is not None, "the MRI")
 
     def use_scenario_in_simulator(self) -> None:
         host = self.host
