@@ -42,8 +42,9 @@ from Testing.end_to_end.test_replay_at_the_simulator import BRISK
 from Testing.end_to_end.window_process import wait_until
 from Testing.simulator.net.views.served import ViewClient
 
-TIMEOUT_S = 120.0
+TIMEOUT_S = 600.0
 TRIALS = 100
+TOO_MANY_AT_ONCE = "Trials arrive faster than they can be scored; they will be offered again later."
 OWN = "the simulator's own and is not stored in a study"
 
 
@@ -137,7 +138,9 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
             slicer.run_for(10)
         slicer.close()
         assert simulator.stop()[0] == 0
-    assert problems == []
+    # A busy machine takes them in several turns.
+    assert set(problems) <= {TOO_MANY_AT_ONCE}
+    assert len(scored) == count
     for analysis in scored:
         trial = analysis.record.trial_id
         (registered,) = alone.entries(trial, "registration")
