@@ -9,7 +9,7 @@ const DIST = "dist";
 await rm(DIST, { recursive: true, force: true });
 await mkdir(DIST);
 await build({
-  entryPoints: { page: "src/main.ts", board: "src/board/main.ts" },
+  entryPoints: { page: "src/page/main.ts", board: "src/board/main.ts" },
   bundle: true,
   minify: true,
   format: "esm",

@@ -1,8 +1,8 @@
 /** The teacher's board: live tiles of several simulators. */
 
 import { byId } from "../elements";
-import { exchangeCode, type CodeRefusal } from "../pairing";
-import { streamUrl } from "../served";
+import { exchangeCode, type CodeRefusal } from "../stream/pairing";
+import { streamUrl } from "../stream/served";
 import { ClassSection } from "./class_section";
 import { ask } from "./dialogs";
 import { say } from "./texts";

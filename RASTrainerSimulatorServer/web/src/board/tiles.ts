@@ -1,7 +1,7 @@
 /** One tile a seat: who, task, point, clock, contact, last score, and what the teacher can do. */
 
 import { element } from "../elements";
-import { isTouchError, type TouchStage } from "../messages";
+import { isTouchError, type TouchStage } from "../stream/messages";
 import { figure, holderName, say, type BoardText } from "./texts";
 
 export type Order = "pause" | "say" | "replay";

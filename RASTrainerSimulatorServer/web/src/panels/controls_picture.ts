@@ -1,6 +1,6 @@
 /** A drawing of what the trainee has in their hands; the inputs that do something are colored. */
 
-import type { Menu } from "../messages";
+import type { Menu } from "../stream/messages";
 import { say, type TextName } from "../texts";
 import { COLORS } from "./pen";
 

@@ -1,6 +1,6 @@
 /** Paint the bull's-eye along the guide's axis, or the depth ruler of what is fed through it. */
 
-import type { Aim, DepthRuler } from "../messages";
+import type { Aim, DepthRuler } from "../stream/messages";
 import { COLORS, TONES, type Pen } from "./pen";
 
 export const GUIDING_WIDTH = 360;

@@ -1,6 +1,6 @@
 /** Paint a menu; where each of its items lies is returned, for pointing at it. */
 
-import type { Fact, Item, Menu } from "../messages";
+import type { Fact, Item, Menu } from "../stream/messages";
 import { COLORS, LINE, TONES, type Pen, type TextStyle } from "./pen";
 import type { Region } from "./panel";
 

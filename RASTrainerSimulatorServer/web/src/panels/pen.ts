@@ -1,6 +1,6 @@
 /** Text and boxes on a canvas, in its pixels, with the colors of the flat page. */
 
-import type { Tone } from "../messages";
+import type { Tone } from "../stream/messages";
 import { pieces } from "./line_breaks";
 
 export const COLORS = {

@@ -1,6 +1,6 @@
 /** A trainee's scores as bars, with the pass mark as a line: a drawing as in controls_picture. */
 
-import type { ScoreTrend } from "../messages";
+import type { ScoreTrend } from "../stream/messages";
 import { PICTURE_WIDTH } from "./controls_picture";
 import { COLORS, TONES } from "./pen";
 

@@ -1,6 +1,6 @@
 /** Paint what is read while the arm is driven: the instruction, short facts and the controls. */
 
-import type { Screen } from "../messages";
+import type { Screen } from "../stream/messages";
 import type { Region } from "./panel";
 import { BANNERS, COLORS, type Pen } from "./pen";
 

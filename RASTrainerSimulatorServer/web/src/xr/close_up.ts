@@ -13,9 +13,9 @@ import {
 } from "three";
 
 import { COLORS } from "../panels/pen";
-import type { CameraPlace } from "../messages";
-import type { Stage } from "../stage";
-import { Viewpoint } from "../viewpoint";
+import type { CameraPlace } from "../stream/messages";
+import type { Stage } from "../scene/stage";
+import { Viewpoint } from "../scene/viewpoint";
 
 const WIDTH = 768;
 const HEIGHT = 480;

@@ -12,11 +12,11 @@ import {
   type XRTargetRaySpace,
 } from "three";
 
-import type { Connection } from "../connection";
-import type { EventNews } from "../messages";
+import type { Connection } from "../stream/connection";
+import type { EventNews } from "../stream/messages";
 import type { Panel } from "../panels/panel";
 import type { RoomPanels } from "./room_panels";
-import { controllerBody } from "./controller_body";
+import { controllerBody } from "../scene/controller_body";
 import type { Grab } from "./grab";
 
 const DEAD = 0.12;

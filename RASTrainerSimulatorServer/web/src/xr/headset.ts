@@ -2,12 +2,12 @@
 
 import { PerspectiveCamera, Vector3 } from "three";
 
-import type { Connection } from "../connection";
-import type { FrameCount } from "../frame_count";
-import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen, StateNews } from "../messages";
-import type { SceneModel } from "../scene_model";
-import type { Sounds } from "../sounds";
-import type { Stage } from "../stage";
+import type { Connection } from "../stream/connection";
+import type { FrameCount } from "../stream/frame_count";
+import type { Aim, ControlNews, DepthRuler, EventNews, Hello, SceneNews, Screen, StateNews } from "../stream/messages";
+import type { SceneModel } from "../scene/scene_model";
+import type { Sounds } from "../audio/sounds";
+import type { Stage } from "../scene/stage";
 import { RoomPanels } from "./room_panels";
 import { headsetModel } from "./device";
 import { Grab } from "./grab";

@@ -2,8 +2,8 @@
 
 import { Euler, Group, Quaternion, Vector3 } from "three";
 
-import type { CameraPlace } from "../messages";
-import { yUp } from "../viewpoint";
+import type { CameraPlace } from "../stream/messages";
+import { yUp } from "../scene/viewpoint";
 
 /** From the head to the trainee's eyes: a comfortable reach, seated and standing. */
 const AWAY_M = 0.62;

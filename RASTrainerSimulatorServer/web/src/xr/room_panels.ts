@@ -2,7 +2,7 @@
 
 import { Group, Vector3 } from "three";
 
-import type { Aim, ControlNews, DepthRuler, Menu, Message, Screen } from "../messages";
+import type { Aim, ControlNews, DepthRuler, Menu, Message, Screen } from "../stream/messages";
 import { Panel, type Region } from "../panels/panel";
 import { GUIDING_HEIGHT, GUIDING_WIDTH, guidingContent, paintGuiding } from "../panels/guiding_painter";
 import { paintMenu } from "../panels/menu_painter";
@@ -11,7 +11,7 @@ import { BANNERS, COLORS, type Pen } from "../panels/pen";
 import { paintWork } from "../panels/work_painter";
 import { say, sayHolder, type TextName } from "../texts";
 import { trendPlot } from "../panels/trend_plot";
-import { thumbnail } from "../thumbnails";
+import { thumbnail } from "../panels/thumbnails";
 import { CloseUp } from "./close_up";
 import type { Seating } from "./seating";
 

@@ -2,8 +2,8 @@
 
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, type PerspectiveCamera, Vector3 } from "three";
 
-import type { SceneModel } from "../scene_model";
-import { yUp } from "../viewpoint";
+import type { SceneModel } from "../scene/scene_model";
+import { yUp } from "../scene/viewpoint";
 
 /** A point farther from the middle of the view (rad) is out of sight. */
 const IN_SIGHT_RAD = 0.45;

@@ -2,8 +2,8 @@
 
 import { Matrix4, Quaternion, Vector3, type Object3D } from "three";
 
-import type { Connection } from "../connection";
-import type { Pose } from "../messages";
+import type { Connection } from "../stream/connection";
+import type { Pose } from "../stream/messages";
 
 const PERIOD_S = 1 / 30;
 const DIGITS = 5;

@@ -1,6 +1,6 @@
 /** A stick on a touch screen: a thumb pushes it, and it comes back when the thumb is lifted. */
 
-import { element } from "./elements";
+import { element } from "../elements";
 
 export class TouchStick {
   readonly place = element("div", "");

@@ -1,8 +1,8 @@
 /** One item of a menu: a button, a field or a meter, with the name that a screen reader says. */
 
-import type { Connection } from "./connection";
-import { element } from "./elements";
-import type { Item } from "./messages";
+import type { Connection } from "../stream/connection";
+import { element } from "../elements";
+import type { Item } from "../stream/messages";
 
 /** What was typed and has not come back from the simulator for so long was not taken. */
 const ANSWER_MS = 1000;

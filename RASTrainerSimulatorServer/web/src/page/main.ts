@@ -1,33 +1,33 @@
 /** The page: connects to the simulator, shows its screens, and sends what is pressed. */
 
-import { Connection, readRole } from "./connection";
-import { byId } from "./elements";
-import { EnterButton } from "./enter_button";
-import { ErrorArrows } from "./error_arrows";
-import { FlatView } from "./flat_view";
-import { FrameCount } from "./frame_count";
-import { Ghost } from "./ghost";
-import { Gamepads } from "./gamepads";
-import { Keyboard } from "./keyboard";
-import { hasGuide, isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "./messages";
-import { Loading } from "./loading";
-import { Overlay } from "./overlay";
-import { pair } from "./pairing";
-import { PoseStream } from "./pose_stream";
-import { loadScene, type SceneModel } from "./scene_model";
-import { Sounds } from "./sounds";
-import { Speech } from "./speech";
-import { isPairedAgain, onlyRead, showWatching, SPECTATOR } from "./spectator";
-import { Stage } from "./stage";
-import { TargetArrow } from "./target_arrow";
-import { say, useLanguage } from "./texts";
-import { TouchControls } from "./touch_controls";
-import { TouchRing } from "./touch_ring";
-import { TraceMarks } from "./trace_marks";
-import { ViewMouse } from "./view_mouse";
-import { WornView } from "./worn_view";
-import { GuidingPanel } from "./guiding_panel";
-import { Headset } from "./xr/headset";
+import { Connection, readRole } from "../stream/connection";
+import { byId } from "../elements";
+import { EnterButton } from "../overlay/enter_button";
+import { ErrorArrows } from "../scene/error_arrows";
+import { FlatView } from "../scene/flat_view";
+import { FrameCount } from "../stream/frame_count";
+import { Ghost } from "../scene/ghost";
+import { Gamepads } from "../input/gamepads";
+import { Keyboard } from "../input/keyboard";
+import { hasGuide, isTouchError, type ControlNews, type EventNews, type Hello, type News, type SceneNews, type Screen, type StateNews } from "../stream/messages";
+import { Loading } from "../overlay/loading";
+import { Overlay } from "../overlay/overlay";
+import { pair } from "../stream/pairing";
+import { PoseStream } from "../scene/pose_stream";
+import { loadScene, type SceneModel } from "../scene/scene_model";
+import { Sounds } from "../audio/sounds";
+import { Speech } from "../audio/speech";
+import { isPairedAgain, onlyRead, showWatching, SPECTATOR } from "../overlay/spectator";
+import { Stage } from "../scene/stage";
+import { TargetArrow } from "../overlay/target_arrow";
+import { say, useLanguage } from "../texts";
+import { TouchControls } from "../input/touch_controls";
+import { TouchRing } from "../scene/touch_ring";
+import { TraceMarks } from "../scene/trace_marks";
+import { ViewMouse } from "../input/view_mouse";
+import { WornView } from "../scene/worn_view";
+import { GuidingPanel } from "../overlay/guiding_panel";
+import { Headset } from "../xr/headset";
 
 export class Page {
   private readonly connection = new Connection(PAGE, {

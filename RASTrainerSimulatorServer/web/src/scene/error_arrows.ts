@@ -2,8 +2,8 @@
 
 import { CylinderGeometry, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3, type Object3D } from "three";
 
-import type { ErrorArrow } from "./messages";
-import { TONES } from "./panels/pen";
+import type { ErrorArrow } from "../stream/messages";
+import { TONES } from "../panels/pen";
 
 /** Of an arrow's shaft, and of the ball at its end, m. */
 const RADIUS = 0.001;

@@ -1,6 +1,6 @@
 /** The keys, sent to the simulator as they are; it knows what each does. */
 
-import type { Connection } from "./connection";
+import type { Connection } from "../stream/connection";
 
 /** These stay the browser's own. */
 const BROWSERS = new Set(["F3", "F5", "F6", "F11", "F12", "MetaLeft", "MetaRight", "AltLeft", "Tab"]);

@@ -1,13 +1,13 @@
 /** The simulator's screen over a flat picture: each part is rebuilt when it has changed. */
 
-import { ACROSS, BESIDE } from "./flat_view";
-import type { Connection } from "./connection";
-import { byId, element } from "./elements";
+import { ACROSS, BESIDE } from "../scene/flat_view";
+import type { Connection } from "../stream/connection";
+import { byId, element } from "../elements";
 import { MenuView } from "./menu_view";
-import type { ControlNews, Menu, Message, PairingNews, Screen } from "./messages";
-import { controlsPicture, inputsOf } from "./panels/controls_picture";
-import { trendPlot } from "./panels/trend_plot";
-import { say, sayHolder, type TextName } from "./texts";
+import type { ControlNews, Menu, Message, PairingNews, Screen } from "../stream/messages";
+import { controlsPicture, inputsOf } from "../panels/controls_picture";
+import { trendPlot } from "../panels/trend_plot";
+import { say, sayHolder, type TextName } from "../texts";
 
 /** What is written on the corner's picture. */
 const INSETS: Readonly<Record<string, TextName>> = { "close-up": "closeUp", [BESIDE]: "beside", [ACROSS]: "across" };

@@ -1,7 +1,7 @@
 /** Ask for the pairing code, and exchange it for the cookie that lets this browser in. */
 
 import type { Role } from "./messages";
-import { say, type TextName } from "./texts";
+import { say, type TextName } from "../texts";
 
 /**
  * Return when the browser is paired. A code in the address, as `#code=123456`, is tried first; with

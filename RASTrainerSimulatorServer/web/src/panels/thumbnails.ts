@@ -1,6 +1,6 @@
 /** Small pictures in menus, such as of a head that can be chosen; each is loaded once. */
 
-import { served } from "./served";
+import { served } from "../stream/served";
 
 const loaded = new Map<string, HTMLImageElement>();
 

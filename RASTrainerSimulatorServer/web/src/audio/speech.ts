@@ -1,6 +1,6 @@
 /** Screens read aloud by the browser's own voices, one sentence after the other. */
 
-import type { Screen } from "./messages";
+import type { Screen } from "../stream/messages";
 
 export class Speech {
   /** What the screen says now, the most urgent first. */

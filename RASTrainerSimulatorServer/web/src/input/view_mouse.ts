@@ -1,6 +1,6 @@
 /** Mouse, touch pad and fingers turn the view: right drag, wheel, pinch and a drag of two fingers. */
 
-import type { Connection } from "./connection";
+import type { Connection } from "../stream/connection";
 
 const RIGHT_BUTTON = 2;
 /** A drag over the whole height of the page turns the view by so much. */

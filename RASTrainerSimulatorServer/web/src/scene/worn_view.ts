@@ -2,9 +2,9 @@
 
 import { Object3D, Vector3 } from "three";
 
-import type { CameraPlace, Pose, Wearer } from "./messages";
+import type { CameraPlace, Pose, Wearer } from "../stream/messages";
 import { PoseStream } from "./pose_stream";
-import { controllerBody } from "./xr/controller_body";
+import { controllerBody } from "./controller_body";
 
 /** Of the picture, from top to bottom: enough to see what the wearer does. */
 const ANGLE_DEG = 70;

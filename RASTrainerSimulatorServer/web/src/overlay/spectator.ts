@@ -1,9 +1,9 @@
 /** The page of somebody who only watches: the simulator takes nothing from it, and the page says so. */
 
-import { byId } from "./elements";
-import type { Hello, Screen } from "./messages";
-import { isOnBoard } from "./served";
-import { say } from "./texts";
+import { byId } from "../elements";
+import type { Hello, Screen } from "../stream/messages";
+import { isOnBoard } from "../stream/served";
+import { say } from "../texts";
 
 export const SPECTATOR: Hello = { kind: "spectator", device: "", refreshHz: 0 };
 /** In the address, asks for the pairing form though this browser is paired. */

@@ -2,7 +2,7 @@
 
 import { type Camera, Mesh, MeshBasicMaterial, RingGeometry, type Scene, Vector3 } from "three";
 
-import { isTouchError, type StateNews } from "./messages";
+import { isTouchError, type StateNews } from "../stream/messages";
 import { COLORS, type SceneModel } from "./scene_model";
 
 /** Radius on the skin, m; above it, the ring is larger by the clearance. */

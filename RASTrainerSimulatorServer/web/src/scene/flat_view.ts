@@ -2,7 +2,7 @@
 
 import { PerspectiveCamera, Vector2 } from "three";
 
-import { hasGuide, type CameraPlace, type SceneNews, type StateNews } from "./messages";
+import { hasGuide, type CameraPlace, type SceneNews, type StateNews } from "../stream/messages";
 import type { Stage } from "./stage";
 import { Flight, Viewpoint } from "./viewpoint";
 

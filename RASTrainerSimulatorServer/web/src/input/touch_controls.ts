@@ -1,9 +1,9 @@
 /** Two sticks, and the buttons of a trial: on a touch screen from the first touch on, by mouse on request. */
 
-import type { Connection } from "./connection";
-import { byId, element } from "./elements";
-import type { ControlNews, Screen, StateNews } from "./messages";
-import { say } from "./texts";
+import type { Connection } from "../stream/connection";
+import { byId, element } from "../elements";
+import type { ControlNews, Screen, StateNews } from "../stream/messages";
+import { say } from "../texts";
 import { TouchStick } from "./touch_stick";
 
 /** What a button presses, as the simulator calls it. */

@@ -1,10 +1,10 @@
 /** The simulator's menu as a dialog of real controls: kept while they change, so that focus and caret stay. */
 
-import type { Connection } from "./connection";
-import { byId, element } from "./elements";
+import type { Connection } from "../stream/connection";
+import { byId, element } from "../elements";
 import { MenuRow } from "./menu_row";
-import type { Fact, Item, Menu } from "./messages";
-import { say } from "./texts";
+import type { Fact, Item, Menu } from "../stream/messages";
+import { say } from "../texts";
 
 export class MenuView {
   private readonly parent = byId("menu");

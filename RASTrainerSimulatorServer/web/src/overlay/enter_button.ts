@@ -1,7 +1,7 @@
 /** The button that leads into the headset, where there is one. */
 
-import { byId } from "./elements";
-import { say } from "./texts";
+import { byId } from "../elements";
+import { say } from "../texts";
 
 export class EnterButton {
   private readonly button = byId("headset") as HTMLButtonElement;

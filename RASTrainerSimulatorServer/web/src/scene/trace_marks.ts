@@ -13,7 +13,7 @@ import {
   Vector3,
 } from "three";
 
-import type { TraceUpdate } from "./messages";
+import type { TraceUpdate } from "../stream/messages";
 import { COLORS, type SceneModel } from "./scene_model";
 
 /** As many points as a trial takes. */

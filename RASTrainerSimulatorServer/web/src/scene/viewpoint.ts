@@ -2,7 +2,7 @@
 
 import { type PerspectiveCamera, Vector3 } from "three";
 
-import type { CameraPlace } from "./messages";
+import type { CameraPlace } from "../stream/messages";
 
 const FLIGHT_S = 0.7;
 

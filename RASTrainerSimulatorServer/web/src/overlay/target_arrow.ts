@@ -2,9 +2,9 @@
 
 import { type PerspectiveCamera, Vector3 } from "three";
 
-import { byId } from "./elements";
-import type { SceneModel } from "./scene_model";
-import { yUp } from "./viewpoint";
+import { byId } from "../elements";
+import type { SceneModel } from "../scene/scene_model";
+import { yUp } from "../scene/viewpoint";
 
 /** How much of the picture, from its middle, counts as in sight. */
 const IN_SIGHT = 0.9;

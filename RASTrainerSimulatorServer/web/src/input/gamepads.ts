@@ -1,7 +1,7 @@
 /** A gamepad that the browser reads, in the W3C's standard layout. */
 
-import type { Connection } from "./connection";
-import type { ControlNews, EventNews } from "./messages";
+import type { Connection } from "../stream/connection";
+import type { ControlNews, EventNews } from "../stream/messages";
 
 const AXES = 4;
 const BUTTONS = 17;

@@ -1,9 +1,9 @@
 /** The bull's-eye or the depth ruler at the edge of a flat picture. */
 
-import { byId } from "./elements";
-import type { Aim, DepthRuler } from "./messages";
-import { GUIDING_HEIGHT, GUIDING_WIDTH, guidingContent, paintGuiding } from "./panels/guiding_painter";
-import { Pen } from "./panels/pen";
+import { byId } from "../elements";
+import type { Aim, DepthRuler } from "../stream/messages";
+import { GUIDING_HEIGHT, GUIDING_WIDTH, guidingContent, paintGuiding } from "../panels/guiding_painter";
+import { Pen } from "../panels/pen";
 
 export class GuidingPanel {
   private readonly canvas = byId("guiding") as HTMLCanvasElement;

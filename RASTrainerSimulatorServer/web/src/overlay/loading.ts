@@ -1,7 +1,7 @@
 /** How far the scene has come, in megabytes. */
 
-import { byId, element } from "./elements";
-import { say } from "./texts";
+import { byId, element } from "../elements";
+import { say } from "../texts";
 
 const MB = 1e6;
 

@@ -13,8 +13,8 @@ import {
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 import { batch, ownColor } from "./batch";
-import { served } from "./served";
-import { isTouchError, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "./messages";
+import { served } from "../stream/served";
+import { isTouchError, type ProcedureNews, type SceneNews, type StateNews, type TouchStage } from "../stream/messages";
 
 const FIDUCIAL = "fiducial_";
 const FURNITURE = ["table", "floor", "room"];
