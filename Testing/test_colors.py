@@ -67,7 +67,7 @@ def test_page_and_headset_have_the_colors_of_the_window():
         color, banner = in_hex(theme.TONES[tone]), in_hex(theme.BANNERS[tone])
         assert re.findall(rf'  {tone.value}: "(#\w+)"', pen) == [color, banner]
         assert f"--{tone.value}: {color};" in style
-    model = (WEB / "src" / "scene_model.ts").read_text(encoding="utf-8")
+    model = (WEB / "src" / "scene" / "scene_model.ts").read_text(encoding="utf-8")
     found = dict(re.findall(r"(\w+): new Color\(\)\.setRGB\(([^)]*), \"srgb\"\)", model))
     materials = {
         "waiting": nodes.WAITING,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -17,6 +18,14 @@ COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli.main", "simulator"]
 READY = "RASTrainer simulator ready on 127.0.0.1:"
 
 
+GONE_S = 600
+
+
+def config_of(records: Path) -> Path:
+    """Return the folder of settings of the simulator with a folder of records."""
+    return records.with_name(records.name + "-config")
+
+
 class SimulatorProcess:
     """`rastrainer simulator` on a free port; ended by the `with` statement.
 
@@ -30,7 +39,7 @@ class SimulatorProcess:
     command = tuple(COMMAND)
 
     def __init__(self, records: Path, *arguments: str, **others: Any):
-        config = records.with_name(records.name + "-config")
+        config = config_of(records)
         skip_tutorial(config)
         settings = ["--port", "0", "--records", str(records), "--config", str(config)]
         # A pipe that nobody reads would be full after some minutes.
@@ -93,6 +102,10 @@ class ViewedSimulator(SimulatorProcess):
     """
 
     def __init__(self, records: Path, *arguments: str, key: str | None = None):
+        limits = config_of(records) / "limits.json"
+        limits.parent.mkdir(parents=True, exist_ok=True)
+        # A view of a test is not gone where a busy machine lets it wait.
+        limits.write_text(json.dumps({"views": {"gone_s": GONE_S}}), encoding="utf-8")
         environment = dict(os.environ)
         if key is not None:
             environment["RASTRAINER_VIEW_KEY"] = key

@@ -56,7 +56,7 @@ class Place:
         folder: Path,
         *arguments: str,
         has_gamepad: bool = False,
-        limits: Mapping[str, float] | None = None,
+        limits: Mapping[str, float] = PATIENT,
         **preferences: str,
     ):
         self._stack = ExitStack()
@@ -66,7 +66,7 @@ class Place:
         config.mkdir()
         preferences = {"order": "any", **preferences}
         (config / "preferences.json").write_text(json.dumps(preferences), encoding="utf-8")
-        (config / "limits.json").write_text(json.dumps({"views": limits or {}}), encoding="utf-8")
+        (config / "limits.json").write_text(json.dumps({"views": limits}), encoding="utf-8")
         key = secrets.token_urlsafe(32)
         options = ["--view-port", "0", "--seed", "7", *arguments]
         if not has_gamepad:

@@ -8,7 +8,7 @@ import pytest
 
 from Testing.web.chromium import draw_for_a_while, open_page
 from Testing.web.hands import BrowserPad, PageKeys
-from Testing.web.place import PATIENT, Place, scored_trial
+from Testing.web.place import Place, scored_trial
 
 LARGEST_PAGE = 1_000_000
 LARGEST_SCENE = 5_000_000
@@ -18,7 +18,7 @@ ACCENT = "#1b6ad6"
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("page")
-    with Place(folder, "--speed", "4", limits=PATIENT) as place:
+    with Place(folder, "--speed", "4") as place:
         yield place
 
 

@@ -15,7 +15,7 @@ from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
 from Testing.web.chromium import accessibility_checker, open_page, resize, show
 from Testing.web.hands import PageKeys
-from Testing.web.place import PATIENT, Place
+from Testing.web.place import Place
 
 WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
 SIZES = {
@@ -82,7 +82,7 @@ def place(request, tmp_path_factory):
     """A place in German, whose words are long; in every other language in the soak tests."""
     folder = tmp_path_factory.mktemp(request.param)
     language = request.param
-    with Place(folder, "--speed", "4", limits=PATIENT, language=language) as place:
+    with Place(folder, "--speed", "4", language=language) as place:
         yield place
 
 

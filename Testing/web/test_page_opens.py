@@ -15,7 +15,7 @@ from rastrainer.igtl.content import Command
 from rastrainer.igtl.message import Message, pack
 from Testing.web.chromium import PATIENCE_MS, SMALL, draw_nothing, launch, open_page
 from Testing.web.hands import PageKeys
-from Testing.web.place import PATIENT, Place
+from Testing.web.place import Place
 
 NETWORK = re.compile(r"serves the local network on (https://\S+?:\d+)")
 TRY_TO_COMMAND = """([url, bytes]) =>
@@ -45,7 +45,7 @@ addEventListener("DOMContentLoaded", () => {
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("opening")
-    with Place(folder, "--lan", limits=PATIENT) as place:
+    with Place(folder, "--lan") as place:
         place.network = NETWORK.search(place.simulator.next_line())[1]
         place.cable = place.simulator.next_line()
         yield place

@@ -14,7 +14,7 @@ from Testing.end_to_end.view_learner import ViewLearner
 from Testing.tutorial_player import TutorialPlayer
 from Testing.web.chromium import enter_headset, open_page
 from Testing.web.hands import PageMouse, TrackedHands
-from Testing.web.place import PATIENT, OnPage, Place, Trainee
+from Testing.web.place import OnPage, Place, Trainee
 from Testing.web.tapping_trainee import PHONE, SteeringTrainee, TappingTrainee
 
 SIZE = {"width": 1280, "height": 720}
@@ -85,7 +85,7 @@ class HandTrainee(OnPage, Trainee):
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("without-keys")
-    with Place(folder, "--speed", SLOW, limits=PATIENT, order="any") as place:
+    with Place(folder, "--speed", SLOW, order="any") as place:
         yield place
 
 
@@ -164,7 +164,7 @@ def test_two_thumbs_steer_at_once_stop_the_arm_and_read_on_the_buttons_what_to_p
 
 @pytest.mark.soak
 def test_a_whole_trial_is_touched_and_scored_with_two_thumbs_alone(tmp_path, browser):
-    slow = Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any")
+    slow = Place(tmp_path, "--speed", SLOW, order="any")
     with slow as place, page_of(place, browser, size=PHONE, has_touch=True) as page:
         trainee = SteeringTrainee(place, page)
         trainee.begin_by_taps("task-1")
@@ -205,7 +205,7 @@ class MouseLearner(ViewLearner):
 @pytest.mark.soak
 def test_the_tutorial_is_done_with_the_mouse_alone_and_leads_to_the_trial_run(tmp_path, browser):
     rules = {"order": "fixed", "tutorial": "required"}
-    slowest = Place(tmp_path, "--speed", SLOWEST, limits=PATIENT, **rules)
+    slowest = Place(tmp_path, "--speed", SLOWEST, **rules)
     with slowest as place, page_of(place, browser, size=SIZE) as page:
         trainee = ClickingTrainee(place.view, page)
         trainee.begin_by_sticks("tutorial")
@@ -229,7 +229,7 @@ def test_the_first_touches_of_a_task_are_steered_by_the_mouse(place, mouse):
 
 @pytest.mark.soak
 def test_a_whole_trial_is_touched_and_scored_with_the_mouse_alone(tmp_path, browser):
-    slow = Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any")
+    slow = Place(tmp_path, "--speed", SLOW, order="any")
     with slow as place, page_of(place, browser, size=SIZE) as page:
         trainee = ClickingTrainee(place.view, page)
         trainee.begin_by_sticks("task-1")
@@ -260,7 +260,7 @@ def test_a_tracked_hand_moves_the_tip_to_a_touch_undoes_it_and_opens_the_menu(pl
 
 @pytest.mark.soak
 def test_a_whole_trial_is_touched_and_scored_with_a_tracked_hand_alone(tmp_path, browser):
-    slow = Place(tmp_path, "--speed", SLOW, limits=PATIENT, order="any")
+    slow = Place(tmp_path, "--speed", SLOW, order="any")
     with slow as place, hand_in_task_1(place, browser) as hand:
         hand.play_to_result()
         assert len(place.entries("touch")) == 15
