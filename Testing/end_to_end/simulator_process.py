@@ -12,18 +12,12 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from rastrainer_simulator.net.limits import LIMITS_FILE
 from Testing.without_tutorial import skip_tutorial
 
 COMMAND = [sys.executable, "-m", "rastrainer_simulator.cli.main", "simulator"]
 READY = "RASTrainer simulator ready on 127.0.0.1:"
-
-
 GONE_S = 600
-
-
-def config_of(records: Path) -> Path:
-    """Return the folder of settings of the simulator with a folder of records."""
-    return records.with_name(records.name + "-config")
 
 
 class SimulatorProcess:
@@ -39,8 +33,9 @@ class SimulatorProcess:
     command = tuple(COMMAND)
 
     def __init__(self, records: Path, *arguments: str, **others: Any):
-        config = config_of(records)
+        config = records.with_name(records.name + "-config")
         skip_tutorial(config)
+        _keep_views(config)
         settings = ["--port", "0", "--records", str(records), "--config", str(config)]
         # A pipe that nobody reads would be full after some minutes.
         self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
@@ -89,6 +84,14 @@ class SimulatorProcess:
         return self._errors.read()
 
 
+def _keep_views(config: Path) -> None:
+    """Have no view count as gone where a busy machine lets it wait, unless the limits say when."""
+    path = config / LIMITS_FILE
+    limits = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    views = {"gone_s": GONE_S, **limits.get("views", {})}
+    path.write_text(json.dumps({**limits, "views": views}), encoding="utf-8")
+
+
 LINE = re.compile(
     r"RASTrainer simulator serves views on (http://127\.0\.0\.1:(\d+)), pairing code (\d{6})\n"
 )
@@ -102,10 +105,6 @@ class ViewedSimulator(SimulatorProcess):
     """
 
     def __init__(self, records: Path, *arguments: str, key: str | None = None):
-        limits = config_of(records) / "limits.json"
-        limits.parent.mkdir(parents=True, exist_ok=True)
-        # A view of a test is not gone where a busy machine lets it wait.
-        limits.write_text(json.dumps({"views": {"gone_s": GONE_S}}), encoding="utf-8")
         environment = dict(os.environ)
         if key is not None:
             environment["RASTRAINER_VIEW_KEY"] = key

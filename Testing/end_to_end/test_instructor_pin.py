@@ -6,7 +6,6 @@ import json
 
 import pytest
 
-from rastrainer_simulator.net.limits import LIMITS_FILE
 from rastrainer_simulator.ops.instructor_pin import InstructorPin
 from Testing.end_to_end.simulator_process import ViewedSimulator
 from Testing.simulator.net.igtl.servers import LoopThread
@@ -54,8 +53,6 @@ def place(tmp_path):
     """Return a folder with a simulator's settings and records, the simulator, and a thread."""
     config = tmp_path / "records-config"
     InstructorPin(config).set(PIN)
-    # A page here answers only while it is read, which a busy machine may get to late.
-    (config / LIMITS_FILE).write_text('{"views": {"gone_s": 600}}')
     options = ["--view-port", "0", "--seed", "5"]
     with (
         LoopThread() as thread,
