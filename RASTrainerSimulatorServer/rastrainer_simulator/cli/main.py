@@ -1,40 +1,40 @@
-"""The command `rastrainer`: one parser, one subcommand a file."""
+"""The command `rastrainer`: its parser, and which function adds each subcommand."""
 
 from __future__ import annotations
 
 import argparse
-import importlib
+import pkgutil
 import sys
 from collections.abc import Sequence
 
 import rastrainer
 from rastrainer.errors import RASTrainerError
 
-# By module, so that `rastrainer register` does not wait for the robot to be imported.
+# By name, so that `rastrainer register` does not wait for the robot to be imported.
 SUBCOMMANDS = {
-    "register": "rastrainer_simulator.cli.register",
-    "compare-methods": "rastrainer_simulator.cli.compare_methods",
-    "score": "rastrainer_simulator.cli.score",
-    "measure": "rastrainer_simulator.cli.measure",
-    "pass-mark": "rastrainer_simulator.cli.pass_mark",
-    "curriculum": "rastrainer_simulator.cli.curriculum",
-    "report": "rastrainer_simulator.cli.report",
-    "export": "rastrainer_simulator.cli.export",
-    "send-statements": "rastrainer_simulator.cli.send_statements",
-    "copy-study": "rastrainer_simulator.cli.copy_study",
-    "delete-trainee": "rastrainer_simulator.cli.delete",
-    "scenario": "rastrainer_simulator.cli.scenario",
-    "simulator": "rastrainer_simulator.cli.simulator",
-    "board": "rastrainer_simulator.cli.board",
-    "lti": "rastrainer_simulator.cli.lti",
-    "instructor-pin": "rastrainer_simulator.cli.instructor_pin",
-    "window": "rastrainer_simulator.cli.window",
-    "doctor": "rastrainer_simulator.cli.doctor_command",
-    "replay": "rastrainer_simulator.cli.replay",
-    "rate": "rastrainer_simulator.cli.rate",
-    "verify": "rastrainer_simulator.cli.verify",
-    "simulate-cohort": "rastrainer_simulator.cli.cohort",
-    "demo": "rastrainer_simulator.cli.demo",
+    "register": "rastrainer_simulator.cli.register:add_parser",
+    "compare-methods": "rastrainer_simulator.cli.compare_methods:add_parser",
+    "score": "rastrainer_simulator.cli.score:add_parser",
+    "measure": "rastrainer_simulator.cli.journals:add_measure_parser",
+    "pass-mark": "rastrainer_simulator.cli.pass_mark:add_parser",
+    "curriculum": "rastrainer_simulator.cli.curriculum:add_parser",
+    "report": "rastrainer_simulator.cli.report:add_parser",
+    "export": "rastrainer_simulator.cli.export:add_parser",
+    "send-statements": "rastrainer_simulator.cli.send_statements:add_parser",
+    "copy-study": "rastrainer_simulator.cli.copy_study:add_parser",
+    "delete-trainee": "rastrainer_simulator.cli.delete:add_parser",
+    "scenario": "rastrainer_simulator.cli.scenario:add_parser",
+    "simulator": "rastrainer_simulator.cli.simulator:add_parser",
+    "board": "rastrainer_simulator.cli.board:add_parser",
+    "lti": "rastrainer_simulator.cli.lti:add_parser",
+    "instructor-pin": "rastrainer_simulator.cli.instructor_pin:add_parser",
+    "window": "rastrainer_simulator.cli.window:add_parser",
+    "doctor": "rastrainer_simulator.cli.doctor_command:add_parser",
+    "replay": "rastrainer_simulator.cli.replays:add_replay_parser",
+    "rate": "rastrainer_simulator.cli.replays:add_rate_parser",
+    "verify": "rastrainer_simulator.cli.journals:add_verify_parser",
+    "simulate-cohort": "rastrainer_simulator.cli.cohort:add_parser",
+    "demo": "rastrainer_simulator.cli.demo:add_parser",
 }
 
 
@@ -62,7 +62,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     subparsers = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     named = [word for word in words if word in SUBCOMMANDS][:1]
     for name in named or SUBCOMMANDS:
-        importlib.import_module(SUBCOMMANDS[name]).add_parser(subparsers)
+        pkgutil.resolve_name(SUBCOMMANDS[name])(subparsers)
     return parser
 
 

@@ -41,14 +41,6 @@ def add_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
-def add_playback(parser: argparse.ArgumentParser) -> None:
-    """Add how replays are shown to a command's parser."""
-    parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
-    parser.add_argument(
-        "--window", action=argparse.BooleanOptionalAction, default=True, help="open the window"
-    )
-
-
 def check_ports(arguments: argparse.Namespace) -> None:
     """Raise `InputError` if a given `--port` or `--view-port` is none; 0 is any free one."""
     for option in ("port", "view_port"):

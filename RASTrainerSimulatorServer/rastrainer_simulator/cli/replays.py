@@ -1,0 +1,159 @@
+"""Commands for replays of recorded trials: `rastrainer replay` and `rastrainer rate`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+
+from rastrainer.errors import InputError
+from rastrainer.journal.journal_file import read_journal
+from rastrainer.study.database.study import Study
+from rastrainer.study.ratings import FORMS, RatingStore, find_form
+from rastrainer_simulator.cli.options import add_records, add_study, announce, check_ports
+
+REPLAYS = 20
+
+
+def add_replay_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `replay`: show a recorded trial, or simulate it again and compare."""
+    parser = subparsers.add_parser(
+        "replay",
+        help="show a recorded trial, or simulate it again and compare it bit by bit",
+        description="Shows the trial in the window and to every view; Escape ends it. "
+        "Exit status: 0 shown, or equal to the last bit; 1 something differs; 2 not replayable.",
+    )
+    parser.add_argument("journal", type=Path, metavar="JOURNAL")
+    parser.add_argument(
+        "--scenario", type=Path, metavar="DIR", help="the scenario it was recorded with"
+    )
+    parser.add_argument(
+        "--verify",
+        action="store_true",
+        help="simulate the trial again and compare it with the journal instead of showing it",
+    )
+    parser.add_argument("--json", action="store_true", help="print the report of --verify as JSON")
+    _add_playback(parser)
+    parser.set_defaults(run=run_replay)
+
+
+def run_replay(arguments: argparse.Namespace) -> int:
+    """Show the trial, or print the result of the comparison, and return the exit status.
+
+    Raises:
+        InputError: the journal cannot be replayed, or an argument is not usable.
+    """
+    if not arguments.verify:
+        return _show(arguments)
+    # Only here: the robot and the scenario take time to import.
+    from rastrainer_simulator.record.recorded_setup import setup_of
+    from rastrainer_simulator.replay.resimulation import replay
+
+    reading = read_journal(arguments.journal)
+    report = replay(reading, setup_of(reading.header, arguments.scenario))
+    if arguments.json:
+        whole = {**asdict(report), "identical": report.is_identical, "journal": reading.sentence}
+        print(json.dumps(whole, indent=2, allow_nan=False))
+    else:
+        print(_summary(reading.sentence, report))
+    return 0 if report.is_identical else 1
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    check_ports(arguments)
+    from rastrainer_simulator.server.replay_server import show
+
+    playback = arguments.scenario, arguments.view_port, arguments.window
+    show(arguments.journal, *playback, partial(announce, "replay"))
+    return 0
+
+
+def _summary(sentence: str, report) -> str:
+    kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(report.compared.items()))
+    lines = [
+        f"Trial {report.trial_id}",
+        f"  journal    {sentence}",
+        f"  replayed   {report.ticks} ticks; compared: {kinds}",
+        f"  result     {report.difference or 'equal to the last bit'}",
+    ]
+    for name, (recorded, present) in report.changed_versions.items():
+        lines.append(f"  version    {name}: recorded with {recorded}, replayed with {present}")
+    for name, value in report.motion.items():
+        lines.append(f"  {name:<24}{value:.6g}")
+    return "\n".join(lines)
+
+
+def add_rate_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `rate`: mark replays on rating forms, without knowing whose they are."""
+    parser = subparsers.add_parser(
+        "rate",
+        help="mark replays of a study's trials on GEARS and OSATS forms, blinded",
+        description=(
+            "Shows the replays of trials in the window and to every view, under shuffled numbers, "
+            "without trainee, date, score or mode, and takes a rater's marks, which are kept in "
+            "the study. All raters get the same trials, each in another order. Work can be left "
+            "at any time; the same command takes it up. The study's report shows how far raters "
+            "agree."
+        ),
+    )
+    add_study(parser)
+    parser.add_argument(
+        "--rater", required=True, metavar="NAME", help="a pseudonym of who rates, such as R1"
+    )
+    add_records(parser)
+    parser.add_argument(
+        "--replays",
+        type=int,
+        default=REPLAYS,
+        metavar="N",
+        help="how many trials are drawn for all raters (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--form",
+        action="append",
+        choices=list(FORMS),
+        help="may be given several times (default: all)",
+    )
+    parser.add_argument(
+        "--scenario", type=Path, metavar="DIR", help="the scenario they were recorded with"
+    )
+    _add_playback(parser)
+    parser.set_defaults(run=run_rate)
+
+
+def run_rate(arguments: argparse.Namespace) -> int:
+    """Let the rater work, say how far that went, and return the exit status.
+
+    Raises:
+        InputError: an argument is not usable, there is nothing to rate, or a replay cannot be
+            shown.
+    """
+    check_ports(arguments)
+    if arguments.replays < 1:
+        raise InputError("--replays must be at least 1.")
+    # Only here: the robot and the scenario take time to import.
+    from rastrainer_simulator.rating.rating_pages import RatingWork
+    from rastrainer_simulator.server.replay_server import serve_rating, trials_to_show
+
+    tell = partial(announce, "rating")
+    forms = [find_form(name) for name in dict.fromkeys(arguments.form or FORMS)]
+    with Study.open(arguments.study, must_exist=True) as study:
+        store = RatingStore(study)
+        trials = trials_to_show(study, arguments.records)
+        order = store.assign(arguments.rater, trials, arguments.replays, random.SystemRandom())
+        work = RatingWork(store, arguments.rater, order, forms)
+        tell(f"has {len(order)} replays for {arguments.rater}, {work.rated} rated")
+        playback = arguments.scenario, arguments.view_port, arguments.window
+        serve_rating(work, arguments.records, *playback, tell)
+        tell(f"is left: {work.rated} of {len(order)} replays are rated")
+    return 0
+
+
+def _add_playback(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--view-port", type=int, metavar="PORT", help="where views are served")
+    parser.add_argument(
+        "--window", action=argparse.BooleanOptionalAction, default=True, help="open the window"
+    )
