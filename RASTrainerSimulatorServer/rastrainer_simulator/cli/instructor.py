@@ -1,12 +1,15 @@
-"""`rastrainer board`: a teacher's page of live tiles of several simulators."""
+"""Commands for instructors: `rastrainer board` and `rastrainer instructor-pin`."""
 
 from __future__ import annotations
 
 import argparse
 import asyncio
+import getpass
+import sys
 from functools import partial
 from pathlib import Path
 
+from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST
 from rastrainer.study.database.database import StudyPlace
 from rastrainer_simulator.cli.options import (
@@ -16,12 +19,14 @@ from rastrainer_simulator.cli.options import (
     announce,
     check_ports,
 )
+from rastrainer_simulator.ops.folders import config_folder
+from rastrainer_simulator.ops.instructor_pin import PIN_WORDS, InstructorPin
 
 DEFAULT_BOARD_PORT = 18955
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the subcommand to the parser of `rastrainer`."""
+def add_board_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `board`: a teacher's page of live tiles of several simulators."""
     parser = subparsers.add_parser(
         "board",
         help="watch several simulators in one page of live tiles",
@@ -44,18 +49,16 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         help="for browsers on this computer, 0 for any free one (default: %(default)s)",
     )
     add_config(parser)
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_board)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_board(arguments: argparse.Namespace) -> int:
     """Serve the board until it is stopped, and return the exit status.
 
     Raises:
         InputError: the list of seats or the study cannot be read, or the port not listened on.
     """
     check_ports(arguments)
-    from rastrainer_simulator.ops.folders import config_folder
-
     config = arguments.config or config_folder()
     asyncio.run(_serve(config, arguments.port, arguments.study))
     return 0
@@ -83,3 +86,49 @@ async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
                 await stop.wait()
         finally:
             await board.close()
+
+
+def add_instructor_pin_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `instructor-pin`: set the PIN that a seat asks of its instructors."""
+    parser = subparsers.add_parser(
+        "instructor-pin",
+        help="set the PIN that instructors need at this seat",
+        description=(
+            f"Asks for a PIN of {PIN_WORDS}, twice, or reads it from a pipe. With it, a teacher's "
+            "board may pause this simulator, show the trainee a sentence and start a replay; and "
+            "at the simulator, settings, order of tasks and another view's taking the control "
+            "are locked until it is entered. Without a PIN, no board can do anything, and "
+            "nothing is locked."
+        ),
+    )
+    parser.add_argument("--remove", action="store_true", help="have no PIN any more")
+    add_config(parser)
+    parser.set_defaults(run=run_instructor_pin)
+
+
+def run_instructor_pin(arguments: argparse.Namespace) -> int:
+    """Set or remove the PIN, and return the exit status.
+
+    Raises:
+        InputError: it is no PIN, the two differ, or it cannot be kept.
+    """
+    pin = InstructorPin(arguments.config or config_folder())
+    if arguments.remove:
+        pin.set("")
+        print("There is no PIN any more: no board can give orders, and nothing is locked.")
+        return 0
+    chosen = _asked()
+    if not chosen:
+        raise InputError(f"A PIN has {PIN_WORDS}; --remove removes it.")
+    pin.set(chosen)
+    print("The PIN is set; a simulator that is running asks for it from now on.")
+    return 0
+
+
+def _asked() -> str:
+    if not sys.stdin.isatty():
+        return sys.stdin.readline().strip()
+    first = getpass.getpass("PIN: ")
+    if getpass.getpass("PIN again: ") != first:
+        raise InputError("The two PINs differ.")
+    return first
