@@ -1,6 +1,5 @@
 """Reading a study changes neither its rows nor its bytes nor its time."""
 
-import argparse
 import os
 import shutil
 import signal
@@ -14,21 +13,10 @@ from rastrainer.errors import InputError
 from rastrainer.study.database.sqlite_database import read_only_uri
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
-from rastrainer_simulator.cli import export as export_command
-from rastrainer_simulator.cli import pass_mark as pass_mark_command
-from rastrainer_simulator.cli import report as report_command
+from rastrainer_simulator.cli.main import main
 from Testing.domain.study.old_study import write_old_study
 from Testing.domain.study.played_study import play, study_with_trials
 from Testing.domain.trial.trial_records import gentle_score, make_record
-
-
-def run(*words):
-    parser = argparse.ArgumentParser()
-    subparsers = parser.add_subparsers(required=True)
-    for command in (export_command, pass_mark_command, report_command):
-        command.add_parser(subparsers)
-    arguments = parser.parse_args([str(word) for word in words])
-    return arguments.run(arguments)
 
 
 @pytest.fixture
@@ -73,7 +61,7 @@ GROUPS = ("--novices", *(f"N{i}" for i in range(5)), "--experts", *(f"E{i}" for 
 def test_a_study_in_mid_protocol_keeps_its_bytes_and_its_mtime(path, tmp_path, words, capsys):
     before = seen(path)
     known = {"STUDY": path, "OUT": tmp_path / "out"}
-    assert run(*(known.get(word, word) for word in words)) == 0
+    assert main([str(known.get(word, word)) for word in words]) == 0
     assert seen(path) == before
     assert capsys.readouterr().out
 

@@ -1,4 +1,4 @@
-"""`rastrainer pass-mark STUDY`: the pass mark that separates a study's novices from its experts."""
+"""Commands for what trainees are to reach: `rastrainer curriculum` and `rastrainer pass-mark`."""
 
 from __future__ import annotations
 
@@ -10,8 +10,17 @@ from statistics import fmean
 
 from rastrainer.errors import InputError
 from rastrainer.files.writing import write_text
-from rastrainer.number_text import percent
+from rastrainer.number_text import fixed, percent
 from rastrainer.statistics.competence import PassMark, pass_mark
+from rastrainer.study.curriculum.curriculum import read_curriculum
+from rastrainer.study.curriculum.curriculum_store import CurriculumStore
+from rastrainer.study.curriculum.standing import (
+    CurriculumStanding,
+    advice_of,
+    goal_of,
+    short_progress_of,
+    title_of,
+)
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import protocol_text, read_study_protocol
@@ -19,11 +28,82 @@ from rastrainer.trial.scoring import SCORE_VERSION
 from rastrainer.trial.trial_feedback import PastTrial
 from rastrainer_simulator.cli.options import add_study
 
+HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
+
+
+def add_curriculum_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `curriculum`: what trainees are to reach, and where each of them stands."""
+    parser = subparsers.add_parser(
+        "curriculum",
+        help="set the curriculum of a study's trainees, and print where they stand",
+        description=(
+            "Without an option, prints where each trainee stands. What is set last counts: a "
+            "curriculum set for everybody ends those set for single trainees before. Nothing is "
+            "overwritten; earlier trials count, too."
+        ),
+    )
+    add_study(parser)
+    choice = parser.add_mutually_exclusive_group()
+    choice.add_argument(
+        "--set", type=Path, metavar="FILE", help="a curriculum to follow from now on"
+    )
+    choice.add_argument("--end", action="store_true", help="follow no curriculum from now on")
+    parser.add_argument("--trainee", metavar="PSEUDONYM", help="for this trainee alone")
+    parser.set_defaults(run=run_curriculum)
+
+
+def run_curriculum(arguments: argparse.Namespace) -> int:
+    """Set the curriculum if asked to, print the tables, and return the exit status.
+
+    Raises:
+        InputError: there is no such study, trainee or curriculum.
+    """
+    curriculum = None if arguments.set is None else read_curriculum(arguments.set)
+    who = arguments.trainee or ""
+    if curriculum is not None or arguments.end:
+        with Study.open(arguments.study, must_exist=True) as study:
+            CurriculumStore(study).choose(curriculum, who)
+        what = "no curriculum" if curriculum is None else f"“{curriculum.title}”"
+        print(f"{who or 'Everybody'} follows {what} from now on.")
+    with Study.open_for_reading(arguments.study) as study:
+        store = CurriculumStore(study)
+        standing = store.standing(who) if who else None
+        found = {who: standing} if standing is not None else {} if who else store.standings()
+    if not found and not arguments.end:
+        print(f"{who or 'No trainee'} {'does not follow' if who else 'follows'} a curriculum.")
+    for name, each in found.items():
+        print(f"\n{_table(name, each)}")
+    return 0
+
+
+def _table(name: str, standing: CurriculumStanding) -> str:
+    rows = [
+        (
+            each.assignment.name,
+            title_of(each.assignment),
+            short_progress_of(each),
+            goal_of(each),
+            ", ".join(each.assignment.after),
+            str(each.played),
+            "–" if each.mean is None else fixed(each.mean, 0),
+        )
+        for each in standing.standings
+    ]
+    widths = [max(map(len, column)) for column in zip(HEADER, *rows, strict=True)]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in (HEADER, *rows)
+    ]
+    reached = f"{standing.reached} of {len(standing.standings)} reached"
+    title = f"{name}, {standing.curriculum.title}: {reached}. {advice_of(standing)}"
+    return "\n".join((title, *lines))
+
+
 LAST_TRIALS = 3
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the command to a command line; `arguments.run(arguments)` runs it."""
+def add_pass_mark_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `pass-mark`: the mark that separates a study's novices from its experts."""
     parser = subparsers.add_parser(
         "pass-mark",
         help="compute a pass mark from the novices and the experts of a study",
@@ -44,10 +124,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         metavar="PROTOCOL",
         help="write the mark into this protocol's file, for a study that has not started yet",
     )
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_pass_mark)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_pass_mark(arguments: argparse.Namespace) -> int:
     """Print the mark, write it to the protocol if requested, and return the exit status.
 
     Raises:
