@@ -22,8 +22,8 @@ from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer.study.ratings import FORMS, RatingStore
-from rastrainer_simulator.cli.copy_study import copy_study
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.cli.study_management import copy_study
 from Testing.domain.study.played_study import STUDIES, study_with_trials
 from Testing.domain.study.study_content import rows_of, written_files
 from Testing.domain.study.writers import stored_numbers, writer

@@ -1,10 +1,11 @@
-"""`rastrainer copy-study FROM TO`: a study from a file into PostgreSQL, or back."""
+"""Commands that manage a study's data: `rastrainer copy-study` and `rastrainer delete-trainee`."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
 from itertools import zip_longest
+from pathlib import Path
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted
@@ -12,14 +13,15 @@ from rastrainer.study.database.database import Connection, path_beside_study
 from rastrainer.study.database.schema import Table, study_tables
 from rastrainer.study.database.study import Study
 from rastrainer.study.platform_links import PlatformLinks
+from rastrainer.study.trainee_data import erase_trainee
 from rastrainer_simulator.cli.options import add_study
 
 COUNTER = "trainee_numbers"
 """The one table that a new study has a row in."""
 
 
-def add_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add the command to a command line; `arguments.run(arguments)` runs it."""
+def add_copy_study_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `copy-study`: a study from a file into PostgreSQL, or back."""
     parser = subparsers.add_parser(
         "copy-study",
         help="copy a study from its file into PostgreSQL, or back",
@@ -31,10 +33,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
     )
     add_study(parser, "source", "FROM", "the study: a file, or an address of PostgreSQL")
     add_study(parser, "target", "TO", "an empty database of PostgreSQL, or a file to be made")
-    parser.set_defaults(run=run)
+    parser.set_defaults(run=run_copy_study)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_copy_study(arguments: argparse.Namespace) -> int:
     """Copy, say how much, and return the exit status.
 
     Raises:
@@ -96,3 +98,49 @@ def _rows(connection: Connection, table: Table) -> Iterator[tuple]:
 
 def _count(connection: Connection, table: Table) -> int:
     return connection.execute(f"SELECT count(*) FROM {table.name}").fetchone()[0]
+
+
+def add_delete_trainee_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `delete-trainee`: one trainee, completely and for good."""
+    parser = subparsers.add_parser(
+        "delete-trainee",
+        help="delete a trainee from a study and from the journals, for good",
+        description=(
+            "Nothing of the trainee is left in the database, the journals or later exports. "
+            "Earlier exports, backups and printed reports are yours to delete. Exit status: 0 all "
+            "is deleted, 1 journals may be left, 2 nothing was deleted."
+        ),
+    )
+    add_study(parser)
+    parser.add_argument("pseudonym", metavar="PSEUDONYM")
+    parser.add_argument(
+        "--records", type=Path, metavar="DIR", help="the folder of the simulator's journals"
+    )
+    parser.add_argument("--yes", action="store_true", help="really delete")
+    parser.set_defaults(run=run_delete_trainee)
+
+
+def run_delete_trainee(arguments: argparse.Namespace) -> int:
+    """Delete the trainee and return the exit status.
+
+    Raises:
+        InputError: there is no such study or trainee, a journal cannot be deleted, or --yes or
+            --records lacks.
+    """
+    with Study.open(arguments.study, must_exist=True) as study:
+        count = len(study.history(arguments.pseudonym))
+        if not arguments.yes:
+            raise InputError(
+                f"{arguments.pseudonym} has {count} trials, which would be lost for good; add "
+                "--yes to delete them."
+            )
+        if arguments.records is None:
+            raise InputError(
+                f"The journals of {arguments.pseudonym} would be left; name the folder of the "
+                "simulator's journals with --records (an empty one if there are none)."
+            )
+        erased = erase_trainee(study, arguments.pseudonym, arguments.records)
+    print(f"{arguments.pseudonym}: {erased.trials} trials and {erased.journals} journals deleted")
+    for sentence in erased.warnings:
+        print(sentence)
+    return 1 if erased.warnings else 0
