@@ -14,11 +14,11 @@ from rastrainer.errors import RASTrainerError
 SUBCOMMANDS = {
     "register": "rastrainer_simulator.cli.register:add_parser",
     "compare-methods": "rastrainer_simulator.cli.compare_methods:add_parser",
-    "score": "rastrainer_simulator.cli.score:add_parser",
+    "score": "rastrainer_simulator.cli.results:add_score_parser",
     "measure": "rastrainer_simulator.cli.journals:add_measure_parser",
     "pass-mark": "rastrainer_simulator.cli.training_goals:add_pass_mark_parser",
     "curriculum": "rastrainer_simulator.cli.training_goals:add_curriculum_parser",
-    "report": "rastrainer_simulator.cli.report:add_parser",
+    "report": "rastrainer_simulator.cli.results:add_report_parser",
     "export": "rastrainer_simulator.cli.export:add_parser",
     "send-statements": "rastrainer_simulator.cli.send_statements:add_parser",
     "copy-study": "rastrainer_simulator.cli.study_management:add_copy_study_parser",

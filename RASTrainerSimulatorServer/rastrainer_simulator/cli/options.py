@@ -93,33 +93,6 @@ def read_known_study(arguments: argparse.Namespace) -> StudyData:
         raise IncompleteStudyError(f"{error} --incomplete takes it as it is.") from None
 
 
-def mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
-    """Return the mean completion time in s of each mode that was given one.
-
-    Args:
-        given: `MODE=SECONDS`, or `SECONDS` for all modes; the later one counts.
-        modes: The modes of the trials.
-
-    Raises:
-        InputError: no number, or a mode that no trial has.
-    """
-    means: dict[str, float] = {}
-    for text in given:
-        mode, separator, number = text.rpartition("=")
-        if separator and mode not in modes:
-            raise InputError(
-                f"--mean-ct names the mode {mode[:64]!r}, but the trials have {', '.join(modes)}."
-            )
-        try:
-            value = float(number)
-        except ValueError:
-            raise InputError(
-                f"--mean-ct must be a number of seconds or MODE=SECONDS, not {text[:64]!r}."
-            ) from None
-        means.update(dict.fromkeys([mode] if separator else modes, value))
-    return means
-
-
 def announce(program: str, what: str) -> None:
     """Print at once what a program of ours does, such as "board" and "is on http://…"."""
     print(f"RASTrainer {program} {what}", flush=True)

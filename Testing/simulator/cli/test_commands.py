@@ -21,8 +21,8 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_protocol import read_study_protocol
 from rastrainer_simulator.cli import register as register_command
-from rastrainer_simulator.cli import score as score_command
 from rastrainer_simulator.cli.main import main
+from rastrainer_simulator.cli.results import add_score_parser
 from Testing.domain.trial.trial_records import first_score, gentle_score, make_aborted, make_record
 
 STUDY = Path(__file__).parents[3] / "assets" / "studies" / "published.csv"
@@ -32,7 +32,7 @@ def run(*words):
     parser = argparse.ArgumentParser()
     subparsers = parser.add_subparsers(required=True)
     register_command.add_parser(subparsers)
-    score_command.add_parser(subparsers)
+    add_score_parser(subparsers)
     arguments = parser.parse_args([str(word) for word in words])
     return arguments.run(arguments)
 

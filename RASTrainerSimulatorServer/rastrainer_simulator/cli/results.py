@@ -1,0 +1,180 @@
+"""Commands for the results of a study: `rastrainer score` and `rastrainer report`."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from rastrainer.errors import InputError
+from rastrainer.trial.ctps import (
+    CTPS_WARNING,
+    CohortScores,
+    read_trials,
+    score_cohort,
+    trials_by_mode,
+)
+from rastrainer_simulator.cli.options import (
+    STUDY_HELP,
+    add_incomplete,
+    add_json,
+    add_study,
+    json_text,
+    read_known_study,
+    text_table,
+)
+
+
+def add_score_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `score`: the paper's score of every trial of a study."""
+    parser = subparsers.add_parser(
+        "score",
+        help="score the trials of a study as the paper does (CTPS)",
+        description=(
+            "Score the trials of a CSV file with the header mode,subject,task,ct,rmse (s and mm) "
+            "with CTPS, separately for each mode."
+        ),
+    )
+    parser.add_argument("trials", metavar="TRIALS.csv", help="one trial a row")
+    parser.add_argument(
+        "--mean-ct",
+        action="append",
+        default=[],
+        metavar="[MODE=]SECONDS",
+        help=(
+            "use this mean completion time instead of the trials' own, such as a printed one; "
+            "without MODE for all modes; may be given once for each mode"
+        ),
+    )
+    add_json(parser)
+    parser.set_defaults(run=run_score)
+
+
+def run_score(arguments: argparse.Namespace) -> int:
+    """Print the scores and return the exit status.
+
+    Raises:
+        InputError: the file or a mean completion time cannot be used.
+    """
+    modes = trials_by_mode(read_trials(arguments.trials))
+    means = _mean_times(arguments.mean_ct, list(modes))
+    scores = {mode: score_cohort(trials, means.get(mode)) for mode, trials in modes.items()}
+    if arguments.json:
+        objects = {mode: _scores_json(score) for mode, score in scores.items()}
+        print(json_text(objects))
+    else:
+        print("\n\n".join(_scores_text(mode, score) for mode, score in scores.items()))
+        print(f"\nWarning: {CTPS_WARNING}")
+    return 0
+
+
+def _scores_json(scores: CohortScores) -> dict[str, Any]:
+    """Return the scores of one mode as a JSON object; undefined values are None."""
+    return {
+        "overall": scores.overall,
+        "equation_3_overall": scores.equation_3_overall,
+        "tasks": scores.tasks,
+        "subjects": scores.subjects,
+        "sd_population": scores.sd_population,
+        "sd_sample": scores.sd_sample,
+        "pearson_r": scores.pearson_r,
+        "r_squared": scores.r_squared,
+        "mean_ct": scores.reference.mean_ct_s,
+        "best_rmse": scores.reference.best_rmse_mm,
+        "trials": len(scores.trials),
+        "warning": CTPS_WARNING,
+    }
+
+
+def _scores_text(mode: str, scores: CohortScores) -> str:
+    """Return the scores of one mode as text for people."""
+    reference = scores.reference
+    rows = [[f"Task {name}", f"{mean:.2f}"] for name, mean in scores.tasks.items()]
+    rows += [[f"Subject {name}", f"{mean:.2f}"] for name, mean in scores.subjects.items()]
+    rows += [
+        ["Overall, 100 (CT score - RMSE penalty)", f"{scores.overall:.2f}"],
+        ["Overall by equation 3 (half of it)", f"{scores.equation_3_overall:.2f}"],
+        ["Standard deviation, population", f"{scores.sd_population:.2f}"],
+        ["Standard deviation, sample", _or_dash(scores.sd_sample, 2)],
+        ["Pearson r of task number and mean CT", _or_dash(scores.pearson_r, 3)],
+        ["r squared", _or_dash(scores.r_squared, 3)],
+    ]
+    title = (
+        f"{mode}: {len(scores.trials)} trials, mean CT {reference.mean_ct_s:.3f} s, "
+        f"best RMSE {reference.best_rmse_mm:.2f} mm"
+    )
+    return f"{title}\n{text_table(['', 'CTPS'], rows)}"
+
+
+def _or_dash(value: float | None, digits: int) -> str:
+    return "-" if value is None else f"{value:.{digits}f}"
+
+
+CSV_HEADER = "mode,subject,task,ct,rmse"
+
+
+def add_report_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `report`: a study as a printable page."""
+    parser = subparsers.add_parser(
+        "report",
+        help="write a study's report: tables, charts, tests, limits",
+        description=(
+            "Write report.html, which needs no other file and prints on A4, and trials.csv. "
+            "Trainees who did not consent to research are left out."
+        ),
+    )
+    add_study(parser, help_text=f"{STUDY_HELP}; or a CSV file with the header {CSV_HEADER}")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument(
+        "--mean-ct",
+        action="append",
+        default=[],
+        metavar="[MODE=]SECONDS",
+        help="a mean completion time for CTPS instead of the trials' own; see rastrainer score",
+    )
+    add_incomplete(parser)
+    parser.set_defaults(run=run_report)
+
+
+def run_report(arguments: argparse.Namespace) -> int:
+    """Write the report and return the exit status.
+
+    Raises:
+        InputError: the study cannot be read, or the folder not be written.
+    """
+    # Only here: what `score` needs is imported much faster.
+    from rastrainer.report.report import write_report
+
+    data = read_known_study(arguments)
+    means = _mean_times(arguments.mean_ct, list(data.modes))
+    written = write_report(data.with_mean_times(means), arguments.output)
+    aborted = f", {len(data.aborted)} aborted ones" if data.has_order else ""
+    print(f"{written.page}: {len(data.trainees)} trainees, {len(data.trials)} trials{aborted}")
+    return 0
+
+
+def _mean_times(given: list[str], modes: list[str]) -> dict[str, float]:
+    """Return the mean completion time in s of each mode that was given one.
+
+    Args:
+        given: `MODE=SECONDS`, or `SECONDS` for all modes; the later one counts.
+        modes: The modes of the trials.
+
+    Raises:
+        InputError: no number, or a mode that no trial has.
+    """
+    means: dict[str, float] = {}
+    for text in given:
+        mode, separator, number = text.rpartition("=")
+        if separator and mode not in modes:
+            raise InputError(
+                f"--mean-ct names the mode {mode[:64]!r}, but the trials have {', '.join(modes)}."
+            )
+        try:
+            value = float(number)
+        except ValueError:
+            raise InputError(
+                f"--mean-ct must be a number of seconds or MODE=SECONDS, not {text[:64]!r}."
+            ) from None
+        means.update(dict.fromkeys([mode] if separator else modes, value))
+    return means
