@@ -7,6 +7,7 @@ from dataclasses import replace
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, TRIAL_RUN, GhostRule, Guidance, Phase
 from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
+from rastrainer_simulator.flow.pages.introduction import TutorialDonePage
 from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
     ProcedureLinesPage,
@@ -16,7 +17,6 @@ from rastrainer_simulator.flow.pages.result import FinishedPage, ResultPage, Wai
 from rastrainer_simulator.flow.pages.session_page import clickable_hint
 from rastrainer_simulator.flow.pages.start import StartPage
 from rastrainer_simulator.flow.pages.trial import PracticePage, TrialPage
-from rastrainer_simulator.flow.pages.tutorial import TutorialDonePage
 from rastrainer_simulator.flow.procedure_screen import ProcedureScreen
 from rastrainer_simulator.flow.session.chosen_trial import begin_ghost, needs_tutorial
 from rastrainer_simulator.flow.session.session import TrainingSession

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer_simulator.flow.pages.introduction import ControlsPage
+from rastrainer_simulator.flow.pages.controls import ControlsPage
 from rastrainer_simulator.flow.pages.start import SettingsPage
 from rastrainer_simulator.flow.running_presenter import RunningPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences, write_preferences

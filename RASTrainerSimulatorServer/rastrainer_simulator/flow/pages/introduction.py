@@ -1,34 +1,18 @@
-"""What the training is about, which control does what, and a page to try the controls."""
+"""What leads a trainee in: sheets of text, the menu over the tutorial, and what comes after it."""
 
 from __future__ import annotations
 
-from rastrainer_simulator.flow.pages.bindings import BindingsPage
+from rastrainer.protocol import TRIAL_RUN, TutorialRule
+from rastrainer_simulator.flow.pages.controls import ControlsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.session.chosen_trial import obstacle, start_task, tutorial_rule
 from rastrainer_simulator.flow.session.session import TrainingSession
-from rastrainer_simulator.input.inputs import ROTATION, TRANSLATION, ControlName, InputDevice
-from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
-from rastrainer_simulator.presentation.screen import Fact, ItemKind, Menu, MenuItem
+from rastrainer_simulator.input.inputs import ControlName
+from rastrainer_simulator.presentation.screen import Fact, Menu
+from rastrainer_simulator.record.trial_context import TutorialOutcome
 
 SHEETS = 3
-
-_SHOWN = (
-    ("move_along", (ControlName.MOVE_FORWARD, ControlName.MOVE_BACK)),
-    ("move_across", (ControlName.MOVE_LEFT, ControlName.MOVE_RIGHT)),
-    ("move_vertically", (ControlName.MOVE_UP, ControlName.MOVE_DOWN)),
-    ("fine", (ControlName.FINE,)),
-    ("touch", (ControlName.TOUCH,)),
-    ("undo", (ControlName.UNDO,)),
-    ("best_view", (ControlName.BEST_VIEW,)),
-    ("turn_view", (ControlName.VIEW_LEFT, ControlName.VIEW_RIGHT)),
-    ("tilt_view", (ControlName.VIEW_HIGHER, ControlName.VIEW_LOWER)),
-    ("zoom_view", (ControlName.VIEW_NEARER, ControlName.VIEW_FARTHER)),
-    ("camera", (ControlName.CAMERA,)),
-    ("pause", (ControlName.PAUSE,)),
-    ("menu", (ControlName.MENU,)),
-)
-SHOWN = 4
-"""Inputs that are remembered."""
 
 
 class IntroductionPage(SessionPage):
@@ -70,97 +54,86 @@ class IntroductionPage(SessionPage):
             self._sheet -= 1
 
 
-class ControlsPage(SessionPage):
-    """Which input does what, on whatever the reader has in their hands."""
+class TutorialPage(SessionPage):
+    """Continues the tutorial, begins it anew or leaves it."""
 
-    name = "controls"
-
-    def __init__(self, session: TrainingSession, leads_on: bool = False) -> None:
-        super().__init__(session)
-        self._leads_on = leads_on
+    name = "tutorial"
 
     def menu(self) -> Menu:
-        """Return the list of the controls."""
+        """Return what one can do with the tutorial."""
+        tutorial = self.session.tutorial
+        step, steps = (1, 1) if tutorial is None else tutorial.place
+        may_skip = tutorial_rule(self.session) is not TutorialRule.REQUIRED
+        leave = self.say("tutorial.skip" if may_skip else "tutorial.leave")
+        return Menu(
+            self.name,
+            self.say("tutorial.title"),
+            (self.say("tutorial.paused", step=step, steps=steps),),
+            items=(
+                self.button("resume"),
+                self.button("controls"),
+                self.button("restart"),
+                self.button("leave", leave),
+            ),
+        )
+
+    def accept(self, item: str) -> None:
+        """Do what was chosen."""
         session = self.session
-        # Two ways of a stick tell which one it is; a key has only one.
-        most = len(ControlName) if session.operator.kind is InputDevice.KEYBOARD else 2
-        facts = tuple(
-            Fact(
-                self.say(f"controls.{key}"),
-                " / ".join(map(session.operator.label, controls[:most])),
-            )
-            for key, controls in _SHOWN
-        )
-        items = (*(["next"] if self._leads_on else []), "test", "rebind", "back")
-        return Menu(
-            self.name,
-            self.say("controls.title"),
-            (self.say("controls.text"),),
-            facts,
-            tuple(self.button(item) for item in items),
-            picture=session.operator.picture,
-        )
-
-    def accept(self, item: str) -> None:
-        """Continue, try the controls or change them."""
-        pages = self.session.pages
-        if item == "next":
-            self.session.has_read_introduction = True
-            pages.replace(ExperimentPage(self.session))
-        elif item == "back":
+        if item == "resume":
             self.back()
+        elif item == "controls":
+            session.pages.open(ControlsPage(session))
+        elif item == "restart":
+            session.begin_tutorial()
         else:
-            pages.open((PadTestPage if item == "test" else BindingsPage)(self.session))
+            session.end_tutorial()
+            session.pages.show_start()
+            session.pages.open(ExperimentPage(session))
+
+    def pressed(self, control: ControlName) -> bool:
+        """The control that pauses also resumes."""
+        if control is ControlName.PAUSE:
+            self.back()
+        return control is ControlName.PAUSE
 
 
-class PadTestPage(SessionPage):
-    """Shows what arrives. Every input but the menu's is only shown; the menu's leaves."""
+class TutorialDonePage(SessionPage):
+    """Says how exact the touches were, and leads to the trial run."""
 
-    name = "test"
+    name = "tutorial-done"
 
-    def __init__(self, session: TrainingSession) -> None:
+    def __init__(self, session: TrainingSession, outcome: TutorialOutcome) -> None:
         super().__init__(session)
-        self._pressed: list[tuple[InputDevice, str]] = []
+        self._outcome = outcome
 
     def menu(self) -> Menu:
-        """Return the sticks' positions and the last inputs."""
-        held = self.session.held
-        positions = (*held.translation, *held.rotation)
-        axes = tuple(
-            MenuItem(f"axis{number}", self._axis(pair), ItemKind.AXIS, f"{position:.2f}", False)
-            for number, (pair, position) in enumerate(
-                zip((*TRANSLATION, *ROTATION), positions, strict=True)
-            )
-        )
-        fine = Fact(self.say("control.fine"), self.say("test.yes" if held.fine else "test.no"))
-        facts = tuple(Fact(*self._input(*pressed)) for pressed in self._pressed)
-        leave = self.session.operator.label(ControlName.MENU)
+        """Return the figures and what comes next."""
+        outcome = self._outcome
+        errors = (self.say("tutorial.mm", error=error) for error in outcome.errors_mm)
+        touches = self.session.texts.listed(errors)
+        reason = obstacle(self.session, TRIAL_RUN)
+        trial_run = self.button("trial-run", is_enabled=not reason, help=reason)
         return Menu(
             self.name,
-            self.say("test.title"),
-            (self.say("test.text", menu=leave),),
-            (fine, *facts),
-            (*axes, self.button("back")),
+            self.say("tutorial-done.title"),
+            (self.say("tutorial-done.text", trainee=outcome.trainee),),
+            (
+                Fact(self.say("tutorial-done.time"), self.session.duration(outcome.seconds)),
+                Fact(
+                    self.say("tutorial-done.first"),
+                    self.say("tutorial.mm", error=outcome.first_error_mm),
+                ),
+                Fact(self.say("tutorial-done.touches"), touches),
+            ),
+            items=(trial_run, self.button("again"), self.button("menu")),
         )
 
     def accept(self, item: str) -> None:
-        """Go back."""
-        if item == "back":
+        """Begin the trial run, do the tutorial again, or go to the menu."""
+        if item == "trial-run":
+            start_task(self.session, TRIAL_RUN)
+        elif item == "again":
+            self.session.begin_tutorial()
+        else:
             self.back()
-
-    def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Show an input, and let it be felt."""
-        if name in self.session.bindings.table(device)[ControlName.MENU]:
-            return False
-        self._pressed = [(device, name), *self._pressed][:SHOWN]
-        self.session.happened(FeedbackEvent.TEST)
-        return True
-
-    def _axis(self, pair: tuple[ControlName, ControlName]) -> str:
-        return " / ".join(self.say(f"control.{control.value}") for control in pair)
-
-    def _input(self, device: InputDevice, name: str) -> tuple[str, str]:
-        table = self.session.bindings.table(device)
-        works = [control for control, inputs in table.items() if name in inputs]
-        names = self.session.texts.listed(self.say(f"control.{each.value}") for each in works)
-        return self.session.operator.input_label(device, name), names or self.say("test.nothing")

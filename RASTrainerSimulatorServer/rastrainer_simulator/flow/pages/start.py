@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from rastrainer.errors import InputError
+from rastrainer_simulator.flow.pages.controls import ControlsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
-from rastrainer_simulator.flow.pages.introduction import ControlsPage, IntroductionPage
+from rastrainer_simulator.flow.pages.introduction import IntroductionPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.session.preferences import (
     OF_A_TRIAL,

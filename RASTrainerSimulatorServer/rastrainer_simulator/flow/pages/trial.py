@@ -14,7 +14,7 @@ from rastrainer.protocol import TRIAL_RUN, AbortReason, CommandName, Phase
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
-from rastrainer_simulator.flow.pages.introduction import ControlsPage
+from rastrainer_simulator.flow.pages.controls import ControlsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.start import SettingsPage
 from rastrainer_simulator.flow.session.session import TrainingSession
