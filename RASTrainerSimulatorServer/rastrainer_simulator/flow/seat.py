@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rastrainer.protocol import OPEN_PHASES, PROCEDURE_PHASES, Phase
 from rastrainer_simulator.flow.flow import Flow
-from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.result import ResultPage
+from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.presentation.presenter import InstructorOrder, Seat
 from rastrainer_simulator.presentation.screen import Screen, Tone

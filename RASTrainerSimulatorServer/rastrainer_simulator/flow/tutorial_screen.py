@@ -8,9 +8,9 @@ from rastrainer.protocol import CommandName
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.arm import start_tip
 from rastrainer_simulator.flow.arm_screen import ArmScreen
-from rastrainer_simulator.flow.pages.errors import error_arrow, error_tone
 from rastrainer_simulator.flow.pages.introduction import TutorialPage
 from rastrainer_simulator.flow.pages.session_page import clickable_hint, stick_hints
+from rastrainer_simulator.flow.pages.trial_review import error_arrow, error_tone
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.flow.tutorial.steps import TutorialObservation, TutorialStep
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial

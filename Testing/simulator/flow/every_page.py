@@ -24,10 +24,10 @@ from rastrainer_simulator.flow.pages import (
     trial,
     tutorial,
 )
-from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial import MatchReport
+from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets

@@ -16,8 +16,8 @@ from rastrainer.procedure.score import (
     TARGET_LIMIT_MM,
 )
 from rastrainer.protocol import CommandName, Phase
-from rastrainer_simulator.flow.pages.errors import ErrorsPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.trial_review import ErrorsPage
 from rastrainer_simulator.flow.session.plan_marks import (
     PLACED,
     PLANNED,

@@ -12,15 +12,14 @@ from rastrainer.json_checks import is_number
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.trial.scoring import PASS_MARK
 from rastrainer.trial.trial_feedback import MAX_SHORT
-from rastrainer_simulator.flow.pages.errors import GOOD_MM, POOR_MM, ErrorsPage
 from rastrainer_simulator.flow.pages.experiment import ExperimentPage
 from rastrainer_simulator.flow.pages.procedure import (
     ProcedureErrorsPage,
     procedure_details,
     procedure_facts,
 )
-from rastrainer_simulator.flow.pages.replay import ReplayPage
 from rastrainer_simulator.flow.pages.session_page import SessionPage
+from rastrainer_simulator.flow.pages.trial_review import GOOD_MM, POOR_MM, ErrorsPage, ReplayPage
 from rastrainer_simulator.flow.session.own_score import OWN_SCORE
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.presentation.screen import Fact, Menu, MenuItem, Tone
