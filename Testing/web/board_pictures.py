@@ -17,7 +17,7 @@ from playwright.sync_api import sync_playwright
 from rastrainer.protocol import Phase
 from rastrainer.study.curriculum.curriculum_message import CurriculumMessage
 from rastrainer_simulator.board.class_table import ClassReader, ClassStanding
-from rastrainer_simulator.flow.session.curricula import AssignmentTexts
+from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.net.views.outgoing import seat as seat_text
 from rastrainer_simulator.presentation.presenter import Seat
 from rastrainer_simulator.state import TouchStage

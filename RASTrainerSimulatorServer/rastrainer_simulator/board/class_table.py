@@ -23,7 +23,7 @@ from rastrainer.study.curriculum.standing import (
 from rastrainer.study.database.database import LockWait, StudyBusyError, StudyPlace
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import utc_now
-from rastrainer_simulator.flow.session.curricula import AssignmentTexts
+from rastrainer_simulator.flow.session.assigned_training import AssignmentTexts
 from rastrainer_simulator.ops.study_thread import StudyThread
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 

@@ -23,13 +23,12 @@ from rastrainer_simulator.core.interrupted_trial import find_interrupted
 from rastrainer_simulator.core.settings import SimulationSettings
 from rastrainer_simulator.core.setup import load_setup
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.flow.session.curricula import Curricula
+from rastrainer_simulator.flow.session.assigned_training import Curricula, StudySteps
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
     Preferences,
     read_preferences,
 )
-from rastrainer_simulator.flow.session.study_steps import StudySteps
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.results import StateFeed, TrialLog
 from rastrainer_simulator.loop.timing import raise_thread_priority

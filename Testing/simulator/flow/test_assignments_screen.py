@@ -10,7 +10,7 @@ from rastrainer.protocol import TRIAL_RUN, AssignmentState, GoalKind
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.flow.pages.result import FinishedPage
-from rastrainer_simulator.flow.session.curricula import MAX_TRAINEES, Curricula
+from rastrainer_simulator.flow.session.assigned_training import MAX_TRAINEES, Curricula
 from rastrainer_simulator.flow.session.session import REACHED_S
 from rastrainer_simulator.presentation.screen import Tone
 from Testing.simulator.flow.trainee import STEP_S

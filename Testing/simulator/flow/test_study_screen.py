@@ -8,8 +8,8 @@ import pytest
 
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.study.protocol.steps import StepAnswers, StudyStep
+from rastrainer_simulator.flow.session.assigned_training import ANSWERED, MAX_TRAINEES, StudySteps
 from rastrainer_simulator.flow.session.chosen_trial import registration_method, start_task
-from rastrainer_simulator.flow.session.study_steps import ANSWERED, MAX_TRAINEES, StudySteps
 
 TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
 

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from rastrainer.scenario.library import ListedScenario
 from rastrainer_simulator.core.settings import SimulationSettings
-from rastrainer_simulator.flow.session.curricula import Curricula
-from rastrainer_simulator.flow.session.study_steps import StudySteps
+from rastrainer_simulator.flow.session.assigned_training import Curricula, StudySteps
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, TRIAL_IS_OPEN, ControlLoop
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
 from rastrainer_simulator.state import Answer

@@ -17,7 +17,11 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.study.curriculum.curriculum_message import AssignmentMessage, CurriculumMessage
 from rastrainer.study.protocol.steps import StudyStep
 from rastrainer_simulator.core.setup import SimulationSetup
-from rastrainer_simulator.flow.session.curricula import AssignmentTexts, newly_reached
+from rastrainer_simulator.flow.session.assigned_training import (
+    AssignmentTexts,
+    newly_reached,
+    step_sentence,
+)
 from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.flow.session.notices import Notices
 from rastrainer_simulator.flow.session.open_pages import OpenPages
@@ -29,7 +33,6 @@ from rastrainer_simulator.flow.session.preferences import (
     write_preferences,
 )
 from rastrainer_simulator.flow.session.services import FlowServices, SettingUp
-from rastrainer_simulator.flow.session.study_steps import step_sentence
 from rastrainer_simulator.flow.session.trace_places import TracePlaces
 from rastrainer_simulator.flow.session.trainee_history import (
     DoneTasks,
