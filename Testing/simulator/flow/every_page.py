@@ -28,7 +28,7 @@ from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial import MatchReport
 from rastrainer_simulator.flow.pages.trial_review import ReplayPage
-from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
+from rastrainer_simulator.flow.session.preferences import InstructorLock
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
 from rastrainer_simulator.rating.rating_pages import DomainPage, LoadingPage, RatedPage

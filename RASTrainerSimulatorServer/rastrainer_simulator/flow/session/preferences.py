@@ -1,10 +1,11 @@
-"""What is chosen at the simulator: language, sound, speeds, whose axes, which order."""
+"""What is chosen at the simulator, and what of it is locked by an instructor's PIN."""
 
 from __future__ import annotations
 
 import dataclasses
 import json
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from rastrainer.json_checks import accepted, text
 from rastrainer.protocol import TRIAL_RUN, GhostRule, Guidance, TouchRule, TutorialRule
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.core.settings import SimulationSettings
+from rastrainer_simulator.ops.instructor_pin import PinAnswer, PinGuesses
 from rastrainer_simulator.teleoperation.steering import AxesChoice, ToolDirection
 from rastrainer_simulator.texts.texts import LANGUAGES
 
@@ -156,3 +158,64 @@ def faded_guidance(choice: str, task: str, order: Sequence[str]) -> Guidance:
         return Guidance.WORDS
     tasks = [name for name in order if name != TRIAL_RUN]
     return Guidance.ARROW if task in tasks[:_ARROW_TASKS] else Guidance.NONE
+
+
+class InstructorLock:
+    """What a PIN locks: the settings, the order, and passing on the control.
+
+    It is locked wherever a PIN is set, until somebody enters it, and again when the trainee
+    changes, and when a trial or a tutorial begins: whoever trains then is not whom the instructor
+    stood beside.
+    """
+
+    def __init__(self, pin: PinGuesses | None) -> None:
+        """Lock by a PIN, which may be set and removed at any time; None locks nothing."""
+        self._pin = pin
+        self._is_open = False
+        self._asked: Future[PinAnswer] | None = None
+        self._seen = ("", "", False)
+
+    @property
+    def has_pin(self) -> bool:
+        """Whether a PIN is set."""
+        return self._pin is not None and self._pin.is_set
+
+    @property
+    def is_locked(self) -> bool:
+        """Whether the PIN has to be entered first."""
+        return self.has_pin and not self._is_open
+
+    def guess(self, pin: str) -> None:
+        """Have a PIN looked at, outside of this thread: that takes about 50 ms."""
+        if self._pin is not None and self._asked is None:
+            worker = ThreadPoolExecutor(1, "instructor-pin")
+            self._asked = worker.submit(self._pin.guess, pin)
+            worker.shutdown(wait=False)
+
+    def take_answer(self) -> PinAnswer | None:
+        """Return what became of the guess, once, and unlock by the right PIN; None before.
+
+        Raises:
+            InputError: the PIN's file cannot be read or is no PIN's.
+        """
+        if self._asked is None or not self._asked.done():
+            return None
+        asked, self._asked = self._asked, None
+        answer = asked.result()
+        self._is_open = answer.is_right
+        return answer
+
+    def forget_guess(self) -> None:
+        """Unlock nothing by a PIN that is still being looked at."""
+        self._asked = None
+
+    def lock(self) -> None:
+        """Lock again."""
+        self._is_open = False
+
+    def follow(self, trainee: str, trial_id: str, has_tutorial: bool) -> None:
+        """Take note of who trains, of the trial, "" for none, and whether a tutorial is open."""
+        before, self._seen = self._seen, (trainee, trial_id, has_tutorial)
+        is_other_trial = trial_id not in ("", before[1])
+        if trainee != before[0] or is_other_trial or (has_tutorial and not before[2]):
+            self.lock()

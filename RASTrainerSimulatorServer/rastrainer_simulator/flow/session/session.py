@@ -22,13 +22,13 @@ from rastrainer_simulator.flow.session.assigned_training import (
     newly_reached,
     step_sentence,
 )
-from rastrainer_simulator.flow.session.instructor_lock import InstructorLock
 from rastrainer_simulator.flow.session.notices import Notices
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice, ScreenSticks
 from rastrainer_simulator.flow.session.own_score import OwnScore
 from rastrainer_simulator.flow.session.preferences import (
     PREFERENCES_FILE,
+    InstructorLock,
     Preferences,
     write_preferences,
 )
