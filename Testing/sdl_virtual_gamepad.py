@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from rastrainer_simulator.input.inputs import AXES, BUTTONS
+from rastrainer_simulator.input.gamepads import AXES, BUTTONS
 
 GAMECONTROLLER, WHEEL = 1, 2
 """SDL's types of joysticks: it lays out a virtual one of the first type as a game controller."""

@@ -16,13 +16,13 @@ from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.bindings import Bindings
 from rastrainer_simulator.input.controls import IDLE_S, Controls
+from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
 from rastrainer_simulator.input.inputs import (
     ControlContext,
     ControlName,
     InputDevice,
     Source,
     SourceKind,
-    w3c_gamepad_inputs,
 )
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.loop.results import Subscribers

@@ -8,7 +8,7 @@ import logging
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from rastrainer.errors import InputError, RASTrainerError
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
@@ -19,11 +19,9 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.flow.session.services import FlowServices
 from rastrainer_simulator.input.bindings import BINDINGS_FILE, DEFAULT_BINDINGS, read_bindings
+from rastrainer_simulator.input.gamepads import Gamepads
 from rastrainer_simulator.input.inputs import SIMULATOR_STATION, Source, SourceKind
 from rastrainer_simulator.loop.control_loop import ControlLoop
-
-if TYPE_CHECKING:
-    from rastrainer_simulator.input.gamepads import Gamepads
 
 PERIOD_S = 0.005
 """Time between two looks at the gamepad."""
@@ -110,8 +108,6 @@ class RunningPresenter:
         self.presenter.warn("gamepad", "warning.unmapped", name=name)
 
     def _started(self) -> Gamepads | None:
-        from rastrainer_simulator.input.gamepads import Gamepads
-
         try:
             gamepads = Gamepads(self)
         except RASTrainerError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import string
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,14 +13,13 @@ from typing import Any
 from rastrainer.errors import InputError
 from rastrainer.files.reading import read_json
 from rastrainer.files.writing import write_private_json
+from rastrainer_simulator.input.gamepads import BUTTONS, GAMEPAD_INPUTS
 from rastrainer_simulator.input.inputs import (
-    BUTTONS,
     OF_VIEW,
     SITUATIONS,
     ControlContext,
     ControlName,
     InputDevice,
-    is_input,
 )
 
 Table = Mapping[ControlName, tuple[str, ...]]
@@ -27,6 +27,8 @@ BINDINGS_FILE = "controls.json"
 FORMAT_VERSION = 1
 MAX_BYTES = 2**16
 MAX_INPUTS = 4
+_KEY = re.compile(r"[A-Z][A-Za-z0-9]{0,31}")
+"""A key is named by its `KeyboardEvent.code`, as the W3C has it."""
 
 
 @dataclass(frozen=True)
@@ -247,9 +249,15 @@ def _free_inputs(
     return free or tuple(sorted(spare, key=lambda name: name in others))[:1] or usual
 
 
+def _is_input(device: InputDevice, name: str) -> bool:
+    if device is InputDevice.KEYBOARD:
+        return _KEY.fullmatch(name) is not None
+    return name in GAMEPAD_INPUTS
+
+
 def _read_inputs(device: InputDevice, control: str, inputs: Any) -> tuple[str, ...]:
     is_list = isinstance(inputs, list) and 1 <= len(inputs) <= MAX_INPUTS
-    if not is_list or not all(isinstance(name, str) and is_input(device, name) for name in inputs):
+    if not is_list or not all(isinstance(name, str) and _is_input(device, name) for name in inputs):
         example = (
             '"a", "dpup" or "-leftx"' if device is InputDevice.GAMEPAD else '"Space" or "KeyA"'
         )

@@ -1,15 +1,81 @@
-"""All gamepads of the simulator, read by SDL: their inputs, plugging in and out, vibration."""
+"""Gamepads: what their inputs are called, and those of the simulator, read by SDL.
+
+A button is named as in SDL's GameController mappings ("a", "dpup"); an axis is two inputs, one for
+each way it can be pushed ("-leftx", "+leftx").
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import ModuleType
 from typing import Any, Protocol
 
 from rastrainer.errors import RASTrainerError
-from rastrainer_simulator.input.inputs import AXES, BUTTONS, gamepad_inputs
+
+BUTTONS = (
+    "a",
+    "b",
+    "x",
+    "y",
+    "back",
+    "guide",
+    "start",
+    "leftstick",
+    "rightstick",
+    "leftshoulder",
+    "rightshoulder",
+    "dpup",
+    "dpdown",
+    "dpleft",
+    "dpright",
+)
+"""In SDL's order of GameController buttons."""
+
+AXES = ("leftx", "lefty", "rightx", "righty", "lefttrigger", "righttrigger")
+"""In SDL's order of GameController axes; y points down, triggers go from 0 to 1."""
+
+GAMEPAD_INPUTS = frozenset((*BUTTONS, *(sign + axis for axis in AXES for sign in "-+")))
+
+_W3C_BUTTONS = (
+    "a",
+    "b",
+    "x",
+    "y",
+    "leftshoulder",
+    "rightshoulder",
+    "+lefttrigger",
+    "+righttrigger",
+    "back",
+    "start",
+    "leftstick",
+    "rightstick",
+    "dpup",
+    "dpdown",
+    "dpleft",
+    "dpright",
+    "guide",
+)
+
+
+def gamepad_inputs(axes: Sequence[float], buttons: Sequence[float]) -> dict[str, float]:
+    """Return the inputs (0…1) of a gamepad whose axes and buttons are in SDL's order."""
+    return {**dict(zip(BUTTONS, buttons, strict=False)), **_halves(AXES, axes)}
+
+
+def w3c_gamepad_inputs(axes: Sequence[float], buttons: Sequence[float]) -> dict[str, float]:
+    """Return the same of a gamepad in the W3C's standard layout, as a browser reads it."""
+    return {**dict(zip(_W3C_BUTTONS, buttons, strict=False)), **_halves(AXES[:4], axes)}
+
+
+def _halves(names: Sequence[str], positions: Sequence[float]) -> dict[str, float]:
+    halves = {}
+    for name, position in zip(names, positions, strict=False):
+        halves["-" + name] = max(0.0, -position)
+        halves["+" + name] = max(0.0, position)
+    return halves
+
 
 FULL_DEFLECTION = 32767.0
 LONGEST_RUMBLE_S = 2.0

@@ -9,12 +9,8 @@ from concurrent.futures import Future
 from rastrainer.errors import InputError
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.inputs import (
-    ControlContext,
-    ControlName,
-    InputDevice,
-    w3c_gamepad_inputs,
-)
+from rastrainer_simulator.input.gamepads import w3c_gamepad_inputs
+from rastrainer_simulator.input.inputs import ControlContext, ControlName, InputDevice
 from rastrainer_simulator.loop.results import Subscribers
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent, feedback_of
 from rastrainer_simulator.presentation.presenter import (

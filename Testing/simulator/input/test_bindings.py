@@ -17,17 +17,19 @@ from rastrainer_simulator.input.bindings import (
     read_bindings,
     write_bindings,
 )
-from rastrainer_simulator.input.inputs import (
+from rastrainer_simulator.input.gamepads import (
     AXES,
     BUTTONS,
     GAMEPAD_INPUTS,
+    gamepad_inputs,
+    w3c_gamepad_inputs,
+)
+from rastrainer_simulator.input.inputs import (
     OF_VIEW,
     ROTATION,
     ControlContext,
     ControlName,
     InputDevice,
-    gamepad_inputs,
-    w3c_gamepad_inputs,
 )
 from rastrainer_simulator.input.presets import (
     LEFT_ALONE,

@@ -9,8 +9,7 @@ import time
 
 import pytest
 
-from rastrainer_simulator.input.gamepads import Gamepads
-from rastrainer_simulator.input.inputs import AXES, BUTTONS
+from rastrainer_simulator.input.gamepads import AXES, BUTTONS, Gamepads
 from Testing.sdl_virtual_gamepad import WHEEL, VirtualGamepad
 
 

@@ -11,7 +11,8 @@ import pytest
 
 from rastrainer_simulator.flow.session.preferences import OPTIONS
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.input.inputs import GAMEPAD_INPUTS, ControlName, InputDevice, SourceKind
+from rastrainer_simulator.input.gamepads import GAMEPAD_INPUTS
+from rastrainer_simulator.input.inputs import ControlName, InputDevice, SourceKind
 from rastrainer_simulator.texts.texts import ENGLISH, LANGUAGES, Texts, input_label, pair_label
 
 SERVER = Path(__file__).parents[3] / "RASTrainerSimulatorServer"
