@@ -17,10 +17,13 @@ import pytest
 
 from rastrainer.study.database.study import Study
 from rastrainer.study.study_data import read_study_data
-from rastrainer_simulator.cli.record_store_settings import RECORD_STORE_FILE
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
 from rastrainer_simulator.export.xapi import statements
-from rastrainer_simulator.net.record_store import RecordStore, StoreUnreachableError
+from rastrainer_simulator.net.record_store import (
+    RECORD_STORE_FILE,
+    RecordStore,
+    StoreUnreachableError,
+)
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.free_port import free_port
 

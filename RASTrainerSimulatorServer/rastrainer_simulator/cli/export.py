@@ -26,12 +26,9 @@ from rastrainer.study.tidy_csv import (
     trials_csv,
 )
 from rastrainer_simulator.cli.options import add_config, add_incomplete, add_study, read_known_study
-from rastrainer_simulator.cli.record_store_settings import (
-    home_page_url,
-    read_record_store_settings,
-)
 from rastrainer_simulator.export.trial_files import write_motion_bids, write_slicer_files
 from rastrainer_simulator.export.xapi import HOME_PAGE, statements_text
+from rastrainer_simulator.net.record_store import home_page_url, read_record_store_settings
 
 FORMATS = ("csv", "bids", "xapi", "slicer")
 

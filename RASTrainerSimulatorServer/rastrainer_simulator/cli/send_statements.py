@@ -18,17 +18,15 @@ from rastrainer.number_text import counted
 from rastrainer.study.database.database import path_beside_study
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.options import add_study
-from rastrainer_simulator.cli.record_store_settings import (
-    RECORD_STORE_FILE,
-    home_page_url,
-    read_record_store_settings,
-)
 from rastrainer_simulator.export.xapi import statements
 from rastrainer_simulator.net.record_store import (
     BATCH,
+    RECORD_STORE_FILE,
     Delivery,
     RecordStore,
     StoreUnreachableError,
+    home_page_url,
+    read_record_store_settings,
 )
 
 CREDENTIALS_VARIABLE = "RASTRAINER_XAPI_CREDENTIALS"

@@ -1,4 +1,4 @@
-"""A learning record store that takes xAPI statements over HTTP (IEEE 9274.1.1, xAPI 1.0.3)."""
+"""A learning record store for xAPI statements (IEEE 9274.1.1, xAPI 1.0.3): settings, requests."""
 
 from __future__ import annotations
 
@@ -8,12 +8,16 @@ import json
 import ssl
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 from rastrainer.errors import InputError
-from rastrainer.files.reading import printable_name
+from rastrainer.files.json_fields import known_keys
+from rastrainer.files.reading import printable_name, read_json
+from rastrainer.json_checks import Argument, text
 from rastrainer_simulator.net.listener import is_loopback
+from rastrainer_simulator.ops.folders import config_folder
 
 XAPI_VERSION = "1.0.3"
 TIMEOUT_S = 20.0
@@ -147,3 +151,65 @@ class RecordStore:
         if self._is_safe:
             return http.client.HTTPSConnection(self._host, self._port, timeout=TIMEOUT_S)
         return http.client.HTTPConnection(self._host, self._port, timeout=TIMEOUT_S)
+
+
+RECORD_STORE_FILE = "record-store.json"
+_MAX_FILE_BYTES = 10_000
+
+
+def home_page_url(value: Any) -> str:
+    """Accept the address of a lab's own system, from which IRIs are made."""
+    address = text(300, min_length=0)(value)
+    if not _is_home_page(address):
+        raise ValueError("the address of the lab's own system, such as https://lab.example.org")
+    return address.rstrip("/")
+
+
+def _is_home_page(address: str) -> bool:
+    # What stands before an "@", such as a password, would be sent with every statement.
+    if any(sign in address for sign in "@?# "):
+        return False
+    try:
+        parts = urlsplit(address)
+        host, _port = parts.hostname or "", parts.port
+    except ValueError:
+        return False
+    return parts.scheme in ("https", "http") and host != "" and not host.endswith(".invalid")
+
+
+@dataclass(frozen=True)
+class RecordStoreSettings:
+    """What the file of settings says; "" or None where it says nothing.
+
+    Attributes:
+        store: URL of the xAPI endpoint.
+        home_page: Of the lab's own system, from which the IRIs of statements are made.
+        credentials: File with name:password of the store.
+    """
+
+    store: str = ""
+    home_page: str = ""
+    credentials: Path | None = None
+
+
+_KEYS = {
+    "store": Argument(text(500), ""),
+    "homePage": Argument(home_page_url, ""),
+    "credentials": Argument(text(1000), ""),
+}
+
+
+def read_record_store_settings(config: Path | None) -> RecordStoreSettings:
+    """Return the settings in a folder, by default the usual one; without a file there are none.
+
+    Raises:
+        InputError: the file cannot be used.
+    """
+    folder = config or config_folder()
+    path = folder / RECORD_STORE_FILE
+    if not path.exists():
+        return RecordStoreSettings()
+    values = read_json(path, _MAX_FILE_BYTES)
+    checked = known_keys(values, _KEYS, printable_name(path))
+    credentials = folder / checked["credentials"] if checked["credentials"] else None
+    return RecordStoreSettings(checked["store"], checked["homePage"], credentials)

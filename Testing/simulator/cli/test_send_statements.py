@@ -7,13 +7,14 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.study.study_data import read_study_data
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.cli.record_store_settings import (
-    RECORD_STORE_FILE,
-    read_record_store_settings,
-)
 from rastrainer_simulator.cli.send_statements import Sender, SentStatements
 from rastrainer_simulator.export.xapi import statements
-from rastrainer_simulator.net.record_store import BATCH, RecordStore
+from rastrainer_simulator.net.record_store import (
+    BATCH,
+    RECORD_STORE_FILE,
+    RecordStore,
+    read_record_store_settings,
+)
 from Testing.domain.study.played_study import study_with_trials
 from Testing.free_port import free_port
 from Testing.simulator.cli.record_store_double import CREDENTIALS, RecordStoreDouble
