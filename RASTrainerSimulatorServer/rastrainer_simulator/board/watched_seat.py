@@ -45,7 +45,7 @@ from rastrainer_simulator.net.views.incoming import (
 )
 from rastrainer_simulator.net.views.outgoing import SEAT
 from rastrainer_simulator.state import TouchStage
-from rastrainer_simulator.texts.typesetting import NARROW_SPACE, NO_BREAK_SPACE
+from rastrainer_simulator.texts.texts import NARROW_SPACE, NO_BREAK_SPACE
 
 RETRY_S = 2.0
 MOST_WARNINGS = 8

@@ -1,24 +1,38 @@
 """Say a sentence in a language, and say it again in another.
 
 The sentences are in one JSON file a language, sorted into sections for translators
-(docs/how-to/translate.md).
+(docs/how-to/translate.md). They are written with plain keys; the
+typography of each language is added here.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from string import Formatter
 from types import MappingProxyType
 
 from rastrainer.trial import wording
-from rastrainer_simulator.texts import typesetting
 
-_TYPESETTING: Mapping[str, Callable[[str], str]] = {
-    "fr": typesetting.french,
-    "zh-Hans": typesetting.chinese,
-}
+NARROW_SPACE = "\u202f"
+"""No-break, narrower than a space."""
+NO_BREAK_SPACE = "\u00a0"
+
+
+def _french(text: str) -> str:
+    """Return a French text with its apostrophes, and no-break spaces beside signs of two parts."""
+    text = re.sub(r" ([:;!?%»])", rf"{NARROW_SPACE}\1", text)
+    return text.replace("« ", f"«{NARROW_SPACE}").replace("'", "’")
+
+
+def _chinese(text: str) -> str:
+    """Return a Chinese text with no-break spaces beside numbers and what is filled in."""
+    return re.sub(r" (?=[\d{/])|(?<=[\d}/]) ", NO_BREAK_SPACE, text)
+
+
+_TYPESETTING: Mapping[str, Callable[[str], str]] = {"fr": _french, "zh-Hans": _chinese}
 
 
 def _table(tag: str) -> dict[str, str]:
