@@ -14,7 +14,7 @@ from rastrainer.protocol import Phase
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.touch_registration import GivenPoints, register_trial
-from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.end_to_end.onto_skin import lower_onto_skin
 from Testing.end_to_end.simulator_process import SimulatorProcess

@@ -15,7 +15,7 @@ from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.study import Study
 from rastrainer.trial.record import TrialRecord
 from rastrainer_simulator.export.trial_files import write_slicer_files
-from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.replay.resimulation import replay
 from Testing.end_to_end.faulty_proxy import SlicerSide
 from Testing.end_to_end.simulator_process import SimulatorProcess, ViewedSimulator

@@ -49,7 +49,7 @@ def run_replay(arguments: argparse.Namespace) -> int:
     if not arguments.verify:
         return _show(arguments)
     # Only here: the robot and the scenario take time to import.
-    from rastrainer_simulator.record.recorded_setup import setup_of
+    from rastrainer_simulator.record.trial_context import setup_of
     from rastrainer_simulator.replay.resimulation import replay
 
     reading = read_journal(arguments.journal)

@@ -22,8 +22,7 @@ from rastrainer.protocol import PROCEDURE_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
 from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
-from rastrainer_simulator.record.recorded_setup import versions
-from rastrainer_simulator.record.trial_context import DisplayUse
+from rastrainer_simulator.record.trial_context import DisplayUse, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
 from rastrainer_simulator.training.registered_plan import RegisteredPlan
 from rastrainer_simulator.trial_state import (

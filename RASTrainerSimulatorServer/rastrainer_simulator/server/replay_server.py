@@ -29,7 +29,7 @@ from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
 from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter
-from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial
 from rastrainer_simulator.replay.replay_presenter import ReplayPresenter

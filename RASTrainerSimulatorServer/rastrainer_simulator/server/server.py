@@ -40,7 +40,7 @@ from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
 from rastrainer_simulator.record.journal_writer import RecordsFolder
-from rastrainer_simulator.record.recorded_setup import setup_of, versions
+from rastrainer_simulator.record.trial_context import setup_of, versions
 from rastrainer_simulator.robot.kinematics import kinematics_name
 from rastrainer_simulator.server.scenario_loader import ScenarioLoader
 from rastrainer_simulator.state import Answer

@@ -16,8 +16,8 @@ from rastrainer_simulator.core.setup import scenario_sha256
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.record.journal_writer import Journal
-from rastrainer_simulator.record.recorded_setup import setup_of
 from rastrainer_simulator.record.trial_archive import SUFFIX
+from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.state import OperatorInput
 from Testing.domain.procedure.made_up_procedure import write_planned
 

@@ -22,7 +22,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.cli.main import main
 from rastrainer_simulator.presentation.presenter import Feedback
 from rastrainer_simulator.presentation.screen import Screen
-from rastrainer_simulator.record.recorded_setup import setup_of
+from rastrainer_simulator.record.trial_context import setup_of
 from rastrainer_simulator.replay import recorded_trial
 from rastrainer_simulator.replay.playback import Playback
 from rastrainer_simulator.replay.recorded_trial import RecordedTrial, load_trial
