@@ -14,7 +14,7 @@ from rastrainer.trial.record import TouchedPoint, TrialRecord
 from rastrainer.trial.scoring import SAFETY_METRICS
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.record.journal_writer import Journal
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.head_pose import Truth
 
 COLIN = asset_path("scenarios", "colin27")
 TRAINEE = "T-042"

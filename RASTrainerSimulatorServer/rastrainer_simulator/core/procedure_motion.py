@@ -20,7 +20,7 @@ from rastrainer_simulator.state import Event, EventKind, OperatorInput
 from rastrainer_simulator.teleoperation.commanded_motion import MoveCommand, PathCommand
 from rastrainer_simulator.texts.texts import LocalizedText, Texts
 from rastrainer_simulator.training.feed import LONGEST_FEED_M, NO_FEED, Feed, FeedDrive, HeadAhead
-from rastrainer_simulator.training.registered_plan import RegisteredPlan
+from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import GuideAxis, PlannedLine, ProcedureState
 from rastrainer_simulator.vectors import (
     Vector,

@@ -40,10 +40,10 @@ from rastrainer_simulator.teleoperation.commanded_motion import (
 from rastrainer_simulator.teleoperation.steering import ChosenAxes
 from rastrainer_simulator.teleoperation.teleoperation import MotionRequest, Teleoperation
 from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.replies import TrainingReply
 from rastrainer_simulator.training.rules import TouchMoment, refusal, touch_stage
 from rastrainer_simulator.training.training import Training
-from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.trial_state import GuideAxis
 from rastrainer_simulator.vectors import Vector, in_meters, subtract
 

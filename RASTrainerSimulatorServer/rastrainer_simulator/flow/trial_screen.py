@@ -25,7 +25,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 from rastrainer_simulator.input.inputs import ControlName, SourceKind
 from rastrainer_simulator.presentation.screen import Hint, ScreenMessage, Tone
 from rastrainer_simulator.state import Event, EventKind, TouchStage
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.vectors import Vector, distance, in_meters
 from rastrainer_simulator.viewpoint.view_control import orbit_to
 

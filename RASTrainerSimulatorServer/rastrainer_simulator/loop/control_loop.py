@@ -44,8 +44,8 @@ from rastrainer_simulator.state import (
     StepResult,
 )
 from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
-from rastrainer_simulator.training.true_error import Truth
 
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""

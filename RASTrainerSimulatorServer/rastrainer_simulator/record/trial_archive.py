@@ -23,7 +23,7 @@ from rastrainer_simulator.record.aborted_archive import AbortedArchive
 from rastrainer_simulator.record.journal_writer import Journal
 from rastrainer_simulator.state import FinalRegistration
 from rastrainer_simulator.texts.texts import Texts
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.head_pose import Truth
 
 FIRST_REACH = 1 << 16
 """Bytes at the end of a journal that are read first."""

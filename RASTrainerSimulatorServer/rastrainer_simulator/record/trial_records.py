@@ -24,7 +24,7 @@ from rastrainer.trial.aborted_trial import AbortedTrial
 from rastrainer.trial.record import TouchedPoint, TracePoint, TrialRecord
 from rastrainer_simulator.record.trial_context import DisplayUse, versions
 from rastrainer_simulator.state import SimulationState, TrainingState
-from rastrainer_simulator.training.registered_plan import RegisteredPlan
+from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import (
     CheckedPoint,
     FinalRegistration,

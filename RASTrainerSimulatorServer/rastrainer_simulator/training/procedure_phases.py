@@ -16,7 +16,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import EventKind, OperatorCommand, TrainingState
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import NO_FEED, Feed, ProcedureSettings
-from rastrainer_simulator.training.registered_plan import RegisteredPlan
+from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.training.replies import RefusedStep, TrialStep
 from rastrainer_simulator.training.rules import TouchMoment, TrainingSettings
 from rastrainer_simulator.trial_state import (

@@ -13,7 +13,7 @@ from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.state import Event, EventKind, TrainingState, TrialResult
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import Feed
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.trial_state import FinalRegistration
 from rastrainer_simulator.vectors import in_millimeters
 

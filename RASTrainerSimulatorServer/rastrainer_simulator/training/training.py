@@ -13,6 +13,7 @@ from rastrainer_simulator.state import Event, EventKind, OperatorCommand, Traini
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training import tracing
 from rastrainer_simulator.training.feed import ProcedureSettings, recorded_feed
+from rastrainer_simulator.training.head_pose import PlacedHead, Truth
 from rastrainer_simulator.training.procedure_phases import OF_A_PROCEDURE, ProcedurePhases
 from rastrainer_simulator.training.replies import (
     RefusedStep,
@@ -40,7 +41,6 @@ from rastrainer_simulator.training.trial_start import (
     paused,
     resumed,
 )
-from rastrainer_simulator.training.true_error import PlacedHead, Truth
 from rastrainer_simulator.trial_state import TouchState
 from rastrainer_simulator.vectors import Vector
 

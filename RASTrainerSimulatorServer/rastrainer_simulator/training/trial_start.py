@@ -17,9 +17,9 @@ from rastrainer.scenario.scenario import method_of, task_by_method
 from rastrainer_simulator.state import TrainingState
 from rastrainer_simulator.texts.texts import Texts
 from rastrainer_simulator.training.feed import ProcedureSettings
+from rastrainer_simulator.training.head_pose import PlacedHead
 from rastrainer_simulator.training.procedure_phases import ProcedurePhases
 from rastrainer_simulator.training.rules import TrainingSettings
-from rastrainer_simulator.training.true_error import PlacedHead
 from rastrainer_simulator.trial_state import ProcedureState, TraceState
 
 if TYPE_CHECKING:

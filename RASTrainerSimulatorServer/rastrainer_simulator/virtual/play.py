@@ -36,7 +36,7 @@ from rastrainer_simulator.state import (
     StartingPoint,
     StepResult,
 )
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.virtual.population import TrialJob
 from rastrainer_simulator.virtual.scripted_trainee import (
     Action,

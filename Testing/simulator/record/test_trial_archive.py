@@ -19,7 +19,7 @@ from rastrainer_simulator.record.trial_archive import (
     TrialArchive,
     find_unacknowledged,
 )
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.head_pose import Truth
 
 TRIAL_ID = "5c6f1d0e-6a4e-4c37-9d0c-0f6a2f7d9b11"
 UTC = "2024-05-17T09:30:00.000Z"

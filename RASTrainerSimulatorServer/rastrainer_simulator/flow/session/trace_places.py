@@ -18,7 +18,7 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.presentation.presenter import SkinPlace, TraceGuidance
 from rastrainer_simulator.state import SimulationState
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.trial_state import TraceState
 from rastrainer_simulator.vectors import Vector, add, in_meters, scale, subtract, unit, vector
 

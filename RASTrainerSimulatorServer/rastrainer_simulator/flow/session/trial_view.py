@@ -11,7 +11,7 @@ from rastrainer.scenario.scenario import Camera, Scenario
 from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.state import OperatorInput, SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
-from rastrainer_simulator.training.true_error import Truth
+from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
 from rastrainer_simulator.viewpoint.line_views import across_line

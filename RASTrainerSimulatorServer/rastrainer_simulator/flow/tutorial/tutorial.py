@@ -29,9 +29,9 @@ from rastrainer_simulator.input.inputs import SourceKind
 from rastrainer_simulator.record.trial_context import GUIDED_TOUCHES, TutorialOutcome
 from rastrainer_simulator.state import OperatorCommand, SimulationState, TouchStage, TrainingState
 from rastrainer_simulator.texts.texts import Texts
+from rastrainer_simulator.training.head_pose import Truth
 from rastrainer_simulator.training.rules import TouchMoment, touch_stage
 from rastrainer_simulator.training.training import Training, TrainingReply
-from rastrainer_simulator.training.true_error import Truth
 from rastrainer_simulator.vectors import Vector, distance, in_millimeters, vector
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
