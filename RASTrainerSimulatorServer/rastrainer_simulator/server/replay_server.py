@@ -22,7 +22,7 @@ from rastrainer_simulator.flow.session.preferences import (
     read_preferences,
 )
 from rastrainer_simulator.loop.results import StateSource
-from rastrainer_simulator.net.views.start_view_server import start_view_server
+from rastrainer_simulator.net.views.view_server import start_view_server
 from rastrainer_simulator.ops.chinese_font import has_letters
 from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals

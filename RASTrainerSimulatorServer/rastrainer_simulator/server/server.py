@@ -284,7 +284,7 @@ class SimulatorServer:
         if presenter is None:
             return None
         # Here, before the control loop ticks: the import of aiohttp would make ticks late.
-        from rastrainer_simulator.net.views.start_view_server import start_view_server
+        from rastrainer_simulator.net.views.view_server import start_view_server
 
         return lambda announce: start_view_server(
             presenter.presenter.shown,

@@ -137,7 +137,7 @@ def test_an_unwritable_cache_is_temporarily_replaced(tmp_path, monkeypatch):
 IMPORTS = """
 import sys
 import rastrainer_simulator.server.server
-import rastrainer_simulator.net.views.start_view_server
+import rastrainer_simulator.net.views.view_server
 unwanted = [name for name in sys.modules if name.startswith(("vtk", "trimesh"))]
 assert not unwanted, unwanted
 """

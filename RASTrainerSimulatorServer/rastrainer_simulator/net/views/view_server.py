@@ -1,10 +1,11 @@
-"""The HTTP server of views: page, scene, sounds, pictures and, by a WebSocket each, the stream."""
+"""The HTTP server of views: page, scene, sounds, pictures and streams; how it starts."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
 import gzip
+import os
 import socket
 import ssl
 from collections import Counter
@@ -14,13 +15,16 @@ from pathlib import Path
 from aiohttp import WSCloseCode, WSMsgType, web
 
 from rastrainer.errors import InputError
+from rastrainer.protocol import DEFAULT_HOST, DEFAULT_VIEW_PORT
 from rastrainer_simulator.assets import NOT_BUILT, asset_path, page_folder
 from rastrainer_simulator.loop.results import StateFeed, StateSource
 from rastrainer_simulator.net.limits import ViewLimits
 from rastrainer_simulator.net.listener import is_loopback
 from rastrainer_simulator.net.views.access_control import (
     BOARDS_FILE,
+    LONGEST_KEY,
     ROLE,
+    SHORTEST_KEY,
     PairingCode,
     Sessions,
     ViewRole,
@@ -31,6 +35,7 @@ from rastrainer_simulator.net.views.joined_views import JoinedViews
 from rastrainer_simulator.net.views.limited_server import GuardedServer
 from rastrainer_simulator.net.views.view_socket import ViewSocket
 from rastrainer_simulator.ops.instructor_pin import PinGuesses
+from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE
 from rastrainer_simulator.presentation.presenter import Hello, Presenter
 from rastrainer_simulator.scene.scene_files import SceneFiles, cache_folder, gzipped_scene
 
@@ -254,3 +259,86 @@ class ViewServer:
 async def _send_role(request: web.Request) -> web.Response:
     """Tell a browser, which cannot read its cookie, what it was paired for."""
     return web.json_response({"role": request[ROLE].value}, headers={"Cache-Control": "no-store"})
+
+
+async def start_view_server(
+    source: StateSource,
+    presenter: Presenter,
+    announce: Callable[[str], None],
+    port: int | None,
+    robot_meshes: Path | None,
+    certificates: Path | None = None,
+    scenario_picture: Callable[[str], Path | None] = lambda _name: None,
+    limits: ViewLimits | None = None,
+    config: Path | None = None,
+    pin: PinGuesses | None = None,
+) -> ViewServer:
+    """Return a server that listens on this computer; `announce` is given what people must know.
+
+    With a folder for certificates it listens to the local network, too, by TLS: on the next port
+    or, where that is taken, any free one.
+
+    `port` 0 is any free one, None the usual one or, where that is taken, any free one. A key in
+    the environment variable `RASTRAINER_VIEW_KEY` is accepted: who starts the simulator may give
+    the same one to a window. The other arguments are those of a `ViewServer`.
+
+    Raises:
+        InputError: the port cannot be listened on, the key is no key, the certificate cannot be
+            kept, or the keys of boards cannot be read.
+    """
+    server = ViewServer(
+        source,
+        presenter,
+        lambda code: announce(f"has a new pairing code for views: {code}"),
+        robot_meshes,
+        limits,
+        scenario_picture,
+        config,
+        pin,
+    )
+    agreed = os.environ.get(VIEW_KEY_VARIABLE)
+    if agreed is not None:
+        if not SHORTEST_KEY <= len(agreed) <= LONGEST_KEY:
+            raise InputError(
+                f"{VIEW_KEY_VARIABLE} must have {SHORTEST_KEY} to {LONGEST_KEY} letters."
+            )
+        server.sessions.admit(agreed)
+    found = await _listen(server, port)
+    where = f"http://{DEFAULT_HOST}:{found}"
+    announce(f"serves views on {where}, pairing code {server.code.code}")
+    if certificates is not None:
+        await _listen_in_network(server, found, certificates, announce)
+    return server
+
+
+async def _listen_in_network(
+    server: ViewServer, local: int, certificates: Path, announce: Callable[[str], None]
+) -> None:
+    from rastrainer_simulator.net.views.certificate import own_addresses, own_certificate
+
+    certificate = await asyncio.to_thread(own_certificate, certificates)
+    try:
+        found = await server.listen_in_network(local + 1, certificate.tls)
+    except InputError:
+        found = await server.listen_in_network(0, certificate.tls)
+    addresses = [address for address in own_addresses() if ":" not in address]
+    pages = [f"https://{name}:{found}" for name in addresses or [socket.gethostname()]]
+    server.announce(*pages)
+    where = " or ".join(pages)
+    announce(
+        f"serves the local network on {where}; the browser warns of a certificate made here: "
+        f"compare its SHA-256 fingerprint, {certificate.fingerprint}"
+    )
+    announce(
+        f"serves a headset on a USB cable: adb reverse tcp:{local} tcp:{local}, then open "
+        f"http://localhost:{local} in its browser"
+    )
+
+
+async def _listen(server: ViewServer, port: int | None) -> int:
+    if port is not None:
+        return await server.listen(DEFAULT_HOST, port)
+    try:
+        return await server.listen(DEFAULT_HOST, DEFAULT_VIEW_PORT)
+    except InputError:
+        return await server.listen(DEFAULT_HOST, 0)
