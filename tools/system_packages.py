@@ -23,7 +23,7 @@ from PySide6.QtWidgets import QApplication
 QApplication([])
 """
 FIND_CHINESE_FONT = """
-from rastrainer_simulator.ops.chinese_font import chinese_font
+from rastrainer_simulator.ops.system_paths import chinese_font
 raise SystemExit(chinese_font() is None)
 """
 OPENIGTLINK_HEADER = Path("/usr/include/openigtlink/igtlMessageHeader.h")

@@ -52,7 +52,7 @@ def _findings(arguments: argparse.Namespace) -> list[CheckResult]:
         check_real_time,
         check_settings,
     )
-    from rastrainer_simulator.ops.folders import config_folder, log_folder
+    from rastrainer_simulator.ops.system_paths import config_folder, log_folder
 
     config = arguments.config
     folders = {

@@ -19,8 +19,8 @@ from rastrainer_simulator.cli.options import (
     announce,
     check_ports,
 )
-from rastrainer_simulator.ops.folders import config_folder
 from rastrainer_simulator.ops.instructor_pin import PIN_WORDS, InstructorPin
+from rastrainer_simulator.ops.system_paths import config_folder
 
 DEFAULT_BOARD_PORT = 18955
 

@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_ports(arguments)
     from rastrainer_simulator.lti.settings import ToolKey, read_lti_settings
     from rastrainer_simulator.net.limits import read_limits
-    from rastrainer_simulator.ops.folders import config_folder
+    from rastrainer_simulator.ops.system_paths import config_folder
 
     config = arguments.config or config_folder()
     settings = read_lti_settings(config)

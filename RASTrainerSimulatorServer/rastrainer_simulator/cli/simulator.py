@@ -13,9 +13,9 @@ from pathlib import Path
 from rastrainer.errors import InputError
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DEFAULT_VIEW_PORT
 from rastrainer_simulator.cli.options import add_config, add_records, announce, check_ports
-from rastrainer_simulator.ops.folders import log_folder
 from rastrainer_simulator.ops.log_files import keep_logs
 from rastrainer_simulator.ops.processes import VIEW_KEY_VARIABLE, has_display
+from rastrainer_simulator.ops.system_paths import log_folder
 
 FASTEST = 1000.0
 LARGEST_SEED = 2**63 - 1

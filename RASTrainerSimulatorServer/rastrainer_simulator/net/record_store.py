@@ -17,7 +17,7 @@ from rastrainer.files.json_fields import known_keys
 from rastrainer.files.reading import printable_name, read_json
 from rastrainer.json_checks import Argument, text
 from rastrainer_simulator.net.listener import is_loopback
-from rastrainer_simulator.ops.folders import config_folder
+from rastrainer_simulator.ops.system_paths import config_folder
 
 XAPI_VERSION = "1.0.3"
 TIMEOUT_S = 20.0

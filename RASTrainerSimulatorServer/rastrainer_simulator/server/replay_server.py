@@ -23,9 +23,8 @@ from rastrainer_simulator.flow.session.preferences import (
 )
 from rastrainer_simulator.loop.results import StateSource
 from rastrainer_simulator.net.views.view_server import start_view_server
-from rastrainer_simulator.ops.chinese_font import has_letters
-from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
+from rastrainer_simulator.ops.system_paths import config_folder, has_letters, log_folder
 from rastrainer_simulator.presentation.presenter import Presenter
 from rastrainer_simulator.rating.rating_pages import RatingWork
 from rastrainer_simulator.rating.rating_presenter import RatingPresenter

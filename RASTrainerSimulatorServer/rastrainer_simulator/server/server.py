@@ -35,10 +35,9 @@ from rastrainer_simulator.loop.timing import raise_thread_priority
 from rastrainer_simulator.net.igtl.simulator_link import SimulatorLink
 from rastrainer_simulator.net.limits import read_limits
 from rastrainer_simulator.net.listener import is_loopback
-from rastrainer_simulator.ops.chinese_font import has_letters
-from rastrainer_simulator.ops.folders import config_folder, log_folder
 from rastrainer_simulator.ops.instructor_pin import InstructorPin, PinGuesses
 from rastrainer_simulator.ops.processes import DesktopProcess, stop_on_signals
+from rastrainer_simulator.ops.system_paths import config_folder, has_letters, log_folder
 from rastrainer_simulator.record.journal_writer import RecordsFolder
 from rastrainer_simulator.record.trial_context import setup_of, versions
 from rastrainer_simulator.robot.kinematics import kinematics_name

@@ -23,7 +23,7 @@ from rastrainer_simulator.cli.doctor.system import (
     check_settings,
 )
 from rastrainer_simulator.cli.main import main
-from rastrainer_simulator.ops.chinese_font import chinese_font
+from rastrainer_simulator.ops.system_paths import chinese_font
 from rastrainer_simulator.record.trial_archive import SUFFIX
 from Testing.end_to_end.virtual_display import VirtualDisplay
 from Testing.free_port import free_port

@@ -11,7 +11,7 @@ from pathlib import Path
 from rastrainer.errors import RASTrainerError
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.cli.doctor.check_result import CheckResult, CheckStatus
-from rastrainer_simulator.ops.chinese_font import chinese_font
+from rastrainer_simulator.ops.system_paths import chinese_font
 
 KEYBOARD = "The keyboard does everything a gamepad does."
 

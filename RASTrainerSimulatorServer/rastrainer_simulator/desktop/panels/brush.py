@@ -21,7 +21,7 @@ from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from rastrainer_simulator.desktop.panels.canvas import Canvas, Letters
 from rastrainer_simulator.desktop.panels.theme import Color, TextStyle
-from rastrainer_simulator.ops.chinese_font import chinese_font
+from rastrainer_simulator.ops.system_paths import chinese_font
 
 _BASELINE_SHARE = 0.70
 

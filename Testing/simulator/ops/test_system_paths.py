@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rastrainer_simulator.ops.folders import config_folder
+from rastrainer_simulator.ops.system_paths import config_folder
 
 
 @pytest.mark.parametrize(

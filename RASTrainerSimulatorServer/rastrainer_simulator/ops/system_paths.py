@@ -1,4 +1,4 @@
-"""Find this computer's font with Chinese characters, which the window's own fonts lack."""
+"""Where each operating system has settings, logs, and a font with Chinese characters."""
 
 from __future__ import annotations
 
@@ -10,6 +10,29 @@ from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 
+
+def config_folder() -> Path:
+    """Return the user's folder of RASTrainer's settings; it need not exist."""
+    if sys.platform == "win32":
+        base = os.environ.get("APPDATA")
+        return Path(base or Path.home() / "AppData" / "Roaming") / "RASTrainer"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Application Support" / "RASTrainer"
+    base = os.environ.get("XDG_CONFIG_HOME")
+    return Path(base or Path.home() / ".config") / "rastrainer"
+
+
+def log_folder() -> Path:
+    """Return the user's folder of RASTrainer's logs; it need not exist."""
+    if sys.platform == "win32":
+        base = os.environ.get("LOCALAPPDATA")
+        return Path(base or Path.home() / "AppData" / "Local") / "RASTrainer" / "Logs"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Logs" / "RASTrainer"
+    base = os.environ.get("XDG_STATE_HOME")
+    return Path(base or Path.home() / ".local" / "state") / "rastrainer" / "logs"
+
+
 CHINESE = "zh-Hans"
 _WINDOWS = ("msyh.ttc", "msyh.ttf", "simhei.ttf", "simsun.ttc")
 _MACOS = ("Hiragino Sans GB.ttc", "STHeiti Light.ttc", "PingFang.ttc")
@@ -20,7 +43,10 @@ _LONGEST_ANSWER_S = 60.0
 
 @lru_cache(maxsize=1)
 def chinese_font() -> Path | None:
-    """Return a file with Chinese characters, whose first face is used; None without one."""
+    """Return a font with Chinese characters, which the window's own fonts lack; None without one.
+
+    Its first face is used.
+    """
     if sys.platform == "win32":
         fonts = Path(os.environ.get("WINDIR", r"C:\Windows")) / "Fonts"
         return _first(fonts / name for name in _WINDOWS)
