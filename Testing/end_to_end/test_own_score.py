@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import secrets
 import time
+from dataclasses import replace
 
 import pytest
 
 from rastrainer.command_arguments import check_arguments
+from rastrainer.errors import InputError
 from rastrainer.igtl.client import Client
 from rastrainer.journal.folder import journals_of
 from rastrainer.journal.journal_file import read_journal, stamp
@@ -115,6 +117,14 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
             assert tuple(registered["matrix"]) == registration["matrix"]
         scores = [study.trial(trial).score.score for trial in alone.trials]
     assert alone.history.trend(TRAINEE, "desktop") == tuple(scores[-20:])
+
+
+def test_a_trial_is_not_scored_on_another_head_that_was_loaded_since(tmp_path, scenario):
+    alone = Alone(tmp_path / "alone", 0, scenario)
+    (trial,) = write_finished_trials(alone.folder, range(1))
+    with pytest.raises(InputError, match=r"was played in the scenario colin27, but other is"):
+        registered_alone(alone.ask, trial, replace(scenario, name="other"))
+    assert alone.entries(trial, "registration") == []
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(TRIALS, marks=pytest.mark.soak)])

@@ -162,11 +162,18 @@ def registered_alone(ask: Ask, trial_id: str, scenario: Scenario) -> TrialAnalys
     """Return the registration of a trial; it is not submitted yet.
 
     Raises:
-        InputError: there is no such trial, or it cannot be registered.
+        InputError: there is no such trial, it was played on another head, or it cannot be
+            registered.
     """
-    answer = ask(CommandName.GET_TRIAL, {"trialId": trial_id})
+    record = TrialRecord.from_json(ask(CommandName.GET_TRIAL, {"trialId": trial_id})["record"])
+    if record.scenario != scenario.name:
+        # Another head may have been loaded since the trial was finished.
+        raise InputError(
+            f"The trial was played in the scenario {record.scenario}, but {scenario.name} is "
+            "loaded; 3D Slicer scores the trial when it connects."
+        )
     cohort = read_trials(asset_path(*PUBLISHED_STUDY))
-    return analyze_trial(TrialRecord.from_json(answer["record"]), scenario, cohort, pause=_rest)
+    return analyze_trial(record, scenario, cohort, pause=_rest)
 
 
 def score_alone(
