@@ -11,8 +11,8 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
 
 from rastrainer_simulator.desktop.inbox import Finish, Part
-from rastrainer_simulator.desktop.plain_light import AMBIENT, DIFFUSE, lit_colors
 from rastrainer_simulator.desktop.shown_trace import ShownTrace, SkinPaint
+from rastrainer_simulator.rendering.lighting import AMBIENT, DIFFUSE, lit_colors
 from rastrainer_simulator.scene.nodes import (
     COVERED,
     GHOST,

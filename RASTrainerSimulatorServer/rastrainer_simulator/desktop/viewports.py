@@ -13,9 +13,8 @@ from rastrainer_simulator.desktop.kept_view import KeptView, ReducedScene
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.canvas import Box
 from rastrainer_simulator.desktop.performance import Quality
-from rastrainer_simulator.desktop.plain_light import add_plain_lights
 from rastrainer_simulator.desktop.shown_scene import ShownScene
-from rastrainer_simulator.rendering.lighting import Shadows, light_room
+from rastrainer_simulator.rendering.lighting import Shadows, add_plain_lights, light_room
 
 BACKGROUND = (0.62, 0.65, 0.68)
 

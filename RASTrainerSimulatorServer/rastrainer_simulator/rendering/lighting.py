@@ -1,4 +1,4 @@
-"""Light as in a bright room: soft surroundings, lamps with soft shadows, shaded corners."""
+"""Light as in a bright room, with soft shadows and shaded corners; and plain light, drawn fast."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from vtkmodules.vtkRenderingOpenGL2 import (
     vtkTranslucentPass,
 )
 
-AMBIENT = 0.55
+SURROUNDINGS = 0.55
 # Windows and ceiling lights that glossy parts mirror: azimuth, elevation, half widths (rad), glow.
 PANELS = ((-1.6, 0.75, 0.45, 0.22, 4.0), (0.4, 1.0, 0.3, 0.2, 3.0), (2.8, 0.7, 0.4, 0.25, 2.5))
 
@@ -77,7 +77,9 @@ def _environment(width: int = 128) -> vtkTexture:
     """Return the surroundings as light by direction: a pale room with bright panels."""
     elevation = np.linspace(-np.pi / 2, np.pi / 2, width // 2)[:, None]
     azimuth = np.linspace(-np.pi, np.pi, width)[None, :]
-    light = np.broadcast_to(AMBIENT * (0.92 + 0.2 * np.sin(elevation)), (width // 2, width)).copy()
+    light = np.broadcast_to(
+        SURROUNDINGS * (0.92 + 0.2 * np.sin(elevation)), (width // 2, width)
+    ).copy()
     for toward, above, wide, high, glow in PANELS:
         across, upward = (azimuth - toward) / wide, (elevation - above) / high
         light += glow * np.exp(-(across**4) - upward**4)
@@ -130,3 +132,40 @@ def _with_shaded_corners(picture: vtkRenderPass) -> vtkRenderPass:
     corners.BlurOn()
     corners.SetDelegatePass(picture)
     return corners
+
+
+PLAIN_LIGHTS = (
+    ((-0.25, -0.55, 0.80), 0.86),
+    ((0.75, -0.60, 0.25), 0.30),
+    ((0.45, 0.80, 0.40), 0.45),
+)
+"""Lamps far away, without shadows or reflections: from the front, the side and behind, where there
+are touches, too. The direction toward each in World, and its intensity."""
+AMBIENT, DIFFUSE = 0.34, 0.72
+"""Shares of a surface's color that it shows in any light, and that it shows in the lamps' light."""
+
+
+def add_plain_lights(renderer: vtkRenderer) -> None:
+    """Give a renderer plain light."""
+    for direction, intensity in PLAIN_LIGHTS:
+        light = vtkLight()
+        light.SetLightTypeToSceneLight()
+        light.PositionalOff()
+        light.SetPosition(*direction)
+        light.SetFocalPoint(0.0, 0.0, 0.0)
+        light.SetIntensity(intensity)
+        renderer.AddLight(light)
+
+
+def lit_colors(normals: np.ndarray, color: np.ndarray | tuple[float, float, float]) -> np.ndarray:
+    """Return the color of each vertex in plain light, (n, 3) uint8.
+
+    Args:
+        normals: (n, 3) float, in World, of unit length.
+        color: of the surface, or (n, 3) of each vertex, sRGB, 0 to 1.
+    """
+    light = np.full(len(normals), AMBIENT)
+    for direction, intensity in PLAIN_LIGHTS:
+        toward = np.array(direction) / np.linalg.norm(direction)
+        light += DIFFUSE * intensity * np.clip(normals @ toward, 0.0, None)
+    return (255.0 * np.clip(light[:, None] * np.array(color), 0.0, 1.0) + 0.5).astype(np.uint8)

@@ -5,8 +5,8 @@ import pytest
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
 from rastrainer_simulator.desktop.inbox import Finish
-from rastrainer_simulator.desktop.plain_light import add_plain_lights, lit_colors
 from rastrainer_simulator.desktop.shown_scene import finish_surface, to_srgb
+from rastrainer_simulator.rendering.lighting import add_plain_lights, lit_colors
 from rastrainer_simulator.scene.surfaces import surface
 
 MATTE = Finish((0.4, 0.2, 0.1), (0.0, 0.0, 0.0), roughness=1.0, metallic=0.0)
