@@ -232,7 +232,7 @@ def run_window(arguments: argparse.Namespace) -> int:
     # Only here: VTK takes time to import.
     from rastrainer_simulator.desktop.app import DesktopWindow, WindowOptions
     from rastrainer_simulator.desktop.connection import pair
-    from rastrainer_simulator.desktop.performance import Quality
+    from rastrainer_simulator.desktop.viewports import Quality
 
     if arguments.code is not None:
         key = asyncio.run(pair(arguments.connect, arguments.code))

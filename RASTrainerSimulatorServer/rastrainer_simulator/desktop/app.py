@@ -8,7 +8,7 @@ import json
 import logging
 import os
 import time
-from collections.abc import Coroutine, Iterable
+from collections.abc import Callable, Coroutine, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -27,13 +27,6 @@ from rastrainer_simulator.desktop.keyboard_and_mouse import (
     ViewMouse,
     without_late_repeats,
 )
-from rastrainer_simulator.desktop.performance import (
-    SLOWEST_FRAME_S,
-    SOFTWARE_SIZE,
-    FrameCount,
-    Quality,
-    first_quality,
-)
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.screenshot import (
     Screenshot,
@@ -41,6 +34,7 @@ from rastrainer_simulator.desktop.screenshot import (
     save_screenshot,
     write_picture,
 )
+from rastrainer_simulator.desktop.viewports import Quality, first_quality
 from rastrainer_simulator.net.views.incoming import FRAMES, ITEM
 
 POLL_S = 0.004
@@ -49,7 +43,12 @@ LEAST_REFRESH_HZ = 60.0
 MIN_PAUSE_S = 0.002
 """Between two pictures, however slowly they are drawn: what has arrived is taken in by then."""
 TRIED_FRAMES = 12
+SLOWEST_FRAME_S = 1.0 / 45.0
+"""Where pictures take longer, the quality is lowered."""
+SOFTWARE_SIZE = (1280, 720)
+"""A processor of two cores draws 20 pictures a second of this size; docs/design.md has numbers."""
 NICENESS = 10
+REPORT_EVERY_S = 1.0
 OWN_KEYS = (pygame.K_F11, pygame.K_F12)
 """Full screen, and screenshot: these are not sent to the simulator."""
 
@@ -276,6 +275,30 @@ def _lower_priority() -> None:
             # What has a place of its own, such as SDL's sound, keeps it.
             if os.getpriority(os.PRIO_PROCESS, thread) == ordinary:
                 os.setpriority(os.PRIO_PROCESS, thread, max(ordinary, NICENESS))
+
+
+class FrameCount:
+    """Counts the pictures of each second, and those that were due and did not come."""
+
+    def __init__(self, report: Callable[[int, int], None], now: float):
+        """`report` is called once a second with how many were shown and how many dropped."""
+        self._on_second = report
+        self._since = now
+        self._shown = self._due = 0
+
+    def due(self) -> None:
+        """Something to be drawn has arrived."""
+        self._due += 1
+
+    def shown(self) -> None:
+        """A picture with all that has arrived was drawn."""
+        self._shown += 1
+
+    def report(self, now: float) -> None:
+        """Report if a second is over."""
+        if now - self._since >= REPORT_EVERY_S:
+            self._on_second(self._shown, max(0, self._due - self._shown))
+            self._since, self._shown, self._due = now, 0, 0
 
 
 class Sounds:

@@ -27,10 +27,9 @@ from rastrainer_simulator.desktop.panels.tip_guides import (
     direction_out_of_sight,
     touch_ring,
 )
-from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
-from rastrainer_simulator.desktop.viewports import Viewports
 from rastrainer_simulator.ops.system_paths import has_letters
+from rastrainer_simulator.desktop.viewports import Quality, Viewports
 from rastrainer_simulator.presentation.screen import Menu, Screen, focused_picture
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts

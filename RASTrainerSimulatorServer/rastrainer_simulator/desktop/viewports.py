@@ -1,9 +1,10 @@
-"""The picture: the scene through two cameras, and a layer for what is laid over it."""
+"""The picture: the scene through two cameras, as well as the machine draws, and a layer over it."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
+from enum import Enum
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
@@ -12,11 +13,52 @@ from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.kept_view import KeptView, ReducedScene
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.canvas import Box
-from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.rendering.lighting import Shadows, add_plain_lights, light_room
 
 BACKGROUND = (0.62, 0.65, 0.68)
+
+
+SOFTWARE_RENDERERS = (
+    "llvmpipe",
+    "softpipe",
+    "swrast",
+    "swr",
+    "swiftshader",
+    "software",
+    "microsoft basic render",
+    "gdi generic",
+)
+
+
+class Quality(str, Enum):
+    """What a picture is made of.
+
+    High has physically based light, soft shadows, shaded corners and smooth edges; medium leaves
+    shadows and shaded corners out; low is plain light, and in large windows a fraction of the
+    resolution, for machines without a graphics processor.
+    """
+
+    HIGH = "high"
+    MEDIUM = "medium"
+    LOW = "low"
+
+    @property
+    def is_physical(self) -> bool:
+        """Whether surfaces are physically based."""
+        return self is not Quality.LOW
+
+    @property
+    def next_lower(self) -> Quality:
+        """The next quality that costs less."""
+        return Quality.MEDIUM if self is Quality.HIGH else Quality.LOW
+
+
+def first_quality(renderer_name: str) -> Quality:
+    """Return what to begin with, by OpenGL's name of the renderer."""
+    name = renderer_name.lower()
+    is_software = any(known in name for known in SOFTWARE_RENDERERS)
+    return Quality.LOW if is_software else Quality.HIGH
 
 
 class Viewports:

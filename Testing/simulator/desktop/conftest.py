@@ -10,8 +10,8 @@ import trimesh
 
 from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
-from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
+from rastrainer_simulator.desktop.viewports import Quality
 from rastrainer_simulator.presentation.screen import (
     Hint,
     ItemKind,

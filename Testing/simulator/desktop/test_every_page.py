@@ -12,8 +12,8 @@ from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
-from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.picture import Picture
+from rastrainer_simulator.desktop.viewports import Quality
 from rastrainer_simulator.presentation.screen import ErrorArrow, Screen, Tone
 from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, state_text
 from Testing.simulator.flow.conftest import loop, outside, presenter, shared  # noqa: F401

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer_simulator.desktop.performance import Quality
 from rastrainer_simulator.desktop.shown_trace import ShownTrace, SkinPaint
+from rastrainer_simulator.desktop.viewports import Quality
 from Testing.simulator.desktop.conftest import SCREEN, state_text
 
 MARKS, RING = ((0, 15, 80), (30, 60, 130)), ((240, 210, 50), (255, 235, 100))
