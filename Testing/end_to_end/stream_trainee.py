@@ -10,8 +10,8 @@ from typing import Protocol
 
 import numpy as np
 
-from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.connection import screen_from_json
+from rastrainer_simulator.desktop.inbox import Viewpoint
 from rastrainer_simulator.desktop.shown_scene import pose_matrix
 from rastrainer_simulator.presentation.screen import Menu, Screen
 from rastrainer_simulator.teleoperation.steering import camera_axes

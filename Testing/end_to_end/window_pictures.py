@@ -15,7 +15,7 @@ from rastrainer.igtl.client import Client
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.setup import DEFAULT_SCENARIO
-from rastrainer_simulator.desktop.camera import TRANSITION_S
+from rastrainer_simulator.desktop.viewports import TRANSITION_S
 from rastrainer_simulator.virtual.scripted_trial import play_trial, send_hello
 from Testing.end_to_end.hands import GamepadHands
 from Testing.end_to_end.lab import Lab

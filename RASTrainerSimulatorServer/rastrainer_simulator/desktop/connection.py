@@ -16,8 +16,7 @@ import aiohttp
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
-from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, Viewpoint, read_parts
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.net.views.incoming import HELLO, SUBPROTOCOL

@@ -1,4 +1,4 @@
-"""What the simulator has sent: the parts of a scene's GLB, and what it has said last."""
+"""What the simulator has sent: a scene's parts and cameras, and what it has said last."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ import trimesh
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
-from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.presentation.screen import Screen
@@ -111,6 +110,41 @@ def _finish(mesh: trimesh.Trimesh) -> Finish:
         0.0 if metallic is None else float(metallic),
         1.0 if color is None else float(color[3]) / 255.0,
     )
+
+
+@dataclass(frozen=True)
+class Viewpoint:
+    """Where a camera stands; World, m; the angle is vertical, degrees.
+
+    `aside` is how far the picture is pushed to the right, in halves of its width.
+    """
+
+    position: np.ndarray
+    focal_point: np.ndarray
+    view_up: np.ndarray
+    angle_deg: float
+    aside: float = 0.0
+
+    @classmethod
+    def from_json(cls, value: Mapping) -> Viewpoint:
+        """Return a camera of the stream."""
+        return cls(
+            np.array(value["position"], dtype=float),
+            np.array(value["focalPoint"], dtype=float),
+            np.array(value["viewUp"], dtype=float),
+            float(value["viewAngleDeg"]),
+        )
+
+    def toward(self, other: Viewpoint, share: float) -> Viewpoint:
+        """Return a viewpoint between this and another; a share of 0 is this one, 1 the other."""
+        pairs = (
+            (self.position, other.position),
+            (self.focal_point, other.focal_point),
+            (self.view_up, other.view_up),
+        )
+        place, focus, up = (start + share * (end - start) for start, end in pairs)
+        angle = self.angle_deg + share * (other.angle_deg - self.angle_deg)
+        return Viewpoint(place, focus, up, angle, self.aside + share * (other.aside - self.aside))
 
 
 STATE_MEMBERS = (

@@ -15,8 +15,8 @@ from vtkmodules.vtkCommonDataModel import vtkBoundingBox
 from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLFramebufferObject
 
-from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.inbox import Viewpoint
 from rastrainer_simulator.desktop.shown_scene import ShownScene
 
 Rectangle = tuple[int, int, int, int]
@@ -94,7 +94,11 @@ class KeptView:
         """Set the camera."""
         camera = self.still.GetActiveCamera()
         before, (near, far) = self._camera, camera.GetClippingRange()
-        viewpoint.look(self.still)
+        camera.SetPosition(*viewpoint.position)
+        camera.SetFocalPoint(*viewpoint.focal_point)
+        camera.SetViewUp(*viewpoint.view_up)
+        camera.SetViewAngle(viewpoint.angle_deg)
+        camera.SetWindowCenter(-viewpoint.aside, 0.0)
         box = vtkBoundingBox()
         for renderer in (self.still, self.moving):
             if renderer.VisibleActorCount():

@@ -13,10 +13,9 @@ import pygame
 
 from rastrainer.protocol import OPEN_PHASES, Phase
 from rastrainer.transforms import MM_PER_M
-from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
 from rastrainer_simulator.desktop.head_marks import ErrorArrows, TraceMarks
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint
 from rastrainer_simulator.desktop.keyboard_and_mouse import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.controls_picture import StickLook
@@ -28,8 +27,8 @@ from rastrainer_simulator.desktop.panels.tip_guides import (
     touch_ring,
 )
 from rastrainer_simulator.desktop.shown_scene import ShownScene
-from rastrainer_simulator.ops.system_paths import has_letters
 from rastrainer_simulator.desktop.viewports import Quality, Viewports
+from rastrainer_simulator.ops.system_paths import has_letters
 from rastrainer_simulator.presentation.screen import Menu, Screen, focused_picture
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts

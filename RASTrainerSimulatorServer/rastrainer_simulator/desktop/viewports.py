@@ -8,8 +8,8 @@ from enum import Enum
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from rastrainer_simulator.desktop.camera import CameraTransition, Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.inbox import Viewpoint
 from rastrainer_simulator.desktop.kept_view import KeptView, ReducedScene
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.canvas import Box
@@ -59,6 +59,34 @@ def first_quality(renderer_name: str) -> Quality:
     name = renderer_name.lower()
     is_software = any(known in name for known in SOFTWARE_RENDERERS)
     return Quality.LOW if is_software else Quality.HIGH
+
+
+TRANSITION_S = 0.7
+
+
+class CameraTransition:
+    """The move of a camera to a viewpoint, which starts and ends gently."""
+
+    def __init__(self, start: Viewpoint):
+        self._from = self._to = start
+        self._since = -TRANSITION_S
+
+    def start(self, to: Viewpoint, now: float) -> None:
+        """Move to a viewpoint from wherever the camera is at `now` (s)."""
+        self._from, self._to, self._since = self.at(now), to, now
+
+    def follow(self, to: Viewpoint) -> None:
+        """Have a viewpoint that moves itself as the end of the way, or be there already."""
+        self._to = to
+
+    def is_moving(self, now: float) -> bool:
+        """Return whether the camera is still moving."""
+        return now - self._since < TRANSITION_S
+
+    def at(self, now: float) -> Viewpoint:
+        """Return where the camera is."""
+        share = min(1.0, max(0.0, (now - self._since) / TRANSITION_S))
+        return self._from.toward(self._to, share * share * (3.0 - 2.0 * share))
 
 
 class Viewports:

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, read_parts
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
 from rastrainer_simulator.presentation.screen import (

@@ -7,8 +7,7 @@ import pytest
 
 from rastrainer.protocol import Mode
 from rastrainer_simulator.core.simulation import Simulation
-from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, read_parts
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
 from rastrainer_simulator.net.views import outgoing

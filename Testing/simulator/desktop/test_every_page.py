@@ -7,8 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from rastrainer_simulator.desktop.camera import Viewpoint
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, read_parts
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from rastrainer.errors import InputError
-from rastrainer_simulator.desktop.camera import TRANSITION_S
 from rastrainer_simulator.desktop.panels.controls_picture import stick_boxes
 from rastrainer_simulator.desktop.picture import Pointer
 from rastrainer_simulator.desktop.screenshot import Screenshot, save_screenshot
+from rastrainer_simulator.desktop.viewports import TRANSITION_S, Quality, first_quality
 from rastrainer_simulator.ops.system_paths import chinese_font
-from rastrainer_simulator.desktop.viewports import Quality, first_quality
 from rastrainer_simulator.presentation.screen import Hint, Screen
 from rastrainer_simulator.scene import nodes
 from rastrainer_simulator.state import TOUCH_ERRORS, TouchStage

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from rastrainer_simulator.desktop import kept_view
-from rastrainer_simulator.desktop.camera import Viewpoint
 from rastrainer_simulator.desktop.gl_window import GlWindow
-from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, read_parts
+from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, read_parts
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
 from Testing.simulator.desktop.conftest import BODIES, CAMERAS, FIDUCIALS, SCREEN, state_text
