@@ -16,8 +16,8 @@ import trimesh
 
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
+from rastrainer_simulator.desktop.head_marks import ShownTrace
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
-from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.presentation.screen import Screen
 
 UNREADABLE = "The scene that the simulator sent cannot be read: {reason}."

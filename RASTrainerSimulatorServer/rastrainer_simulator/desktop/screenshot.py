@@ -23,9 +23,9 @@ from rastrainer.errors import InputError, RASTrainerError
 from rastrainer.files.writing import make_folder
 from rastrainer.python_environment import python_command
 from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.head_marks import ShownTrace
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene
 from rastrainer_simulator.desktop.picture import Picture
-from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.desktop.viewports import Quality
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.rendering.picture import write_png

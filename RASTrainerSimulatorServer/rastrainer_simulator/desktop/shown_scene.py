@@ -10,9 +10,9 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkProperty
 
+from rastrainer_simulator.desktop.head_marks import ShownTrace, SkinPaint
 from rastrainer_simulator.desktop.inbox import Finish, Part
-from rastrainer_simulator.desktop.shown_trace import ShownTrace, SkinPaint
-from rastrainer_simulator.rendering.lighting import AMBIENT, DIFFUSE, lit_colors
+from rastrainer_simulator.rendering.lighting import AMBIENT, DIFFUSE, glow, lit_colors
 from rastrainer_simulator.scene.nodes import (
     COVERED,
     GHOST,
@@ -58,16 +58,6 @@ def finish_surface(target: vtkProperty, finish: Finish, is_physical: bool) -> No
         target.SetDiffuse(DIFFUSE)
         target.SetSpecular(0.28 * (1.0 - finish.roughness))
         target.SetSpecularPower(4.0 + 40.0 * (1.0 - finish.roughness))
-
-
-def glow(target: vtkProperty, color: Shade) -> None:
-    """Give a surface its own color (sRGB) in any light."""
-    # Not by switching the lighting off, which breaks the shader of the shadows.
-    target.SetInterpolationToPhong()
-    target.SetColor(*color)
-    target.SetAmbient(1.0)
-    target.SetDiffuse(0.0)
-    target.SetSpecular(0.0)
 
 
 TIP_MARKER = "tip_marker"

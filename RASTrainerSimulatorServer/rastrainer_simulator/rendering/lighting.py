@@ -1,4 +1,4 @@
-"""Light as in a bright room, with soft shadows and shaded corners; and plain light, drawn fast."""
+"""Light as in a bright room, with soft shadows; plain light, drawn fast; and what glows in both."""
 
 from __future__ import annotations
 
@@ -7,7 +7,13 @@ from enum import Enum
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
-from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer, vtkRenderPass, vtkTexture
+from vtkmodules.vtkRenderingCore import (
+    vtkLight,
+    vtkProperty,
+    vtkRenderer,
+    vtkRenderPass,
+    vtkTexture,
+)
 from vtkmodules.vtkRenderingOpenGL2 import (
     vtkCameraPass,
     vtkOpenGLFXAAPass,
@@ -169,3 +175,13 @@ def lit_colors(normals: np.ndarray, color: np.ndarray | tuple[float, float, floa
         toward = np.array(direction) / np.linalg.norm(direction)
         light += DIFFUSE * intensity * np.clip(normals @ toward, 0.0, None)
     return (255.0 * np.clip(light[:, None] * np.array(color), 0.0, 1.0) + 0.5).astype(np.uint8)
+
+
+def glow(target: vtkProperty, color: tuple[float, float, float]) -> None:
+    """Give a surface its own color (sRGB) in any light."""
+    # Not by switching the lighting off, which breaks the shader of the shadows.
+    target.SetInterpolationToPhong()
+    target.SetColor(*color)
+    target.SetAmbient(1.0)
+    target.SetDiffuse(0.0)
+    target.SetSpecular(0.0)

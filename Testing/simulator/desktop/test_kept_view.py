@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rastrainer_simulator.desktop import kept_view
+from rastrainer_simulator.desktop.head_marks import ShownTrace
 from rastrainer_simulator.desktop.picture import Picture
-from rastrainer_simulator.desktop.shown_trace import ShownTrace
 from rastrainer_simulator.desktop.viewports import Quality
 from Testing.simulator.desktop.conftest import CAMERA, HERE, MENU, SCREEN, state_text
 from Testing.simulator.desktop.test_trace_picture import AHEAD, news

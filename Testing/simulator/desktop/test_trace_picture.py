@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rastrainer_simulator.desktop.shown_trace import ShownTrace, SkinPaint
+from rastrainer_simulator.desktop.head_marks import ShownTrace, SkinPaint
 from rastrainer_simulator.desktop.viewports import Quality
 from Testing.simulator.desktop.conftest import SCREEN, state_text
 
