@@ -13,8 +13,7 @@ from rastrainer.study.protocol.steps import StudyStep
 from rastrainer.study.ratings import FORMS
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.pages import (
-    bindings,
-    errors,
+    controls,
     experiment,
     introduction,
     procedure,
@@ -22,12 +21,11 @@ from rastrainer_simulator.flow.pages import (
     start,
     trainee_id,
     trial,
-    tutorial,
+    trial_review,
 )
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trainee_id import QuestionnairePage
 from rastrainer_simulator.flow.pages.trial import MatchReport
-from rastrainer_simulator.flow.pages.trial_review import ReplayPage
 from rastrainer_simulator.flow.session.preferences import InstructorLock
 from rastrainer_simulator.input.inputs import ControlName, InputDevice
 from rastrainer_simulator.presentation.screen import Screen, without_secrets
@@ -195,11 +193,11 @@ def _pages(session) -> Iterator[SessionPage]:
         yield simple(session)
     yield start.PinPage(session)
     yield introduction.IntroductionPage(session)
-    yield introduction.ControlsPage(session)
-    yield introduction.PadTestPage(session)
-    yield bindings.BindingsPage(session)
-    yield bindings.ListenPage(session, keys, touch)
-    yield bindings.ConflictPage(session, keys, touch, "KeyC")
+    yield controls.ControlsPage(session)
+    yield controls.PadTestPage(session)
+    yield controls.BindingsPage(session)
+    yield controls.ListenPage(session, keys, touch)
+    yield controls.ConflictPage(session, keys, touch, "KeyC")
     with_curriculum(session)
     yield experiment.ExperimentPage(session)
     yield experiment.AssignmentsPage(session)
@@ -213,13 +211,13 @@ def _pages(session) -> Iterator[SessionPage]:
     yield trial.MatchPage(session, _matched())
     yield result.WaitingPage(session)
     yield result.ResultPage(session)
-    yield errors.ErrorsPage(session)
+    yield trial_review.ErrorsPage(session)
     session.state = replace(session.state, training=AT_PROCEDURE)
     yield procedure.ProcedurePage(session)
     session.state = replace(session.state, training=PROCEDURE_SCORED)
     yield procedure.ProcedureErrorsPage(session)
     yield procedure.ProcedureLinesPage(session)
     session.state = replace(session.state, training=SCORED)
-    yield tutorial.TutorialPage(session)
-    yield tutorial.TutorialDonePage(session, LEARNED)
-    yield ReplayPage(session, _Loading(), begins_at_worst=False)
+    yield introduction.TutorialPage(session)
+    yield introduction.TutorialDonePage(session, LEARNED)
+    yield trial_review.ReplayPage(session, _Loading(), begins_at_worst=False)
