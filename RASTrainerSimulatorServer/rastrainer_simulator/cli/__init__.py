@@ -1,1 +1,1 @@
-"""The command `rastrainer`, one subcommand a file."""
+"""The command `rastrainer`; subcommands for the same thing share a file."""
