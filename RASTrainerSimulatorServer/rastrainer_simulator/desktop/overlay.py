@@ -21,18 +21,16 @@ from rastrainer_simulator.desktop.panels.controls_picture import (
     stick_boxes,
 )
 from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
-from rastrainer_simulator.desktop.panels.procedure_gauges import (
-    BullsEye,
-    DepthGauge,
-    paint_bulls_eye,
-    paint_gauge,
-)
 from rastrainer_simulator.desktop.panels.sprite import Side, Sprite, Thumbnail
-from rastrainer_simulator.desktop.panels.tip_guides import (
+from rastrainer_simulator.desktop.panels.tool_guidance import (
     REACH,
     STEP_DEG,
+    BullsEye,
+    DepthGauge,
     Direction,
     TouchRing,
+    paint_bulls_eye,
+    paint_gauge,
     paint_ring,
     target_arrow,
 )

@@ -19,10 +19,11 @@ from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint
 from rastrainer_simulator.desktop.keyboard_and_mouse import Push
 from rastrainer_simulator.desktop.overlay import Content, Overlay
 from rastrainer_simulator.desktop.panels.controls_picture import StickLook
-from rastrainer_simulator.desktop.panels.procedure_gauges import bulls_eye, depth_gauge
-from rastrainer_simulator.desktop.panels.tip_guides import (
+from rastrainer_simulator.desktop.panels.tool_guidance import (
     Direction,
     TouchRing,
+    bulls_eye,
+    depth_gauge,
     direction_out_of_sight,
     touch_ring,
 )

@@ -10,7 +10,7 @@ from rastrainer_simulator.desktop.panels.brush import Brush
 from rastrainer_simulator.desktop.panels.item_row import Look, text_color
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
 from rastrainer_simulator.desktop.panels.sprite import Thumbnail
-from rastrainer_simulator.desktop.panels.tip_guides import target_arrow
+from rastrainer_simulator.desktop.panels.tool_guidance import target_arrow
 from rastrainer_simulator.presentation.screen import (
     Fact,
     Hint,
