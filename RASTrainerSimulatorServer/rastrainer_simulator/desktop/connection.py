@@ -18,7 +18,7 @@ from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.desktop.head_marks import ShownTrace
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, SoundEvent, Viewpoint, read_parts
-from rastrainer_simulator.desktop.panels.sprite import Thumbnail
+from rastrainer_simulator.desktop.panels.canvas import Thumbnail
 from rastrainer_simulator.net.views.incoming import HELLO, SUBPROTOCOL
 from rastrainer_simulator.presentation.screen import (
     DepthRuler,

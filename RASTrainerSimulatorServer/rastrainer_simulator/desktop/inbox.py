@@ -17,7 +17,7 @@ import trimesh
 from rastrainer.errors import InputError
 from rastrainer.json_checks import decode_finite_json
 from rastrainer_simulator.desktop.head_marks import ShownTrace
-from rastrainer_simulator.desktop.panels.sprite import Thumbnail
+from rastrainer_simulator.desktop.panels.canvas import Thumbnail
 from rastrainer_simulator.presentation.screen import Screen
 
 UNREADABLE = "The scene that the simulator sent cannot be read: {reason}."

@@ -10,9 +10,17 @@ from typing import Any
 import numpy as np
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from rastrainer_simulator.desktop.panels import sprite, strips, theme
+from rastrainer_simulator.desktop.panels import strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
-from rastrainer_simulator.desktop.panels.canvas import Box
+from rastrainer_simulator.desktop.panels.canvas import (
+    Box,
+    Side,
+    Sprite,
+    Thumbnail,
+    frame_picture,
+    fringe_picture,
+    plain_picture,
+)
 from rastrainer_simulator.desktop.panels.controls_picture import (
     StickLook,
     knob_box,
@@ -21,7 +29,6 @@ from rastrainer_simulator.desktop.panels.controls_picture import (
     stick_boxes,
 )
 from rastrainer_simulator.desktop.panels.menu_panel import MenuPicture, menu_panel
-from rastrainer_simulator.desktop.panels.sprite import Side, Sprite, Thumbnail
 from rastrainer_simulator.desktop.panels.tool_guidance import (
     REACH,
     STEP_DEG,
@@ -182,7 +189,7 @@ class Overlay:
 
     def _show_menu(self, content: Content, top: int, bottom: int) -> None:
         menu = content.screen.menu
-        if self._paint("scrim", menu and theme.SCRIM, sprite.plain):
+        if self._paint("scrim", menu and theme.SCRIM, plain_picture):
             self._slots["scrim"].sprite.show(0, 0, *self._size)
         if menu is None:
             self._slots["menu"].hide()
@@ -219,13 +226,13 @@ class Overlay:
         }
         for side, place in places.items():
             name = f"error {side.value}"
-            if self._paint(name, is_error and thick, sprite.glow, theme.CONTACT, side):
+            if self._paint(name, is_error and thick, fringe_picture, theme.CONTACT, side):
                 self._slots[name].sprite.show(*place)
 
     def _show_inset(self, box: Box | None) -> None:
         thick = self._brush.px(INSET_FRAME)
         outer = None if box is None else box.inset(-thick)
-        is_shown = self._paint("inset", outer, sprite.frame, thick, theme.INSET_EDGE)
+        is_shown = self._paint("inset", outer, frame_picture, thick, theme.INSET_EDGE)
         if is_shown and outer is not None:
             self._place("inset", outer.left, outer.top)
 

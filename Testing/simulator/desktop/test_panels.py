@@ -7,9 +7,9 @@ from rastrainer.errors import InputError
 from rastrainer_simulator.desktop.gl_window import ARM, ICON_SIZE, SKIN, window_icon
 from rastrainer_simulator.desktop.panels import strips, theme
 from rastrainer_simulator.desktop.panels.brush import Brush
+from rastrainer_simulator.desktop.panels.canvas import Thumbnail
 from rastrainer_simulator.desktop.panels.item_row import Look, text_color
 from rastrainer_simulator.desktop.panels.menu_panel import menu_panel
-from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.desktop.panels.tool_guidance import target_arrow
 from rastrainer_simulator.presentation.screen import (
     Fact,

@@ -8,7 +8,7 @@ import numpy as np
 
 from rastrainer_simulator.desktop.panels import theme
 from rastrainer_simulator.desktop.panels.brush import Brush
-from rastrainer_simulator.desktop.panels.canvas import Box, Canvas
+from rastrainer_simulator.desktop.panels.canvas import Box, Canvas, Thumbnail
 from rastrainer_simulator.desktop.panels.controls_picture import draw_gamepad, draw_keyboard
 from rastrainer_simulator.desktop.panels.item_row import (
     Look,
@@ -17,7 +17,6 @@ from rastrainer_simulator.desktop.panels.item_row import (
     fits,
     trend_height,
 )
-from rastrainer_simulator.desktop.panels.sprite import Thumbnail
 from rastrainer_simulator.presentation.screen import Menu
 
 SHRINK = 0.94
