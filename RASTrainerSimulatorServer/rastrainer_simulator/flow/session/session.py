@@ -22,7 +22,6 @@ from rastrainer_simulator.flow.session.assigned_training import (
     newly_reached,
     step_sentence,
 )
-from rastrainer_simulator.flow.session.notices import Notices
 from rastrainer_simulator.flow.session.open_pages import OpenPages
 from rastrainer_simulator.flow.session.operator_device import OperatorDevice, ScreenSticks
 from rastrainer_simulator.flow.session.own_score import OwnScore
@@ -49,7 +48,7 @@ from rastrainer_simulator.input.bindings import (
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
-from rastrainer_simulator.presentation.screen import Tone
+from rastrainer_simulator.presentation.screen import Notices, Tone
 from rastrainer_simulator.record.trial_context import TutorialOutcome
 from rastrainer_simulator.replay.ghost import TrialGhost
 from rastrainer_simulator.replay.recorded_trial import TrialLoading, load_trial
