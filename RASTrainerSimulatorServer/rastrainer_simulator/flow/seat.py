@@ -17,7 +17,7 @@ SENTENCE_S = 20.0
 
 def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -> Seat:
     """Return what a board shows of a seat; `count` is how many points its trial has."""
-    training = session.training
+    training, curriculum = session.training, session.curriculum
     is_open = training.phase in OPEN_PHASES
     trainee = training.trainee if is_open else session.trainee.strip()
     scores = [trial.score for trial in session.history.of(trainee) if not trial.is_aborted]
@@ -32,13 +32,8 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
         holder=holder,
         slicer=session.is_slicer_connected(),
         language=screen.language,
-        assignments=_assignments(session),
+        assignments="" if curriculum is None else session.assignment_texts.in_brief(curriculum),
     )
-
-
-def _assignments(session: TrainingSession) -> str:
-    curriculum = session.curriculum
-    return "" if curriculum is None else session.assignment_texts.in_brief(curriculum)
 
 
 def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text: str) -> str:

@@ -59,7 +59,7 @@ class Brush:
 
     def line(self, text: str, style: TextStyle) -> Letters:
         """Return one line; what the font lacks stays empty."""
-        return set_line(text, self._pixels(style), style.is_bold)
+        return set_line(text, max(1, round(style.size * self.scale)), style.is_bold)
 
     def width(self, text: str, style: TextStyle) -> int:
         """Return the width of a line in pixels."""
@@ -101,9 +101,6 @@ class Brush:
                 parts.append("")
             parts[-1] += letter
         return parts
-
-    def _pixels(self, style: TextStyle) -> int:
-        return max(1, round(style.size * self.scale))
 
 
 def _pieces(paragraph: str) -> Iterator[tuple[str, str]]:
