@@ -1,20 +1,26 @@
-"""The view as it is now: turned by hand, or on its way to where a touch is seen best."""
+"""The view as it is now, turned by hand or on its way; and how a planned line lies in it."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from rastrainer.scenario.scenario import Camera
 from rastrainer_simulator.teleoperation.steering import camera_axes
+from rastrainer_simulator.trial_state import GuideAxis, PlannedLine
 from rastrainer_simulator.vectors import (
     ZERO,
     Vector,
     add,
+    cross,
+    dot,
     in_meters,
     length,
+    reject,
     scale,
     subtract,
+    unit,
     vector,
 )
 
@@ -22,6 +28,7 @@ LOWEST_DEG, HIGHEST_DEG = -15.0, 85.0
 """How far below and above its focal point a turned camera may stand, seen from there."""
 NEAREST_M, FARTHEST_M = 0.2, 2.6
 """From a turned camera to its focal point: never in the head, never behind a wall."""
+UP: Vector = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -97,7 +104,7 @@ def camera_pose(camera: Camera, orbit: Orbit = FRONT) -> CameraPose:
     away = place.distance * orbit.zoom
     level = away * math.cos(elevation)
     offset = (level * math.cos(azimuth), level * math.sin(azimuth), away * math.sin(elevation))
-    return CameraPose(add(focal_point, offset), focal_point, (0.0, 0.0, 1.0), camera.view_angle_deg)
+    return CameraPose(add(focal_point, offset), focal_point, UP, camera.view_angle_deg)
 
 
 def orbit_to(camera: Camera, eye: Vector, focal_point: Vector) -> Orbit:
@@ -278,17 +285,41 @@ class ViewControl:
         return camera_pose(camera, self.orbit)
 
 
-BESIDE_HEIGHT_M = (0.07, 0.3)
-"""The least and the greatest height of what the picture along the skin shows."""
+SIDEWAYS = 0.2
+"""Sine of the angle between the guide and the picture's right, below which up decides."""
 
 
-def along_skin(eye: Vector, fiducial: Vector, normal: Vector, tip: Vector) -> CameraPose:
-    """Return the camera that looks along the skin at a fiducial, the skin level in its picture.
+class Aim(NamedTuple):
+    """Where entry and target of a planned line are beside the guide's axis: right and up, m.
 
-    It shows the more the farther the tip is, up to a limit; World, m.
+    Right is that of the main picture, or of the eyes in a headset: a guide that is moved to the
+    right goes to the right here. Up is across both.
     """
-    least, most = BESIDE_HEIGHT_M
-    height = min(max(2.4 * length(subtract(tip, fiducial)), least), most)
-    away = length(subtract(eye, fiducial))
-    angle_deg = math.degrees(2.0 * math.atan(0.5 * height / away))
-    return CameraPose(eye, fiducial, normal, angle_deg)
+
+    entry: tuple[float, float]
+    target: tuple[float, float]
+
+
+def aim(guide: GuideAxis, line: PlannedLine, pictures: Pictures) -> Aim:
+    """Return how a planned line lies to the guide."""
+    to_the_right, upward = _axes(pictures)
+    across = reject(to_the_right, guide.direction)
+    if length(across) < SIDEWAYS:
+        across = cross(guide.direction, reject(upward, guide.direction))
+    right = unit(across)
+    up = cross(right, guide.direction)
+
+    def beside(point: Vector) -> tuple[float, float]:
+        offset = subtract(point, guide.tip)
+        return dot(offset, right), dot(offset, up)
+
+    return Aim(beside(line.entry), beside(line.target))
+
+
+def _axes(pictures: Pictures) -> tuple[Vector, Vector]:
+    """Return right and up of the main picture, or of the eyes in a headset."""
+    if pictures.yaw_deg is not None:
+        yaw = math.radians(pictures.yaw_deg)
+        return (math.sin(yaw), -math.cos(yaw), 0.0), UP
+    main = pictures.main
+    return unit(cross(subtract(main.focal_point, main.position), main.view_up)), main.view_up

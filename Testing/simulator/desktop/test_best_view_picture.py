@@ -10,6 +10,7 @@ from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.desktop.inbox import Inbox, LoadedScene, Viewpoint, read_parts
 from rastrainer_simulator.desktop.picture import Picture
 from rastrainer_simulator.desktop.viewports import Quality
+from rastrainer_simulator.flow.session.trial_view import along_skin
 from rastrainer_simulator.net.views import outgoing
 from rastrainer_simulator.presentation.screen import Screen
 from rastrainer_simulator.scene.scene_glb import scene_glb
@@ -17,7 +18,7 @@ from rastrainer_simulator.state import EventKind
 from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.vectors import vector
 from rastrainer_simulator.viewpoint.best_view import TouchViews
-from rastrainer_simulator.viewpoint.view_control import Pictures, along_skin, camera_pose, orbit_to
+from rastrainer_simulator.viewpoint.view_control import Pictures, camera_pose, orbit_to
 from rastrainer_simulator.virtual.play import play_virtual_trial
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 from Testing.simulator.desktop.conftest import SIZE

@@ -16,7 +16,6 @@ from rastrainer_simulator.viewpoint.view_control import (
     Orbit,
     ViewControl,
     ViewMotion,
-    along_skin,
     camera_pose,
     heading_deg,
     limited,
@@ -118,13 +117,3 @@ def test_another_camera_starts_unturned(scenario):
     assert control.is_moved
     control.use("far")
     assert control.orbit == FRONT
-
-
-def test_the_view_along_the_skin_widens_the_farther_the_tip_is():
-    eye, normal = (0.72, 0.1, 0.25), (0.0, 1.0, 0.0)
-    near, far, farther = (
-        along_skin(eye, FIDUCIAL, normal, (0.5, 0.1 + away, 0.25)) for away in (0.0, 0.1, 5.0)
-    )
-    assert near.angle_deg < far.angle_deg < farther.angle_deg < 90.0
-    assert near.view_up == normal
-    assert (near.position, near.focal_point) == (eye, FIDUCIAL)

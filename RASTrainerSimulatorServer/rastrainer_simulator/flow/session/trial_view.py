@@ -1,4 +1,4 @@
-"""The trainee's view of a trial: turned by hand, or led to where the next touch is seen best."""
+"""The trainee's view of a trial: turned by hand, or led to the next touch; and its inset."""
 
 from __future__ import annotations
 
@@ -12,14 +12,26 @@ from rastrainer_simulator.core.setup import SimulationSetup
 from rastrainer_simulator.state import OperatorInput, SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.training.head_pose import Truth
-from rastrainer_simulator.vectors import vector
+from rastrainer_simulator.trial_state import PlannedLine
+from rastrainer_simulator.vectors import (
+    Vector,
+    add,
+    any_perpendicular,
+    cross,
+    length,
+    reject,
+    scale,
+    subtract,
+    unit,
+    vector,
+)
 from rastrainer_simulator.viewpoint.best_view import BestView, BestViews
-from rastrainer_simulator.viewpoint.line_views import across_line
 from rastrainer_simulator.viewpoint.view_control import (
+    UP,
+    CameraPose,
     Pictures,
     ViewControl,
     ViewMotion,
-    along_skin,
     heading_deg,
     orbit_to,
 )
@@ -153,3 +165,44 @@ def turned(sticks: OperatorInput, turn_deg: float) -> OperatorInput:
         ),
         rotation=((c * sideways - s * ahead) / far, (s * sideways + c * ahead) / far),
     )
+
+
+BESIDE_HEIGHT_M = (0.07, 0.3)
+"""The least and the greatest height of what the picture along the skin shows."""
+
+
+def along_skin(eye: Vector, fiducial: Vector, normal: Vector, tip: Vector) -> CameraPose:
+    """Return the camera that looks along the skin at a fiducial, the skin level in its picture.
+
+    It shows the more the farther the tip is, up to a limit; World, m.
+    """
+    least, most = BESIDE_HEIGHT_M
+    height = min(max(2.4 * length(subtract(tip, fiducial)), least), most)
+    away = length(subtract(eye, fiducial))
+    angle_deg = math.degrees(2.0 * math.atan(0.5 * height / away))
+    return CameraPose(eye, fiducial, normal, angle_deg)
+
+
+AWAY_M = 0.4
+MARGIN_M = 0.02
+TALLEST_M = 0.34
+"""The greatest height of what the picture shows: a tool that is far away is not in it."""
+
+
+def across_line(eye: Vector, line: PlannedLine, tip: Vector) -> CameraPose:
+    """Return the camera that looks across a planned line, from the side of another eye.
+
+    In its picture the instrument comes from above. It shows the whole line, and the tool's tip
+    where that is near. World, m.
+    """
+    middle = scale(add(line.entry, line.target), 0.5)
+    across = cross(line.direction, reject(UP, line.direction))
+    if length(across) < MARGIN_M:
+        across = any_perpendicular(line.direction)
+    across = unit(across)
+    beside = [add(middle, scale(across, way * AWAY_M)) for way in (1.0, -1.0)]
+    nearer = min(beside, key=lambda place: math.dist(place, eye))
+    farthest = max(math.dist(middle, end) for end in (line.entry, line.target, tip))
+    height = min(2.0 * (farthest + MARGIN_M), TALLEST_M)
+    angle_deg = math.degrees(2.0 * math.atan(0.5 * height / AWAY_M))
+    return CameraPose(nearer, middle, scale(line.direction, -1.0), angle_deg)

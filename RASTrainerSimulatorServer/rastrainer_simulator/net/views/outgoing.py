@@ -23,8 +23,7 @@ from rastrainer_simulator.state import SimulationState
 from rastrainer_simulator.teleoperation.steering import AxesChoice
 from rastrainer_simulator.training.head_pose import RegisteredPlan
 from rastrainer_simulator.trial_state import Tool, TracedPoint
-from rastrainer_simulator.viewpoint.line_views import aim
-from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures, camera_pose
+from rastrainer_simulator.viewpoint.view_control import CameraPose, Pictures, aim, camera_pose
 
 WELCOME = "welcome"
 SCENE = "scene"

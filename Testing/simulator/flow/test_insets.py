@@ -1,12 +1,12 @@
-"""The inset of a procedure: it looks across the planned line, from the trainee's side."""
+"""The insets: along the skin at the next touch, or across a procedure's planned line."""
 
 import math
 
 import numpy as np
 import pytest
 
+from rastrainer_simulator.flow.session.trial_view import AWAY_M, TALLEST_M, across_line, along_skin
 from rastrainer_simulator.trial_state import PlannedLine
-from rastrainer_simulator.viewpoint.line_views import AWAY_M, TALLEST_M, across_line
 
 EYE = (0.5, -0.6, 0.6)
 LINES = {
@@ -53,3 +53,13 @@ def test_a_faraway_tool_does_not_shrink_the_line_beyond_visibility():
     pose = across_line(EYE, LINES["sloping"], (1.5, 1.5, 1.5))
     shown = 2.0 * AWAY_M * math.tan(math.radians(pose.angle_deg) / 2.0)
     assert shown == pytest.approx(TALLEST_M)
+
+
+def test_the_view_along_the_skin_widens_the_farther_the_tip_is():
+    fiducial, eye, normal = (0.5, 0.1, 0.25), (0.72, 0.1, 0.25), (0.0, 1.0, 0.0)
+    near, far, farther = (
+        along_skin(eye, fiducial, normal, (0.5, 0.1 + away, 0.25)) for away in (0.0, 0.1, 5.0)
+    )
+    assert near.angle_deg < far.angle_deg < farther.angle_deg < 90.0
+    assert near.view_up == normal
+    assert (near.position, near.focal_point) == (eye, fiducial)
