@@ -150,6 +150,23 @@ def test_a_reopened_menu_is_drawn_again(menu):
     assert seen["items"] == menu.evaluate("page.screen.menu.items.map(({ name }) => name)")
 
 
+BAR = """() => {
+  const { menu } = page.headset.panels;
+  const { width } = menu.context.canvas;
+  const { y, height } = menu.regions[0];
+  const [red] = menu.context.getImageData(width - 24, y + height / 2, 1, 1).data;
+  return red > 100;
+}"""
+
+
+def test_a_bar_tells_that_not_all_items_of_a_menu_are_in_sight(menu):
+    assert not menu.evaluate(BAR)
+    menu.evaluate("""page.headset.showScreen({ ...page.screen, menu: { ...page.screen.menu,
+      items: Array.from({ length: 30 }, (_, number) => ({ ...page.screen.menu.items[0],
+        name: number === 0 ? page.screen.menu.focus : `${number}` })) } })""")
+    assert menu.evaluate(BAR)
+
+
 @pytest.mark.parametrize("name", ["work", "closeUp", "warning"])
 def test_a_panel_is_readable_from_behind_the_head_too(work, name):
     stand(work, forward=BEHIND_M, yaw=3.14159)

@@ -7,6 +7,7 @@ import type { Region } from "./panel";
 const PAD = 48;
 const ROW = 68;
 const GAP = 8;
+const BAR = 10;
 const FACT = 46;
 const GAP_OF_FACT = 24;
 const GAP_OF_VALUE = 32;
@@ -54,7 +55,9 @@ export function paintMenu(
   }
   const fitting = Math.floor((height - y - helpHeight - PAD + GAP) / (ROW + GAP));
   const regions: Region[] = [];
-  for (const item of aroundFocus(menu, Math.max(1, fitting))) {
+  const shown = aroundFocus(menu, Math.max(1, fitting));
+  paintMore(pen, menu, shown, width - PAD / 2, y);
+  for (const item of shown) {
     const isFocus = item.name === menu.focus;
     paintItem(pen, item, PAD, y, room, isFocus, item.name === hovered);
     if (item.is_enabled) regions.push({ name: item.name, x: PAD, y, width: room, height: ROW });
@@ -96,6 +99,16 @@ function aroundFocus(menu: Menu, most: number): readonly Item[] {
   const focus = Math.max(0, menu.items.findIndex((item) => item.name === menu.focus));
   const first = Math.min(menu.items.length - most, Math.max(0, focus - Math.floor(most / 2)));
   return menu.items.slice(first, first + most);
+}
+
+/** Mark by a bar beside the items in sight that there are others. */
+function paintMore(pen: Pen, menu: Menu, shown: readonly Item[], middle: number, top: number): void {
+  const count = menu.items.length;
+  if (shown.length === count) return;
+  const height = shown.length * (ROW + GAP) - GAP;
+  const start = (height * menu.items.indexOf(shown[0]!)) / count;
+  pen.box(middle - BAR / 2, top, BAR, height, COLORS.field, BAR / 2);
+  pen.box(middle - BAR / 2, top + start, BAR, (height * shown.length) / count, COLORS.pale, BAR / 2);
 }
 
 function paintItem(
