@@ -50,11 +50,11 @@ from rastrainer_simulator.training.rules import ENDING_A_TRIAL, RECORDING_FAILED
 CATCH_UP_S = 0.1
 """How far behind the loop may fall and still make up for it tick by tick."""
 COMMANDS_PER_TICK = 16
-TOO_MANY_STARTS = "Trials are being started too often: wait a few seconds, then try again."
 SHUTTING_DOWN = "The simulator is shutting down."
 ARCHIVE_FAILED = "The trial's record could not be used: the simulator's log says why."
 TRIAL_IS_OPEN = Texts().say("no other head in a trial")
 BEING_SET_UP = Texts().say("being set up")
+TOO_MANY_STARTS = Texts().say("too many starts")
 
 _BEGIN_REPLACEMENT = "BeginReplacement"
 """Waits for its turn among the commands; clients cannot send it."""

@@ -14,8 +14,9 @@ from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.loop.control_loop import BEING_SET_UP, ControlLoop
 from rastrainer_simulator.state import Answer
+from rastrainer_simulator.texts.texts import Texts
 
-FAILED = "The scenario could not be loaded: the simulator's log says why."
+FAILED = Texts().say("scenario failed")
 
 _log = logging.getLogger(__name__)
 

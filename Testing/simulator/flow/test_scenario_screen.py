@@ -7,6 +7,7 @@ import pytest
 
 from rastrainer.scenario.library import ListedScenario
 from rastrainer_simulator.flow.session.chosen_trial import start_task
+from rastrainer_simulator.server.scenario_loader import FAILED
 from rastrainer_simulator.state import Answer
 from rastrainer_simulator.texts.texts import ENGLISH, LANGUAGES
 
@@ -70,6 +71,17 @@ def test_a_refused_head_changes_nothing_and_the_reason_is_shown(at_heads, heads)
     at_heads.until(lambda: at_heads.presenter.screen.warnings, "the reason")
     assert [warning.text for warning in at_heads.presenter.screen.warnings] == ["A trial is open."]
     assert at_heads.menu.name == "scenario"
+
+
+def test_why_a_head_could_not_be_loaded_is_said_in_the_trainees_language(at_heads, heads):
+    session = at_heads.presenter._session
+    session.prefer(replace(session.preferences, language="de"))
+    at_heads.choose("head mine")
+    at_heads.step()
+    heads.loads[0][1].set_result(Answer(0, False, FAILED))
+    at_heads.until(lambda: at_heads.presenter.screen.warnings, "the reason")
+    (warning,) = at_heads.presenter.screen.warnings
+    assert warning.text == LANGUAGES["de"]["scenario failed"]
 
 
 def test_the_menu_goes_back_by_itself_once_the_head_is_loaded(at_heads, heads):

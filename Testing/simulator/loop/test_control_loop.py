@@ -25,6 +25,7 @@ from rastrainer_simulator.record.trial_archive import SUFFIX
 from rastrainer_simulator.record.trial_recorder import FLUSH_TICKS
 from rastrainer_simulator.replay.resimulation import replay
 from rastrainer_simulator.state import OperatorCommand, OperatorInput, StepResult
+from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 
 TIMEOUT_S = 120.0
 
@@ -414,6 +415,7 @@ def test_trials_started_too_often_are_refused_and_create_no_journal(anywhere, tm
         refused = client.do(CommandName.START_TASK, task="task-1", trainee="P01")
         assert not refused.ok
         assert "too often" in refused.message
+        assert Texts(LANGUAGES["de"]).again(refused.message) == LANGUAGES["de"]["too many starts"]
         assert loop.latest.training.phase is Phase.IDLE
     assert len(journals(tmp_path)) == 2
 
