@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,14 @@ import pytest
 from rastrainer_simulator.flow.flow_presenter import FlowPresenter
 from rastrainer_simulator.flow.session.preferences import Preferences
 from rastrainer_simulator.input.bindings import DEFAULT_BINDINGS
-from rastrainer_simulator.presentation.screen import Screen, ScreenMessage, Tone
+from rastrainer_simulator.presentation.screen import (
+    ItemKind,
+    Menu,
+    MenuItem,
+    Screen,
+    ScreenMessage,
+    Tone,
+)
 from rastrainer_simulator.texts.texts import LANGUAGES, Texts
 from Testing.simulator.flow.languages import LONGEST_OR_EACH, screens_in
 from Testing.web.chromium import accessibility_checker, open_page, resize, show
@@ -256,6 +264,90 @@ def test_the_task_menu_is_complete_on_a_laptop(place, page):
     resize(page, *SIZES["laptop"])
     menu = "document.getElementById('menu')"
     assert page.evaluate(f"{menu}.scrollHeight - {menu}.clientHeight") <= 0
+
+
+AROUND_MENU = """() => {
+  const found = [];
+  const menu = document.getElementById("menu");
+  const hidden = menu.scrollHeight - menu.clientHeight;
+  if (hidden > 1) found.push(`${hidden} px of the menu are hidden`);
+  for (const row of ["#status li", "#hints li, #control, #headset"]) {
+    const parts = [...document.querySelectorAll(row)].map((part) => part.getBoundingClientRect());
+    const top = Math.max(...parts.map((part) => part.top));
+    const bottom = Math.min(...parts.map((part) => part.bottom));
+    if (parts.length === 0 || top > bottom) found.push(`${row} take several rows`);
+  }
+  return found;
+}"""
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_tasks_and_controls_are_shown_as_a_whole_on_larger_windows(
+    told_page, served, loop, outside, language
+):
+    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+    screens = screens_in(presenter, language)
+    presenter.close()
+    found = []
+    for name in ("start", "experiment", "controls"):
+        show(told_page, served, screens[name])
+        for size in ("laptop", "full HD"):
+            resize(told_page, *SIZES[size])
+            told_page.evaluate("frames_(1)")
+            found += [f"{name}, {size}: {each}" for each in told_page.evaluate(AROUND_MENU)]
+    assert found == []
+
+
+IN_FOCUS = """() => {
+  return ["li[data-focus]", ".help"].map((selector) => {
+    const part = document.querySelector(`#menu ${selector}`);
+    const { left, top, bottom } = part.getBoundingClientRect();
+    const at = (y) => document.elementFromPoint(left + 30, y);
+    return [top + 3, bottom - 3].every((y) => part.contains(at(y)));
+  });
+}"""
+
+
+def test_a_scrolled_list_shows_the_item_in_focus_and_its_help(told_page, served, loop, outside):
+    presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+    screen = screens_in(presenter, "de")["settings"]
+    presenter.close()
+    resize(told_page, *SIZES["laptop"])
+    for item in screen.menu.items:
+        show(told_page, served, replace(screen, menu=replace(screen.menu, focus=item.name)))
+        assert told_page.evaluate("document.querySelector('#menu .help').textContent") == item.help
+        assert told_page.evaluate(IN_FOCUS) == [True, True], item.name
+
+
+TORN = """() => [...document.querySelectorAll("#menu dd")].flatMap((value) => {
+  const text = value.firstChild.data;
+  return [...text.matchAll(/\\d\\s(?:mm|s|%)/gu)].filter(({ index, 0: found }) => {
+    const range = document.createRange();
+    range.setStart(value.firstChild, index);
+    range.setEnd(value.firstChild, index + found.length);
+    return range.getClientRects().length > 1;
+  }).map(() => text);
+})"""
+
+
+def test_no_number_is_torn_from_its_unit_on_a_phone(told_page, served, loop, outside):
+    resize(told_page, *SIZES["phone"])
+    for language in LANGUAGES:
+        presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
+        screens = screens_in(presenter, language)
+        presenter.close()
+        for name in ("match", "result", "procedure-errors", "tutorial-done"):
+            show(told_page, served, screens[name])
+            assert "mm" in told_page.inner_text("#menu dl")
+            assert told_page.evaluate(TORN) == [], f"{name} in {language}"
+
+
+def test_the_arrows_of_a_choice_stay_with_its_words(told_page, served):
+    choice = MenuItem("view", "View", ItemKind.CHOICE, "A long value of it")
+    show(told_page, served, Screen(menu=Menu("one", "One", items=(choice,))))
+    arrow = "b => getComputedStyle(b, '::%s').content"
+    for side, content in (("before", "◀\u00a0"), ("after", "\u00a0▶")):
+        assert content in told_page.eval_on_selector("#menu li b", arrow % side)
 
 
 def contrast(one, other):

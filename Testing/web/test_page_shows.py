@@ -19,7 +19,7 @@ from rastrainer_simulator.presentation.screen import (
 from rastrainer_simulator.texts.texts import LANGUAGES
 from Testing.simulator.flow.every_page import every_screen, names_of_pages
 from Testing.simulator.flow.scored_journals import task_menu
-from Testing.web.chromium import open_page, show, wait_for
+from Testing.web.chromium import open_page, resize, show, wait_for
 
 SIZE = {"width": 1280, "height": 720}
 
@@ -63,6 +63,25 @@ def test_arrows_appear_and_disappear_with_the_screen(page, served):
     served.wait_for_call("on_item", view, "back")
     served.tell(Screen())
     wait_for(page, "page.errors.group.children.length === 0")
+
+
+def test_a_finger_leads_back_from_what_is_only_watched(browser, served):
+    page = open_page(browser, served.url, served.code, has_touch=True, draws=False)
+    hints = (Hint("Arrows", "Turn"), Hint("Esc", "Result", "back"), Hint("Space", "Space", "play"))
+    for width, height in ((390, 844), (844, 390)):
+        resize(page, width, height)
+        show(page, served, Screen(hints=hints))
+        assert page.locator("#touch-controls").is_hidden()
+        assert page.locator("#hints li:visible").all_inner_texts() == ["Result", "Space"]
+        page.tap("#hints button:has-text('Result')")
+        (*_, view) = (call[1] for call in served.presenter.calls if call[0] == "view_joined")
+        served.wait_for_call("on_item", view, "back")
+        served.presenter.calls.remove(("on_item", view, "back"))
+        # While something is worked on, the buttons under the thumbs do the same.
+        show(page, served, Screen(hints=(Hint("Space", "Touch", "press touch"),)))
+        assert page.locator("#touch-controls").is_visible()
+        assert page.locator("#hints").is_hidden()
+    page.context.close()
 
 
 PICTURE = "#menu img"

@@ -44,7 +44,8 @@ export class TouchControls {
   }
 
   show(screen: Screen): void {
-    this.isWorking = screen.menu === null;
+    // What can be left, such as a replay, is watched: its buttons are among the hints.
+    this.isWorking = screen.menu === null && !screen.hints.some((hint) => hint.item === "back");
     this.isForMouse = screen.has_sticks;
     if (!this.isWorking) this.release();
     for (const [control, button] of this.buttons) button.textContent = say(`touch.${control}`);

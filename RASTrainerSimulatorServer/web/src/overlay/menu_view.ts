@@ -5,6 +5,7 @@ import { byId, element } from "../elements";
 import { MenuRow } from "./menu_row";
 import type { Fact, Item, Menu } from "../stream/messages";
 import { say } from "../texts";
+import { withUnits } from "../texts/typesetting";
 
 export class MenuView {
   private readonly parent = byId("menu");
@@ -93,6 +94,8 @@ export class MenuView {
     if (isOther || active === null || active === document.body || this.parent.contains(active)) row?.takeFocus();
     // The last menu may have been scrolled down: a title is seen wherever the focus leaves room.
     if (isOther) this.parent.scrollTop = 0;
+    // The help covers the end of a list that is scrolled.
+    this.parent.style.scrollPaddingBottom = `${this.help.offsetHeight}px`;
     row?.line.scrollIntoView({ block: "nearest" });
   }
 }
@@ -100,7 +103,7 @@ export class MenuView {
 function factsOf(facts: readonly Fact[]): HTMLElement {
   const table = element("dl", "");
   for (const fact of facts) {
-    const value = element("dd", fact.value);
+    const value = element("dd", withUnits(fact.value));
     value.dataset.tone = fact.tone;
     table.append(element("dt", fact.label), value);
   }

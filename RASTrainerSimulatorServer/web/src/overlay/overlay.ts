@@ -46,7 +46,7 @@ export class Overlay {
         const place = hint.item === "" ? line : line.appendChild(element("button", ""));
         place.append(element("kbd", hint.control));
         // What is written on it already is not said twice.
-        if (hint.action !== hint.control) place.append(hint.action);
+        if (hint.action !== hint.control) place.append(element("span", hint.action));
         if (hint.item !== "") {
           place.dataset.item = hint.item;
           const choose = () => connection.send("item", { name: hint.item });

@@ -15,6 +15,11 @@ export function chinese<Table extends Texts>(texts: Table): Table {
   return eachSet(texts, (text) => text.replace(/ (?=[\d{/])|(?<=[\d}/]) /g, NO_BREAK_SPACE));
 }
 
+/** Return a text in which no unit is on another line than its number, and no slash than what it divides. */
+export function withUnits(text: string): string {
+  return text.replace(/(?<=\d) (?=(?:mm|s|%)(?!\p{L}))| (?=\/)|(?<=\/) /gu, NO_BREAK_SPACE);
+}
+
 /** Return the tag of what is written: Chinese of every region in simplified characters. */
 export function writtenLanguage(tag: string): string {
   return /^zh\b/.test(tag) ? "zh-Hans" : tag;
