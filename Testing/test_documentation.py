@@ -87,7 +87,7 @@ def names_in(page: str) -> set[tuple[str, str]]:
 
 
 def is_named(path: str, name: str) -> bool:
-    """Tell whether a file, told by the end of its path, defines a name; `A.b` is b within A."""
+    """Return whether the file whose path ends like this defines a name; `A.b` is b within A."""
     files = [tracked for tracked in TRACKED if f"/{tracked}".endswith(f"/{path}")]
     sources = [(ROOT / file).read_text(encoding="utf-8") for file in files]
     parts = name.split(".")
@@ -172,7 +172,7 @@ def test_files_answer_ten_questions_of_a_newcomer():
 
 
 def test_the_architecture_page_describes_every_room():
-    told = set(CODE.findall(text_of("docs/architecture.md")))
+    described = set(CODE.findall(text_of("docs/architecture.md")))
     packages = [place for source in SOURCES for place in (ROOT / source).glob("rastrainer*")]
     folders = [
         folder.name
@@ -181,8 +181,8 @@ def test_the_architecture_page_describes_every_room():
         if list(folder.glob("*.py"))
     ]
     assert len(folders) > 20
-    # `slicer` is told by its own rooms.
-    assert {name for name in folders if name not in told} <= {"slicer"}
+    # `slicer` is described by its own folders.
+    assert {name for name in folders if name not in described} <= {"slicer"}
 
 
 def modules_of_walks() -> dict[str, list[str]]:

@@ -1,4 +1,4 @@
-"""What RASTrainer is made of: fixed by hashes, and told in notices and bills."""
+"""What RASTrainer is made of: pinned by hashes, and listed in notices and bills of materials."""
 
 from __future__ import annotations
 

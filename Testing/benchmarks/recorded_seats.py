@@ -1,4 +1,4 @@
-"""Simulators that only repeat what a real one has told a board, each in a time of its own."""
+"""Simulators that only repeat what a real one has sent to a board, each with its own timing."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ TRACING = "over parts that face different ways"
 
 
 class DrawingTrainee(StreamTrainee):
-    """Knows the landmarks of the head by sight, and of the trace what all views are told."""
+    """Knows the landmarks of the head by sight, and of the trace what all views receive."""
 
     @property
     def touched(self) -> int:
@@ -87,7 +87,7 @@ class DrawingTrainee(StreamTrainee):
         return rings
 
     def accept_match(self) -> dict[str, str]:
-        """Have the trace registered when its match is known; return what is told of the match."""
+        """Have the trace registered when its match is known; return what the menu says of it."""
         self.press("menu", lambda: self.menu_name == "trial", "the menu")
         self.choose("register")
         self.until_menu("match")

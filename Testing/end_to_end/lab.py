@@ -112,4 +112,4 @@ class SlicerProcess:
             received.append(json.loads(line))
             if received[-1]["event"] == event:
                 return received
-        raise AssertionError(f"Slicer's side has told no {event}: {received}")
+        raise AssertionError(f"Slicer's side has reported no {event}: {received}")

@@ -109,7 +109,7 @@ class StreamTrainee:
     """Goes through menus by their names, and to fiducials by the sticks.
 
     Attributes:
-        view: what is told.
+        view: what the trainee sees.
         hands: what the simulator is worked with.
         again_s: after which a press without an effect is made again, for hands whose presses may
             be missed. A press that is only slow would count twice.

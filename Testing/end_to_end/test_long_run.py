@@ -57,7 +57,7 @@ class Run:
     Attributes:
         simulator, slicer: use of each process after every trial.
         errors: lines of the simulator's log, and of either process's stderr, that tell of one.
-        problems: what Slicer's side has told of.
+        problems: reported by Slicer's side.
         trials: that were played.
     """
 
@@ -138,7 +138,7 @@ def check_flat(run: Run) -> None:
         assert usages[-1].descriptors <= usages[0].descriptors + 3
 
 
-def told(run: Run) -> str:
+def growth_text(run: Run) -> str:
     parts = [
         f"{name} {growth_mb(usages):+.1f} MB to {usages[-1].resident_mb:.0f}, "
         f"{usages[-1].descriptors - usages[0].descriptors:+d} descriptors"
@@ -151,7 +151,7 @@ def told(run: Run) -> str:
 def test_ten_consecutive_trials_do_not_increase_memory_or_descriptors(tmp_path, capsys):
     run = train(tmp_path, lambda played: played >= 10, speed=8)
     with capsys.disabled():
-        print(told(run))
+        print(growth_text(run))
     check_flat(run)
 
 
@@ -160,5 +160,5 @@ def test_two_hours_of_training_do_not_increase_memory_or_descriptors(tmp_path, c
     end = time.monotonic() + 7200.0
     run = train(tmp_path, lambda _played: time.monotonic() > end, speed=1)
     with capsys.disabled():
-        print(told(run))
+        print(growth_text(run))
     check_flat(run)

@@ -80,7 +80,7 @@ def test_the_scene_may_be_disrupted_after_every_step(story):
 
 
 def until_nothing_is_lost(host):
-    host.wait_until(lambda: "no touch is lost" in host.text("phaseText"), "it is told")
+    host.wait_until(lambda: "no touch is lost" in host.text("phaseText"), "the message")
 
 
 def test_the_simulator_may_be_killed_and_restarted_during_a_trial(story):

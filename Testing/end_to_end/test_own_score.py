@@ -105,8 +105,8 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
             registration = check_arguments(
                 "SubmitRegistration", registration_arguments(stored.analysis)
             )
-            told = archive.answer("SubmitRegistration", registration, stamp(0, 0.0))
-            truth = RevealedTruth.from_json(told)
+            answer = archive.answer("SubmitRegistration", registration, stamp(0, 0.0))
+            truth = RevealedTruth.from_json(answer)
             scored = scored_with_journal(stored.analysis, truth, scenario, score_references(study))
             study.add_results(record.trial_id, score=scored.score)
             slicers = score_arguments(with_progress(scored, study))
@@ -158,8 +158,8 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
         own, slicers = alone.entries(trial, "scored")
         assert OWN_SCORE not in slicers["details"]
         # Many trials come out of their order, and are compared with those that are there already.
-        for told in (own, slicers):
-            del told["details"]["feedback"]
+        for entry in (own, slicers):
+            del entry["details"]["feedback"]
         assert without_its_mark(own) == slicers
     with Study.open(tmp_path / "study.db") as study:
         assert {study.trial(trial).score.version for trial in alone.trials} == {SCORE_VERSION}

@@ -29,7 +29,7 @@ class KilledSlicer:
     """Slicer's side, each time as a new process on the same study.
 
     Attributes:
-        points: how many touches the present process has been told of.
+        points: how many touches the current process has received.
         kills: in which phase the ones before were killed.
     """
 
@@ -53,7 +53,7 @@ class KilledSlicer:
         self._start()
 
     def touches_reported(self, count: int) -> list[str]:
-        """Return the labels of so many touches, as soon as they are told."""
+        """Return the labels of so many touches, as soon as they are reported."""
         return [self.process.events_until("point")[-1]["label"] for _ in range(count)]
 
 
@@ -62,7 +62,7 @@ class Interrupted(Player):
 
     def __init__(self, port: int, slicer: KilledSlicer):
         self._slicer, self._touches = slicer, 0
-        self.told: list[str] = []
+        self.reported: list[str] = []
         super().__init__(port)
 
     def do(self, name: str, **arguments) -> dict:
@@ -71,7 +71,7 @@ class Interrupted(Player):
             self._touches += 1
             if self._touches == KILLED_AFTER:
                 self._slicer.kill_and_return("running")
-                self.told = self._slicer.touches_reported(KILLED_AFTER)
+                self.reported = self._slicer.touches_reported(KILLED_AFTER)
         return reply
 
     def state(self, is_wanted) -> dict:
@@ -122,12 +122,12 @@ def seen(tmp_path_factory) -> dict:
                 lose(player, slicer, "inserting")
                 player.feed(PLACED_MM)
                 player.do("ReleaseInstrument")
-                told = slicer.process.events_until("trial")
+                events = slicer.process.events_until("trial")
         finally:
             slicer.process.kill()
     with Study.open_for_reading(folder / "study" / "study.db") as study:
         stored = study.history("anna")
-    return {"player": player, "slicer": slicer, "told": told, "stored": stored} | answers
+    return {"player": player, "slicer": slicer, "events": events, "stored": stored} | answers
 
 
 def is_aligned(state: dict) -> bool:
@@ -141,7 +141,7 @@ def test_slicer_is_killed_during_the_touches_and_in_each_phase(seen):
 
 
 def test_a_slicer_that_returns_during_the_touches_receives_all_earlier_ones(seen):
-    assert seen["player"].told == [str(number) for number in range(1, KILLED_AFTER + 1)]
+    assert seen["player"].reported == [str(number) for number in range(1, KILLED_AFTER + 1)]
 
 
 def test_touches_from_before_and_after_slicers_return_are_registered(seen):
@@ -155,4 +155,4 @@ def test_the_trial_is_scored_once_with_its_procedure(seen):
     assert stored.record.trial_id == seen["StartTask"]["trialId"]
     assert stored.score is not None
     assert stored.procedure.score.version == "procedure-1"
-    assert [event for event in seen["told"] if event["event"] == "problem"] == []
+    assert [event for event in seen["events"] if event["event"] == "problem"] == []

@@ -82,7 +82,7 @@ def wait_until_idle(host):  # noqa: F811
     for _question in range(3):
         answers = []
         session.link.send(CommandName.LIST_TASKS, {}, answers.append, timeoutS=60.0)
-        host.wait_until(lambda told=answers: told, "the simulator answers")
+        host.wait_until(lambda answers=answers: answers, "the simulator answers")
         assert answers[0].ok
     host.wait_until(
         lambda: renders_in_a_while(host) == 0 and not session.work.isBusy,

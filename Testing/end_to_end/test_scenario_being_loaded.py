@@ -125,8 +125,8 @@ def items_of(menu):
 def phase(peer):
     """Return the phase of a trial that has begun."""
 
-    def has_begun(told):
-        return json.loads(told.content.text)["phase"] != "idle"
+    def has_begun(message):
+        return json.loads(message.content.text)["phase"] != "idle"
 
     return json.loads(peer.wait_for("SimState", has_begun, PATIENCE_S).content.text)["phase"]
 

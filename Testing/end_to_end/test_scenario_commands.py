@@ -58,10 +58,10 @@ def test_a_missing_head_has_no_picture(volume, tmp_path, capsys):
 
 def test_the_check_reports_each_problem_and_reflects_it_in_its_exit_status(ball, tmp_path, capsys):
     assert main(["scenario", "check", str(ball)]) == 1
-    told = capsys.readouterr().out.splitlines()
-    assert len(told) > 3
-    assert all(line.endswith(".") for line in told)
-    assert any("off the skin" in line for line in told)
+    printed = capsys.readouterr().out.splitlines()
+    assert len(printed) > 3
+    assert all(line.endswith(".") for line in printed)
+    assert any("off the skin" in line for line in printed)
     assert main(["scenario", "check", str(tmp_path / "none")]) == 2
     assert "none does not exist" in capsys.readouterr().err
 
@@ -74,9 +74,9 @@ def test_the_check_names_the_fiducials_that_no_view_shows(tmp_path, monkeypatch,
         (made / "preview.png").write_bytes(png())
     monkeypatch.setattr("rastrainer_simulator.viewpoint.best_view.WIDEST_DEG", 0.0)
     assert main(["scenario", "check", str(tmp_path / "head")]) == 1
-    told = capsys.readouterr().out.splitlines()
-    unseen = [line for line in told if "cannot be seen within 60° of the skin's normal" in line]
-    assert len(unseen) == 1, told
+    printed = capsys.readouterr().out.splitlines()
+    unseen = [line for line in printed if "cannot be seen within 60° of the skin's normal" in line]
+    assert len(unseen) == 1, printed
     assert unseen[0].startswith("Task 1: fiducials 1, 2, 3,")
 
 

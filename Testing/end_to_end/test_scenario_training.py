@@ -44,7 +44,7 @@ def trains_on(port, name, title):
         started = client.send_command("StartTask", {"task": task, "trainee": "anna"}, timeout=60)
         assert (started.ok, started.error) == (True, "")
         state = client.wait_for(
-            "SimState", lambda told: json.loads(told.content.text)["phase"] == "running", 60
+            "SimState", lambda message: json.loads(message.content.text)["phase"] == "running", 60
         )
         assert json.loads(state.content.text)["task"] == task
 

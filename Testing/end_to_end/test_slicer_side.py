@@ -133,9 +133,9 @@ def test_points_appear_as_they_are_touched(slicer_side):
 
 
 def test_the_crash_is_reported_and_the_link_recovers(slicer_side):
-    told = (LinkState.CONNECTED, LinkState.ABSENT, LinkState.OFF)
+    reported = (LinkState.CONNECTED, LinkState.ABSENT, LinkState.OFF)
     # How often it looks for the simulator meanwhile depends on how long that takes to start.
-    seen = [state for state, _again in groupby(s for s in slicer_side.states if s in told)]
+    seen = [state for state, _again in groupby(s for s in slicer_side.states if s in reported)]
     assert seen[-4:] == [
         LinkState.CONNECTED,
         LinkState.ABSENT,

@@ -53,7 +53,7 @@ TWO = Curriculum(
 PASSED = CountedTrial("task-1", "desktop", score=80.0, acceptable=True, version=SCORE_VERSION)
 
 
-def told(*trials):
+def curriculum(*trials):
     standing = standing_in(TWO, trials, lambda _version: 70.0)
     return CurriculumMessage.of("P08", standing).arguments()
 
@@ -89,18 +89,18 @@ def test_the_trainees_menu_offers_what_slicer_sends_of_a_study_and_of_a_curricul
         assert "All steps of the study are done" in screen["menu"]["paragraphs"][0]
         refused = slicer.send_command("StudyStep", {"trainee": "P07", "kind": "dance"}, timeout=60)
         assert "kind must be one of questionnaire, trial-run" in refused.error
-        assert slicer.send_command("Curriculum", told(), timeout=60).ok
+        assert slicer.send_command("Curriculum", curriculum(), timeout=60).ok
         view.send({"type": "text", "name": "trainee", "value": "P08"})
         screen_where(view, lambda screen: "0 of 2 reached" in states(screen))
         assert states(go_to(view, "assignments", "assignments")) == ["0 / 1", "locked"]
-        assert slicer.send_command("Curriculum", told(PASSED), timeout=60).ok
+        assert slicer.send_command("Curriculum", curriculum(PASSED), timeout=60).ok
         screen = screen_where(view, lambda screen: "reached" in states(screen))
         assert states(screen) == ["reached", "0 / 1"]
         refused = slicer.send_command(
             "Curriculum", {"trainee": "P08", "assignments": [{}]}, timeout=60
         )
         assert 'An assignment needs the key "name"' in refused.error
-        # The Slicer that comes next may have another study: what this one told is forgotten.
+        # The Slicer that comes next may have another study: what this one sent is forgotten.
         slicer.close()
         screen_where(view, lambda screen: screen["menu"]["name"] == "experiment")
         with Client(port=simulator.port) as another:

@@ -69,10 +69,10 @@ def test_landmarks_and_trace_are_given_with_that_device_alone(drawn):
 
 
 def test_the_match_shown_to_the_trainee_is_the_one_that_is_registered(drawn):
-    told, registered = drawn["match"], drawn["registered"]
-    assert told["Residual"] == f"{registered['freMm']:.2f} mm"
+    shown, registered = drawn["match"], drawn["registered"]
+    assert shown["Residual"] == f"{registered['freMm']:.2f} mm"
     expected = f"{registered['expectedTreMm']:.2f} mm"
-    assert told["Expected error at the target (TRE)"] == expected
+    assert shown["Expected error at the target (TRE)"] == expected
     assert registered["freMm"] < 1.0
 
 

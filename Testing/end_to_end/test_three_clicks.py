@@ -69,7 +69,7 @@ def test_three_clicks_lead_from_an_empty_slicer_to_a_running_trial(set_up_slicer
     assert host.clicks == 3 * ["nextStepButton"]
     host.wait_until(lambda: "running" in host.text("phaseText"), "it runs")
     names, now = ("linkText", "nowTraineeText", "nowTaskText"), ["Connected", "T001", "Trial run"]
-    host.wait_until(lambda: [host.text(name) for name in names] == now, "it is told")
+    host.wait_until(lambda: [host.text(name) for name in names] == now, "the panel follows")
 
 
 @pytest.mark.soak
@@ -85,7 +85,7 @@ def test_the_button_leads_through_the_trial_to_its_score_and_the_next_task(set_u
     play(player, host)
     press_next(host, "Show result", until="Start Task 1")
     assert open_sections(host) == ["score"]
-    host.wait_until(lambda: "Score" in host.text("feedbackText"), "it is told what there is to say")
+    host.wait_until(lambda: "Score" in host.text("feedbackText"), "the feedback")
     assert height(host, tmp_path) <= SCREEN_HEIGHT
     assert host.find("scoreTable").rowCount > 0
     press_next(host, "Start Task 1", until="Pause")

@@ -170,8 +170,8 @@ def test_finished_trial_is_offered_as_a_valid_record_until_acknowledged(trial):
 
 def test_the_head_pose_stays_secret_until_a_registration_is_submitted(trial, scenario):
     assert "headToWorld" not in json.dumps([trial["Register"], trial["offers"], trial["before"]])
-    told = np.array(trial["truth"]["headToWorld"]).reshape(4, 4)
-    np.testing.assert_allclose(told, scenario.perturbed_head_to_world(SEED), atol=1e-9)
+    revealed = np.array(trial["truth"]["headToWorld"]).reshape(4, 4)
+    np.testing.assert_allclose(revealed, scenario.perturbed_head_to_world(SEED), atol=1e-9)
     assert trial["truth"]["trueTreMm"] < 2 * NEAR_MM
     assert trial["after"]["headToWorld"] == trial["truth"]["headToWorld"]
 

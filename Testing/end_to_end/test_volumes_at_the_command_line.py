@@ -170,9 +170,9 @@ def test_an_unusual_volume_becomes_a_scenario_with_the_right_skin(place, capfd, 
     write_markups(place / "mine.mrk.json", PointList(LABELS, fiducials(SIZE)))
     words = ["scenario", "build", str(write(place)), "-o", str(place / "made"), "--no-skull"]
     status = main([*words, *options, "--tasks", str(place / "mine.mrk.json")])
-    told = capfd.readouterr()
-    assert status == 0, told.err
-    assert warning in told.out
+    printed = capfd.readouterr()
+    assert status == 0, printed.err
+    assert warning in printed.out
     scenario = load_scenario(place / "made")
     assert [task.title for task in scenario.tasks] == ["Trial run"]
     mesh = read_head_mesh(scenario.head_mesh)

@@ -41,7 +41,7 @@ class Scored:
     Attributes:
         case: the strategy, in words.
         scores: of each trial, by task.
-        at_most: what none may exceed; None where it is only told.
+        at_most: what no score may exceed; None where they are only reported.
     """
 
     case: str

@@ -56,12 +56,11 @@ def several_populations(sets: int, seed: int = 4) -> list[Measured]:
         member = np.arange(trainees) * groups // trainees
         drawn += member[:, None] * distance / np.sqrt(METRICS)
         parted = [_is_parted(values) for values in drawn]
-        told = share_of([_is_told(values) for values in drawn[: max(1, sets // 20)]])
+        detected = share_of([_is_detected(values) for values in drawn[: max(1, sets // 20)]])
         apart = f"{distance} SD apart" if groups == 2 else f"{distance} SD between neighbors"
         words = f"{groups} groups of {trainees // groups}, {apart}"
-        found.append(
-            Measured(words, share_of(parted), sets, at_least=at_least, beside=(share_text(told),))
-        )
+        beside = (share_text(detected),)
+        found.append(Measured(words, share_of(parted), sets, at_least=at_least, beside=beside))
     return found
 
 
@@ -72,7 +71,7 @@ def _is_parted(values: np.ndarray) -> bool:
     return one_peak_p((values - values.mean(axis=0)) / values.std(axis=0, ddof=1)) <= ALPHA
 
 
-def _is_told(values: np.ndarray) -> bool:
+def _is_detected(values: np.ndarray) -> bool:
     names = [f"m{column}" for column in range(values.shape[1])]
     trainees = {f"T{row:03d}": dict(zip(names, own, strict=True)) for row, own in enumerate(values)}
     with contextlib.suppress(NoClustersError):

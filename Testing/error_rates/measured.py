@@ -19,8 +19,8 @@ class Measured:
         case: What was simulated, in words.
         share: From 0 to 1.
         sets: Of how many data sets.
-        at_most: What the share may not exceed; None where it is only told.
-        at_least: What it may not fall below; None where it is only told.
+        at_most: What the share may not exceed; None where it is only reported.
+        at_least: What it may not fall below; None where it is only reported.
         beside: Further figures of the same data sets, as text.
     """
 

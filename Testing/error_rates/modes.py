@@ -107,7 +107,7 @@ EFFECT_HEADER = (
 )
 TRUTHS = (0.0, 0.5, 1.5)
 MORE = 10
-"""Times as many data sets as are asked for: a share of 95 % is to be told from 94 %."""
+"""Times as many data sets as are asked for: a share of 95 % is to be distinguished from 94 %."""
 COMPUTED = 20
 """Of them, those whose interval is computed: to see whether t lies in its tails is the same."""
 

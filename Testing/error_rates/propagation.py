@@ -48,7 +48,7 @@ class PropagatedError:
         expected_mm: RMS of the expected TRE at the targets, from the known FLE.
         fre_mm: RMS of the FRE, which the trainee sees.
         checkpoint_mm: RMS of the errors at checkpoints, which the trainee sees.
-        at_least: required coverage; None where it is only told.
+        at_least: required coverage; None where it is only reported.
     """
 
     case: str

@@ -63,11 +63,11 @@ def is_within(share, asked):
     """Whether a printed share is within a printed limit: ≤ a, ≥ a, or a to b."""
     if asked == "–":
         return True
-    (told,) = numbers(share)
+    (value,) = numbers(share)
     limits = numbers(asked)
     if asked.startswith("≤"):
-        return told <= limits[0]
-    return limits[0] <= told <= (limits[1] if len(limits) > 1 else np.inf)
+        return value <= limits[0]
+    return limits[0] <= value <= (limits[1] if len(limits) > 1 else np.inf)
 
 
 def numbers(text):
@@ -104,8 +104,8 @@ def test_all_limits_hold_and_the_page_has_the_rates(name):
         case, share, asked, *_ = [cell.strip() for cell in line.strip("|").split("|")]
         assert (case, asked) == (one.cells()[0], one.cells()[2])
         # Other versions of numpy and scipy may round a p-value at the level otherwise.
-        told = one.cells()[1].removesuffix(" %")
-        assert float(share.removesuffix(" %")) == pytest.approx(float(told), abs=0.3)
+        measured = one.cells()[1].removesuffix(" %")
+        assert float(share.removesuffix(" %")) == pytest.approx(float(measured), abs=0.3)
 
 
 def test_many_registrations_at_once_match_those_of_the_program():

@@ -44,7 +44,7 @@ class Lab:
 
     def acknowledged(self):
         sent = self.simulator.commands
-        return [told["trialId"] for name, told in sent if name == "AcknowledgeTrial"]
+        return [arguments["trialId"] for name, arguments in sent if name == "AcknowledgeTrial"]
 
     def run_until(self, condition):
         run_logic_until(self.link, self.work, condition)

@@ -91,6 +91,6 @@ def test_a_trial_that_is_not_scored_still_gets_feedback(connected, simulator, re
         "Another registration was submitted." if name == "SubmitRegistration" else {}
     )
     simulator.send_command("TrialCompleted", record)
-    told = lambda: connected.text("feedbackText")  # noqa: E731
-    connected.wait_until(lambda: told().startswith(("Point ", "No touch ")), "it is judged")
+    feedback = lambda: connected.text("feedbackText")  # noqa: E731
+    connected.wait_until(lambda: feedback().startswith(("Point ", "No touch ")), "it is judged")
     assert len(journals.pids()) == 1

@@ -31,8 +31,8 @@ class Class:
         self.trainees.changed.emit()
 
     @property
-    def told(self):
-        """What the simulator was told so far."""
+    def sent(self):
+        """The messages sent to the simulator so far."""
         return self.room.all_sent("Curriculum")
 
     def close(self):
@@ -51,26 +51,26 @@ def lesson(scene, scenario, tmp_path):
     room.close()
 
 
-def states(told):
-    return [each["state"] for each in told["assignments"]]
+def states(message):
+    return [each["state"] for each in message["assignments"]]
 
 
 def test_everybodys_progress_is_sent_first_and_then_only_what_is_new(lesson):
     lesson.logic.choose(SHIPPED, isForEverybody=True)
-    told = lesson.told
-    assert [each["trainee"] for each in told] == ["A", "B"]
-    assert states(told[0]) == ["open"] + ["locked"] * 5
-    assert (told[0]["title"], told[0]["next"]) == ("First steps", "first-points")
+    sent = lesson.sent
+    assert [each["trainee"] for each in sent] == ["A", "B"]
+    assert states(sent[0]) == ["open"] + ["locked"] * 5
+    assert (sent[0]["title"], sent[0]["next"]) == ("First steps", "first-points")
     lesson.trainees.choose("A")
     lesson.trainees.changed.emit()
     lesson.play("A", 2)
-    told = lesson.told
-    assert len(told) == 3, "B has nothing new, and being chosen is nothing new"
-    assert (told[2]["trainee"], states(told[2])) == (
+    sent = lesson.sent
+    assert len(sent) == 3, "B has nothing new, and being chosen is nothing new"
+    assert (sent[2]["trainee"], states(sent[2])) == (
         "A",
         ["reached", "open", "open", "open", "locked", "locked"],
     )
-    assert told[2]["next"] == "second-points"
+    assert sent[2]["next"] == "second-points"
 
 
 def test_a_curriculum_of_one_trainee_ends_for_that_trainee_alone(lesson):
@@ -84,24 +84,24 @@ def test_a_curriculum_of_one_trainee_ends_for_that_trainee_alone(lesson):
     lesson.logic.choose(SHIPPED, isForEverybody=False)
     assert lesson.logic.standing().reached == 0
     lesson.logic.end(isForEverybody=False)
-    told = lesson.told
-    assert [each["trainee"] for each in told] == ["B", "B"]
-    assert "assignments" not in told[1]
+    sent = lesson.sent
+    assert [each["trainee"] for each in sent] == ["B", "B"]
+    assert "assignments" not in sent[1]
     assert lesson.logic.standing() is None
 
 
 def test_a_simulator_that_connects_later_is_sent_everything_again(lesson):
     lesson.logic.choose(SHIPPED, isForEverybody=True)
-    before = lesson.told
+    before = lesson.sent
     lesson.room.link.opened.emit()
-    assert json.dumps(lesson.told) == json.dumps(2 * before)
+    assert json.dumps(lesson.sent) == json.dumps(2 * before)
 
 
 def test_a_deleted_or_archived_trainee_is_sent_as_one_without_a_curriculum(lesson):
     lesson.logic.choose(SHIPPED, isForEverybody=True)
     lesson.trainees.choose("A")
     lesson.trainees.setArchived(True)
-    last = lesson.told[2]
+    last = lesson.sent[2]
     assert (last["trainee"], "assignments" in last) == ("A", False)
 
 

@@ -177,7 +177,9 @@ def test_names_of_a_host_a_node_and_a_task(open_module, tmp_path):
     model = host.scene.AddNewNodeByClass("vtkMRMLModelNode", HOSTILE)
     host.choose("headModelComboBox", model)
     host.press("useHeadButton")
-    host.wait_until(lambda: host.messages or "bold" in host.text("otherHeadText"), "it is told")
+    host.wait_until(
+        lambda: host.messages or "bold" in host.text("otherHeadText"), "the error is shown"
+    )
     assert host.minimum_width() <= DOCK_WIDTH
     host.answer("Save the scenario", str(tmp_path / "copy.zip"))
     host.press("exportScenarioButton")
@@ -206,7 +208,7 @@ def test_the_programs_last_output_and_pairing_code_are_shown_unchanged(open_modu
     host.wait_until(lambda: "bold" in host.text("pairingText"), "the address is shown")
     shows_verbatim(host, "pairingText", text="<b>bold</b>")
     (tmp_path / "over").touch()
-    host.wait_until(lambda: "ended by itself" in host.text("programText"), "the end is told")
+    host.wait_until(lambda: "ended by itself" in host.text("programText"), "its end is shown")
     shows_verbatim(host, "programText", text=HTML)
 
 

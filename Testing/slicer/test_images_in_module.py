@@ -111,7 +111,7 @@ def test_unusable_images_are_reported_with_the_scenario(host):
     host.choose("scenarioComboBox", "Broken images")
     host.press("showScenarioButton")
     text = "There are no images in the slice views: "
-    host.wait_until(lambda: text in host.text("scenarioText"), "it is told")
+    host.wait_until(lambda: text in host.text("scenarioText"), "the problem is shown")
     assert "volume.nrrd must start as NRRD files do" in host.text("scenarioText")
     assert images(host) is None
     assert host.messages == []
@@ -189,7 +189,7 @@ def test_the_slices_move_to_each_next_point_of_a_trial_unless_unchecked(host, tr
     host.unfold("slicesNextPointCheckBox")
     host.check("slicesNextPointCheckBox", False)
     trial.tell(nextPoint="3")
-    host.wait_until(lambda: host.text("nextPointText") == "3", "the next point is told")
+    host.wait_until(lambda: host.text("nextPointText") == "3", "the next point is shown")
     host.idle_for(0.3)
     trial.wait_for_slices_at(fiducials[1])
     host.check("slicesNextPointCheckBox")

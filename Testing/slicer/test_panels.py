@@ -339,7 +339,7 @@ def test_another_target_is_chosen_and_the_head_is_colored(panels, touched):
     target = panels.scene.AddNewNodeByClass("vtkMRMLMarkupsFiducialNode", "Tumor")
     target.AddControlPoint(60.0, 60.0, -60.0)
     panels.choose("targetComboBox", target)
-    panels.wait_until(lambda: panels.text("treText") != before, "the error is told anew")
+    panels.wait_until(lambda: panels.text("treText") != before, "the error is updated")
     panels.check("headColoredCheckBox")
     head = findNode(panels.scene, "vtkMRMLModelNode", Role.HEAD_MODEL)
     assert head.GetDisplayNode().GetScalarVisibility()
@@ -478,7 +478,7 @@ def test_a_trial_gets_feedback_and_is_replayed(panels, add_trial):
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
     panels.press("replayButton")
     assert panels.scene.GetFirstNodeByName("Replay of T-001, task-1").GetNumberOfItems() > 150
-    panels.wait_until(lambda: "clearance" in panels.text("replayText"), "the replay is told")
+    panels.wait_until(lambda: "clearance" in panels.text("replayText"), "the replay is described")
     panels.press("worstTouchButton")
     tool = panels.scene.GetFirstNodeByName("T-001, task-1: tool")
     assert tool.GetTransformNodeID() is not None
@@ -583,6 +583,6 @@ def test_how_to_pair_a_headset_is_shown_while_the_simulator_runs(panels, tmp_pat
     panels.check("networkCheckBox")
     panels.press("startSimulatorButton")
     wanted = "open http://127.0.0.1:18945 or https://192.0.2.7:18946 and enter the code 012345."
-    panels.wait_until(lambda: wanted in panels.text("pairingText"), "it is told")
+    panels.wait_until(lambda: wanted in panels.text("pairingText"), "the addresses are shown")
     panels.press("stopSimulatorButton")
     assert panels.text("pairingText") == ""

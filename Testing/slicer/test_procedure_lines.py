@@ -59,9 +59,9 @@ def check(scene, found):
             "registration": np.linalg.norm(shown[1] - plan[1]),
             "hand": np.linalg.norm(placed[1] - shown[1]),
         }
-        for who, length in split.items():
-            told = column(scene, f"target point error, by {who} (mm)")[row]
-            assert told == pytest.approx(length, abs=1e-4)
+        for cause, length in split.items():
+            in_table = column(scene, f"target point error, by {cause} (mm)")[row]
+            assert in_table == pytest.approx(length, abs=1e-4)
         assert np.linalg.norm(shown[1] - shown[0]) == pytest.approx(errors.trajectory.length_mm)
         assert column(scene, "plunge depth (mm)")[row] == pytest.approx(errors.plunge_mm, abs=1e-3)
 

@@ -127,12 +127,12 @@ def test_each_step_sends_its_command(theater):
 
 
 @pytest.mark.parametrize(
-    "told",
+    "procedure",
     [None, 7, [], {"name": 3, "trajectory": "x", "trajectories": None, "feedMm": True}],
     ids=["none", "number", "list", "wrong"],
 )
-def test_a_malformed_procedure_state_causes_no_trouble(theater, told):
-    state = {"trialId": TRIAL, "phase": "drilling", "procedure": told}
+def test_a_malformed_procedure_state_causes_no_trouble(theater, procedure):
+    state = {"trialId": TRIAL, "phase": "drilling", "procedure": procedure}
     theater.simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
     theater.run_until(lambda: theater.procedure.status.phase == "drilling")
     assert theater.procedure.status.feedMm == 0.0

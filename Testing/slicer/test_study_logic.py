@@ -64,9 +64,9 @@ class Lab:
 
     def tell(self, **changes):
         """Have the simulator send the state of a trial, and wait until the logic has it."""
-        told = {"trainee": "T001", "task": "trial-run", "mode": "hmd", **changes}
-        self.room.tell(**told)
-        self.room.run_until(lambda: told.items() <= vars(self.room.logic.progress).items())
+        state = {"trainee": "T001", "task": "trial-run", "mode": "hmd", **changes}
+        self.room.tell(**state)
+        self.room.run_until(lambda: state.items() <= vars(self.room.logic.progress).items())
 
 
 @pytest.fixture
@@ -208,9 +208,9 @@ def test_a_trial_of_a_step_with_a_procedure_is_started_with_it(lab):
     lab.logic.startTrial("task-1", "desktop", procedure="biopsy")
     lab.room.run_until(lambda: lab.room.sent("StartTask"))
     assert lab.room.sent("StartTask")[0]["procedure"] == "dbs"
-    told = {"phase": "running", "task": "task-1", "mode": "desktop", "trainee": "T001"}
+    state = {"phase": "running", "task": "task-1", "mode": "desktop", "trainee": "T001"}
     for name, is_asked in (("dbs", True), ("biopsy", False)):
-        lab.room.tell(**told, procedure={"name": name})
+        lab.room.tell(**state, procedure={"name": name})
         lab.room.run_until(lambda name=name: lab.room.logic.progress.procedure == name)
         assert (lab.logic.offProtocolSentence() == "") is is_asked
     assert "with the procedure biopsy" in lab.logic.offProtocolSentence()
@@ -284,7 +284,7 @@ def test_a_second_trial_run_counts_from_its_start_even_if_it_lasts_longer(enroll
     assert enrolled.logic.progress().practiced_s == pytest.approx(50.0)
 
 
-def told(lab):
+def sent_step(lab):
     """The last step that was sent to the simulator; empty before."""
     steps = lab.room.sent("StudyStep")
     return steps[-1] if steps else {}
@@ -292,10 +292,10 @@ def told(lab):
 
 def test_the_simulator_is_sent_the_next_step_whenever_it_changes(enrolled):
     room = enrolled.room
-    room.run_until(lambda: told(enrolled).get("questionnaire") == "ssq")
+    room.run_until(lambda: sent_step(enrolled).get("questionnaire") == "ssq")
     enrolled.logic.answer([0] * 16)
-    room.run_until(lambda: told(enrolled)["kind"] == "trial-run")
-    assert told(enrolled) == {
+    room.run_until(lambda: sent_step(enrolled)["kind"] == "trial-run")
+    assert sent_step(enrolled) == {
         "trainee": "T001",
         "kind": "trial-run",
         "number": 2,
@@ -307,7 +307,7 @@ def test_the_simulator_is_sent_the_next_step_whenever_it_changes(enrolled):
     count = len(room.sent("StudyStep"))
     enrolled.trainees.changed.emit()
     enrolled.skip("has practiced in the pilot")
-    room.run_until(lambda: told(enrolled)["kind"] == "trial")
+    room.run_until(lambda: sent_step(enrolled)["kind"] == "trial")
     assert len(room.sent("StudyStep")) == count + 1
 
 
@@ -315,7 +315,7 @@ def test_a_reconnected_simulator_is_sent_the_steps_of_all_trainees(enrolled):
     room = enrolled.room
     enrolled.trainees.create("T002", consent=True)
     enrolled.logic.enroll()
-    room.run_until(lambda: told(enrolled).get("trainee") == "T002")
+    room.run_until(lambda: sent_step(enrolled).get("trainee") == "T002")
     before = len(room.sent("StudyStep"))
     room.link.disconnect()
     room.link.connectTo(port=room.simulator.port)
@@ -324,9 +324,9 @@ def test_a_reconnected_simulator_is_sent_the_steps_of_all_trainees(enrolled):
 
 
 def test_a_deleted_trainee_is_no_longer_in_the_study(enrolled):
-    enrolled.room.run_until(lambda: told(enrolled))
+    enrolled.room.run_until(lambda: sent_step(enrolled))
     enrolled.trainees.delete()
-    enrolled.room.run_until(lambda: told(enrolled) == {"trainee": "T001", "kind": "free"})
+    enrolled.room.run_until(lambda: sent_step(enrolled) == {"trainee": "T001", "kind": "free"})
 
 
 def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_next_step(
@@ -344,15 +344,15 @@ def test_a_trial_of_an_unselected_trainee_counts_and_the_simulator_is_sent_the_n
     )
     enrolled.trainees.study.add_trial(record)
     enrolled.logic.countTrial(TrialRecord.from_json(record))
-    enrolled.room.run_until(lambda: told(enrolled).get("task") == "task-2")
-    assert told(enrolled)["trainee"] == "T001"
+    enrolled.room.run_until(lambda: sent_step(enrolled).get("task") == "task-2")
+    assert sent_step(enrolled)["trainee"] == "T001"
 
 
 def test_a_late_trial_counts_before_the_next_step_is_sent(enrolled, make_record, tmp_path):
     enrolled.logic.answer([0] * 16)
     enrolled.skip("has practiced in the pilot")
     enrolled.trainees.choose("")
-    enrolled.room.run_until(lambda: told(enrolled).get("task") == "task-1")
+    enrolled.room.run_until(lambda: sent_step(enrolled).get("task") == "task-1")
     with Study.open(tmp_path / "study.db") as elsewhere:
         elsewhere.add_trial(
             make_record(
@@ -372,21 +372,21 @@ def test_a_late_trial_counts_before_the_next_step_is_sent(enrolled, make_record,
 
 def answered(lab, **changes):
     """Have the simulator send answers."""
-    told = {"trainee": "T001", "number": 1, "questionnaire": "ssq", "answers": [1] * 16}
-    lab.room.simulator.send_command("StepAnswered", {**told, **changes})
+    answers = {"trainee": "T001", "number": 1, "questionnaire": "ssq", "answers": [1] * 16}
+    lab.room.simulator.send_command("StepAnswered", {**answers, **changes})
 
 
 def test_answers_given_at_the_simulator_are_stored_once_for_whichever_trainee_is_chosen(enrolled):
     enrolled.trainees.choose("")
     answered(enrolled)
     answered(enrolled, answers=[3] * 16)
-    enrolled.room.run_until(lambda: told(enrolled).get("kind") == "trial-run")
+    enrolled.room.run_until(lambda: sent_step(enrolled).get("kind") == "trial-run")
     answered(enrolled, answers=[3] * 16)
     # The first step, and what comes next after each answer.
     enrolled.room.run_until(lambda: len(enrolled.room.sent("StudyStep")) == 4)
     (kept,) = StudyProgress(enrolled.trainees.study).answers()
     assert (kept.trainee, kept.step.name, kept.answers) == ("T001", "hmd/before/ssq", (1,) * 16)
-    assert told(enrolled)["kind"] == "trial-run"
+    assert sent_step(enrolled)["kind"] == "trial-run"
 
 
 @pytest.mark.parametrize(
@@ -410,14 +410,14 @@ def test_answers_that_do_not_belong_to_the_step_are_not_kept(enrolled, wrong):
 def test_a_simulator_that_connects_later_is_sent_the_elapsed_time_of_a_break(lab):
     lab.begin(tasks=["task-1"], questionnaires=[], trialRun={"minutes": 0})
     lab.skip("the headset's battery was empty")
-    lab.room.run_until(lambda: told(lab).get("minutes") == 10.0)
+    lab.room.run_until(lambda: sent_step(lab).get("minutes") == 10.0)
     lab.spend_in_step(4.0)
     lab.room.link.disconnect()
     before = len(lab.room.sent("StudyStep"))
     lab.room.link.connectTo(port=lab.room.simulator.port)
     lab.room.run_until(lambda: len(lab.room.sent("StudyStep")) > before)
-    assert told(lab)["minutes"] == 10.0
-    assert told(lab)["over"] == pytest.approx(4.0, abs=0.5)
+    assert sent_step(lab)["minutes"] == 10.0
+    assert sent_step(lab)["over"] == pytest.approx(4.0, abs=0.5)
 
 
 def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
@@ -429,8 +429,8 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     AbortedTrials(enrolled.trainees.study).add(aborted)
     enrolled.logic.countTrial(AbortedTrial.from_json(aborted))
     room = enrolled.room
-    room.run_until(lambda: told(enrolled).get("kind") == "repeat")
-    assert told(enrolled)["task"] == step.task
+    room.run_until(lambda: sent_step(enrolled).get("kind") == "repeat")
+    assert sent_step(enrolled)["task"] == step.task
     for start in (
         enrolled.logic.startStep,
         lambda: enrolled.logic.startTrial(step.task, step.mode),
@@ -442,7 +442,7 @@ def test_the_simulator_waits_until_an_aborted_trial_has_its_reason(enrolled):
     with pytest.raises(InputError, match="10 to 500"):
         enrolled.logic.explainRepeat("because")
     enrolled.logic.explainRepeat("the fire alarm went off")
-    room.run_until(lambda: told(enrolled)["kind"] == "trial")
+    room.run_until(lambda: sent_step(enrolled)["kind"] == "trial")
     assert enrolled.logic.offProtocolSentence() == ""
 
 
@@ -456,7 +456,7 @@ def test_a_study_trial_is_started_with_the_method_of_its_protocol(lab):
         skin={"task-1": skin},
     )
     assert "by landmarks and a trace" in lab.logic.progress().sentence
-    lab.room.run_until(lambda: told(lab).get("method") == "landmarks-surface")
+    lab.room.run_until(lambda: sent_step(lab).get("method") == "landmarks-surface")
     lab.logic.startStep()
     lab.logic.startTrial("task-1", "desktop", method="fiducials")
     lab.room.run_until(lambda: len(lab.room.sent("StartTask")) == 2)

@@ -93,8 +93,8 @@ def test_a_common_bias_is_scored_and_reported_with_its_direction(scenario, make_
     assert beside.score.measures.common_bias_mm == pytest.approx(1.4)
     assert beside.score.acceptable
     assert beside.score.score < 0.7 * honest.score.score
-    (told,) = [one for one in beside.feedback.advice if one.topic == "common bias"]
-    assert "the touches are 1.4 mm too far to the patient's left" in told.sentence
+    (advice,) = [each for each in beside.feedback.advice if each.topic == "common bias"]
+    assert "the touches are 1.4 mm too far to the patient's left" in advice.sentence
     stored = analyze_trial(TrialRecord.from_json(value), scenario)
     again = stored.scored_as(beside.score, scenario, truth)
     assert again.feedback.advice == beside.feedback.advice

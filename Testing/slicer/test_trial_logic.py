@@ -379,14 +379,14 @@ def test_known_trials_are_acknowledged_and_not_scored_again(lab, make_record, re
 def test_an_invalid_trial_is_refused_before_it_is_scored(lab, make_record, reviews):
     lab.simulator.send_command("TrialCompleted", make_record(TRIAL))
     lab.run_until(lambda: lab.scored)
-    for changes, told in (
+    for changes, message in (
         ({"trial_id": OTHER, "points": []}, "points must be"),
         ({"trial_id": []}, "trialId must be"),
         ({"trial_id": OTHER, "trainee": "T-001 "}, "A pseudonym must be printable text"),
         ({"trial_id": TRIAL, "task": "task-2"}, "Another trial is stored under the UUID"),
     ):
         lab.simulator.send_command("TrialCompleted", make_record(**changes))
-        lab.run_until(lambda told=told: lab.problems and told in lab.problems[-1])
+        lab.run_until(lambda message=message: lab.problems and message in lab.problems[-1])
     assert len(lab.all_sent("AcknowledgeTrial")) == 1
     # Once to register it, once with its truth.
     assert len(reviews) == 2

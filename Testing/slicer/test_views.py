@@ -35,8 +35,8 @@ def place(scene):
 def play(room, follower, point, task="task-1"):
     """Have the simulator send which point is next."""
     room.tell(nextPoint=point, task=task)
-    told = (point, task)
-    room.run_until(lambda: (room.logic.progress.nextPoint, room.logic.progress.task) == told)
+    wanted = (point, task)
+    room.run_until(lambda: (room.logic.progress.nextPoint, room.logic.progress.task) == wanted)
     room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
     follower.process()
 

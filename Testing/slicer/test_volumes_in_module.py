@@ -33,9 +33,9 @@ def refuse_each(host, folder, cases):
         host.choose("scanComboBox", node)
         before = nodes_of(host.scene)
         for button in buttons:
-            told = len(host.messages)
+            count = len(host.messages)
             host.press(button)
-            assert len(host.messages) == told + 1, (name, button)
+            assert len(host.messages) == count + 1, (name, button)
             assert sentence in host.messages[-1].text, (name, button)
             assert host.find("makeScenarioButton").enabled
         assert nodes_of(host.scene) == before, name

@@ -35,7 +35,7 @@ POLL_MS = 50
 SMALL = {"width": 400, "height": 220}
 EYES_M = (0.1, 1.62, 0.2)
 _HAS_REJOINED = "page.poses !== window.posesBefore && page.poses.count > 0"
-"""Whether all is told again that the simulator tells who joins: the state comes last of it."""
+"""Whether all has arrived again that the simulator sends to a new view; the state comes last."""
 
 _EMULATE = """
 ;(() => {
@@ -195,7 +195,7 @@ def leave_headset(page: Page) -> None:
 
 @contextmanager
 def _rejoining(page: Page) -> Iterator[None]:
-    """Wait until a page has joined again: what is pressed or told before goes nowhere."""
+    """Wait until a page has joined again: what is pressed or sent before is lost."""
     page.evaluate("void (window.posesBefore = page.poses)")
     yield
     wait_for(page, _HAS_REJOINED)

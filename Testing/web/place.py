@@ -77,8 +77,8 @@ class Place:
             self.simulator = self._stack.enter_context(process(self.records, *options))
         finally:
             del os.environ["RASTRAINER_VIEW_KEY"]
-        told = SERVES.search(self.simulator.next_line())
-        self.simulator.url, self.simulator.code = told.groups()
+        served = SERVES.search(self.simulator.next_line())
+        self.simulator.url, self.simulator.code = served.groups()
         thread = self._stack.enter_context(LoopThread())
         watcher = self._stack.enter_context(ViewClient(thread, self.simulator.url, key))
         self.view = WatchingView(watcher)
@@ -192,7 +192,7 @@ class Trainee(StreamTrainee):
             page.wait_for_selector("#menu input:focus")
             for typed in accumulate(TRAINEE):
                 page.keyboard.press(typed[-1])
-                self.until(lambda told=typed: self.value("trainee") == told, "the ID")
+                self.until(lambda typed=typed: self.value("trainee") == typed, "the ID")
                 # A field forgets what the simulator was long to answer.
                 wait_for(page, f"document.querySelector('#menu input:focus')?.value === '{typed}'")
             return

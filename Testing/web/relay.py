@@ -38,7 +38,7 @@ class Relay:
         self._thread.__exit__()
 
     def stall(self) -> None:
-        """Pass nothing on, as a wireless network out of reach; nobody is told."""
+        """Pass nothing on, like a wireless network out of reach, without an error."""
         self._thread.call(self._goes.clear)
 
     def resume(self) -> None:

@@ -265,13 +265,13 @@ def test_the_journal_records_mode_headset_rate_and_frames(place, trainee):
     (begun,) = place.entries("header")
     assert begun["mode"] == "hmd"
 
-    def told() -> list[dict]:
-        # Some of what has been told before was told by the page, or before the first picture.
+    def reports_of_headset() -> list[dict]:
+        # Some earlier reports came from the page, or before the first picture.
         reports = place.entries("display")
         return [each for each in reports if each["view"] == "headset" and each["shown"] > 0]
 
-    trainee.until(told, "a report of the headset's frames")
-    report = told()[-1]
+    trainee.until(reports_of_headset, "a report of the headset's frames")
+    report = reports_of_headset()[-1]
     assert (report["device"], report["refreshHz"]) == ("Meta Quest 2", 90)
     assert report["dropped"] >= 0
 

@@ -89,22 +89,22 @@ TRACE = """() => {
 }"""
 
 
-def told(known, points, guidance=NOT_GUIDED):
-    """What the simulator would tell the page, as the page takes it."""
+def take_trace(known, points, guidance=NOT_GUIDED):
+    """Return the script by which the page takes a trace from the simulator."""
     return f"page.take({json.dumps(json.loads(outgoing.trace(known, points, guidance)))})"
 
 
 def test_a_trace_is_marked_painted_and_undone(page):
-    page.evaluate(told(0, [[x, 84.9, -36.7] for x in range(-3, 4)], GUIDED))
+    page.evaluate(take_trace(0, [[x, 84.9, -36.7] for x in range(-3, 4)], GUIDED))
     wait_for(page, "page.trace.ring.visible")
     drawn = page.evaluate(TRACE)
     assert drawn["marks"] == 7
     assert drawn["painted"] > 20
     assert drawn["ring"] == pytest.approx([0.00095, 0.08789, -0.03669], abs=1e-6)
-    page.evaluate(told(7, [[10.0, 84.0, -30.0]], GUIDED))
+    page.evaluate(take_trace(7, [[10.0, 84.0, -30.0]], GUIDED))
     wait_for(page, "page.trace.marks.count === 8")
     assert page.evaluate(TRACE)["painted"] > drawn["painted"]
-    page.evaluate(told(2, []))
+    page.evaluate(take_trace(2, []))
     wait_for(page, "page.trace.marks.count === 2")
     left = page.evaluate(TRACE)
     assert (left["painted"], left["ring"]) == (0, None)
@@ -112,7 +112,7 @@ def test_a_trace_is_marked_painted_and_undone(page):
 
 
 def test_a_page_that_rejoins_forgets_what_it_knew(page):
-    page.evaluate(told(0, [list(NOSE)], GUIDED))
+    page.evaluate(take_trace(0, [list(NOSE)], GUIDED))
     wait_for(page, "page.trace.marks.count === 1")
     page.evaluate("page.connection.rejoin({ kind: 'page', device: '', refreshHz: 0 })")
     wait_for(page, "page.trace.marks.count === 0")

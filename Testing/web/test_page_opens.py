@@ -29,12 +29,12 @@ TRY_TO_JOIN = """(url) => new Promise((done) => {
 })"""
 
 NOTE_LOADING = """
-window.told = [];
+window.notes = [];
 addEventListener("DOMContentLoaded", () => {
   const place = document.getElementById("loading");
   const note = () => {
     const bar = place.querySelector("progress");
-    if (!place.hidden) told.push([place.textContent, bar.value, bar.max]);
+    if (!place.hidden) notes.push([place.textContent, bar.value, bar.max]);
   };
   new MutationObserver(note).observe(place, { attributes: true, childList: true, subtree: true });
 });
@@ -86,7 +86,7 @@ def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, way
     stranger.press("#code", "Enter")
     stranger.wait_for_selector("body[data-scene]")
     assert stranger.evaluate("window.isSecureContext")
-    # Only the views of this computer are told how others are paired.
+    # Only the views of this computer learn how others are paired.
     if way == "loopback":
         stranger.wait_for_selector(f"#status:has-text('{place.simulator.code}')")
     text = stranger.inner_text("#status")
@@ -164,11 +164,11 @@ def test_the_scene_shows_how_much_of_it_has_loaded(place, stranger):
     stranger.goto(address(place))
     stranger.wait_for_selector("body[data-scene]")
     stranger.wait_for_selector("#loading", state="hidden")
-    told = stranger.evaluate("told")
-    assert all(text.startswith("Loading the scene: ") for text, _loaded, _total in told)
-    (total,) = {total for _text, _loaded, total in told}
+    notes = stranger.evaluate("notes")
+    assert all(text.startswith("Loading the scene: ") for text, _loaded, _total in notes)
+    (total,) = {total for _text, _loaded, total in notes}
     assert 1e6 < total < 5e6
-    loaded = [loaded for _text, loaded, _total in told]
+    loaded = [loaded for _text, loaded, _total in notes]
     assert loaded == sorted(loaded)
     assert loaded[0] < loaded[-1] == total
 

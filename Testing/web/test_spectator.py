@@ -84,7 +84,7 @@ def opened(browser, served):
 
 @pytest.fixture
 def page(opened, served):
-    """The page of somebody who watches, at a menu, of whom the simulator has been told nothing."""
+    """The page of a spectator, at a menu, of whom the simulator has not heard."""
     served.presenter.calls.clear()
     served.presenter.screen = SCREEN
     served.tell(SCREEN)
@@ -213,12 +213,12 @@ def test_a_headset_is_mirrored_and_its_leaving_pauses_even_if_somebody_watches(t
         trainee.begin("task-1", headset)
         page = open_page(browser, url, f"{code}&role=spectator")
         wait_for(page, "page.state?.wearer != null")
-        told = page.evaluate("page.state.wearer")
-        assert told["left"] is not None
-        assert told["right"] is not None
+        wearer = page.evaluate("page.state.wearer")
+        assert wearer["left"] is not None
+        assert wearer["right"] is not None
         before = pixels(page)
         headset.evaluate("device.quaternion.set(0, Math.sin(0.2), 0, Math.cos(0.2)); frames_(3)")
-        wait_for(page, f"Math.abs(page.state.wearer.eyes[3] - {told['eyes'][3]}) > 0.01")
+        wait_for(page, f"Math.abs(page.state.wearer.eyes[3] - {wearer['eyes'][3]}) > 0.01")
         trainee.until(lambda: np.abs(pixels(page) - before).mean() > 5.0, "another picture")
         headset.evaluate("device.updateVisibilityState('hidden')")
         wait_for(page, "page.state.wearer === null")

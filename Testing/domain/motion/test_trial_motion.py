@@ -85,8 +85,8 @@ def test_detours_lower_the_path_efficiency(trajectory):
 def test_a_part_of_a_trial_and_an_unmeasured_task_have_no_path_efficiency(trajectory):
     part = whole(trajectory, touches=trajectory.touches[:3])
     unmeasured = replace(whole(trajectory), shortest_path_mm=None)
-    for told in (part, unmeasured):
-        assert "path_efficiency" not in trial_motion(told)
+    for incomplete in (part, unmeasured):
+        assert "path_efficiency" not in trial_motion(incomplete)
 
 
 def test_tremor_lowers_smoothness(trajectory):
@@ -124,7 +124,7 @@ def test_throughput_and_wrong_touches_need_known_fiducials(trajectory):
         Touch("2", (50.0, 0.0, 0.0), 4.1),
         Touch("2", (89.0, 0.0, 0.0), 4.2),
     )
-    told = Trajectory(
+    with_refused = Trajectory(
         trajectory.times_s,
         trajectory.tip_mm,
         trajectory.clearance_mm,
@@ -132,7 +132,7 @@ def test_throughput_and_wrong_touches_need_known_fiducials(trajectory):
         refused=refused,
         fiducials_mm=known,
     )
-    motion = trial_motion(told)
+    motion = trial_motion(with_refused)
     assert motion["throughput_bit_s"] > 1.0
     assert (motion["refused_touches"], motion["wrong_order_touches"]) == (3, 1)
 

@@ -174,7 +174,7 @@ def test_misfit_to_the_stated_errors_is_seldom_a_false_alarm(sets):
 
 
 @pytest.mark.parametrize(
-    ("weights", "kind", "told"),
+    ("weights", "kind", "message"),
     [
         (np.ones(3), "rigid", "There must be 12 weights"),
         ([*[1.0] * 11, 0.0], "rigid", "weight of point 12 must be a number above 0"),
@@ -185,8 +185,8 @@ def test_misfit_to_the_stated_errors_is_seldom_a_false_alarm(sets):
     ],
     ids=["few", "zero", "none", "far apart", "words", "affine"],
 )
-def test_invalid_weights_are_refused_with_a_message(weights, kind, told):
-    with pytest.raises(InputError, match=told):
+def test_invalid_weights_are_refused_with_a_message(weights, kind, message):
+    with pytest.raises(InputError, match=message):
         register(fiducials(), fiducials(), kind, weights=weights)
 
 
@@ -251,7 +251,7 @@ def test_the_command_takes_weights_by_label_in_any_order(files, capsys):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("label,fle\np0,1\n", "has no fle for point p1, p2"),
         ("label,fle\np0,1\np0,2\n", "two rows for point 'p0'"),
@@ -261,13 +261,15 @@ def test_the_command_takes_weights_by_label_in_any_order(files, capsys):
     ],
     ids=["missing", "doubled", "too few", "zero", "header"],
 )
-def test_a_file_that_does_not_match_the_points_is_refused_with_a_message(files, capsys, text, told):
+def test_a_file_that_does_not_match_the_points_is_refused_with_a_message(
+    files, capsys, text, message
+):
     moving, fixed, *_ = files
     path = moving.with_name("fle.csv")
     path.write_text(text)
     status, out = run(capsys, moving, fixed, "--fle", path)
     assert status != 0
-    assert told in out.err
+    assert message in out.err
 
 
 def test_weights_are_refused_for_nonrigid_fits(files, capsys):

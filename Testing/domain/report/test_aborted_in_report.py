@@ -92,9 +92,9 @@ def test_an_aborted_trial_counts_as_not_passed_in_the_lc_cusum():
     assert f"12 12 (100 %) 1 of 1 {shown_at} 0" in words_of(report_html(whole))
     with_one = replace(whole, aborted=(aborted(900, 9), aborted(901, 10, task="trial-run")))
     later = competence_of([False, True, *[False] * 11]).competent_at
-    told = "–" if later is None else later
+    shown_later = "–" if later is None else later
     competent = 0 if later is None else 1
-    assert f"13 12 (92 %) {competent} of 1 {told} 1" in words_of(report_html(with_one))
+    assert f"13 12 (92 %) {competent} of 1 {shown_later} 1" in words_of(report_html(with_one))
 
 
 def test_aborted_trials_and_their_touches_are_exported(path):

@@ -433,15 +433,17 @@ def test_a_report_explains_the_score_of_its_version():
 
 
 @pytest.mark.parametrize(
-    ("version", "told"), [("3", "scores of version 3"), ("", "scores of an unknown version")]
+    ("version", "mismatch"), [("3", "scores of version 3"), ("", "scores of an unknown version")]
 )
-def test_a_pass_mark_for_another_score_version_passes_nobody_and_the_report_says_so(version, told):
+def test_a_pass_mark_for_another_score_version_passes_nobody_and_the_report_says_so(
+    version, mismatch
+):
     published = read_study_protocol(STUDIES / "published-protocol.json")
     protocol = replace(published, pass_mark=65.0, score_version="2")
     rows = tuple(scored("A", number, 80.0, version) for number in range(1, 31))
     words = words_of(report_html(StudyData("One", rows, protocol=protocol)))
     assert "pass mark of 65 points was set for score version 2, and these trials have " in words
-    assert f"{told}. The two do not compare" in words
+    assert f"{mismatch}. The two do not compare" in words
     assert "30 (100 %)" not in words
     assert "LC-CUSUM of every trainee" not in words
 

@@ -1,4 +1,4 @@
-"""Estimates of the variation of trials are unbiased, and told with their intervals.
+"""Estimates of the variation of trials are unbiased, and reported with their intervals.
 
 How often the intervals contain the truth is among the error rates.
 """

@@ -287,8 +287,8 @@ def test_a_choice_is_exported_and_deleted_with_its_trainee(study, tmp_path):
     store = CurriculumStore(study)
     store.choose(Curriculum("c", "C", (ONE,)), "A")
     export_trainee(study, "A", tmp_path / "a.json")
-    (told,) = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["curricula"]
-    assert told["curriculum"]["name"] == "c"
+    (exported,) = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["curricula"]
+    assert exported["curriculum"]["name"] == "c"
     study.delete_trainee("A")
     assert store.choices() == ()
 
@@ -371,7 +371,7 @@ def test_what_slicer_sends_to_the_simulator_arrives_unchanged_and_fits_into_a_me
 
 
 @pytest.mark.parametrize(
-    "told",
+    "changes",
     [
         {"name": "x" * 41},
         {"state": "won"},
@@ -387,11 +387,11 @@ def test_what_slicer_sends_to_the_simulator_arrives_unchanged_and_fits_into_a_me
         {"task": "\n"},
         {"more": 1},
     ],
-    ids=lambda told: json.dumps(told)[:30],
+    ids=lambda changes: json.dumps(changes)[:30],
 )
-def test_a_hostile_message_is_refused(told):
+def test_a_hostile_message_is_refused(changes):
     good = CurriculumMessage.of("A", stand([])).arguments()
-    bad = {**good, "assignments": [{**good["assignments"][0], **told}]}
+    bad = {**good, "assignments": [{**good["assignments"][0], **changes}]}
     with pytest.raises(InputError):
         check_arguments(CommandName.CURRICULUM, bad)
 

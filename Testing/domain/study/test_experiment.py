@@ -164,7 +164,7 @@ def test_every_step_survives_the_study_step_command(study):
         kinds.add(step.kind)
         if step.kind == ALL_DONE:
             break
-        progress.skip("T001", progress.progress("T001").next_step.name, "only told of in this test")
+        progress.skip("T001", progress.progress("T001").next_step.name, "only sent in this test")
     assert kinds == {*(kind.value for kind in StepKind), ALL_DONE}
     free = StudyStep("T001")
     assert (
@@ -215,8 +215,8 @@ def test_a_protocol_may_require_the_tutorial_before_each_trial_run_or_skip_it():
     assert study_protocol_from_json(own.to_json()) == own
     steps = [step for step in steps_for(own, 0) if step.tutorial]
     assert {(step.kind, step.tutorial) for step in steps} == {("trial-run", "skipped")}
-    told = StudyStep("P07", "trial-run", tutorial="skipped").arguments()
-    assert StudyStep.from_arguments(check_arguments("StudyStep", told)).tutorial == "skipped"
+    sent = StudyStep("P07", "trial-run", tutorial="skipped").arguments()
+    assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).tutorial == "skipped"
     with pytest.raises(InputError, match="tutorial must be one of required, optional, skipped"):
         protocol(tutorial="short")
 
@@ -230,8 +230,8 @@ def test_a_protocol_may_name_a_procedure_for_the_trials_of_a_task():
         ("trial", "task-1", "dbs")
     }
     assert "Task 1 with the procedure dbs" in steps[0].sentence
-    told = StudyStep("P07", "trial", task="task-1", procedure="dbs").arguments()
-    assert StudyStep.from_arguments(check_arguments("StudyStep", told)).procedure == "dbs"
+    sent = StudyStep("P07", "trial", task="task-1", procedure="dbs").arguments()
+    assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).procedure == "dbs"
     with pytest.raises(InputError, match=r"procedures.task-9 must be one of the study's tasks"):
         protocol(procedures={"task-9": "dbs"})
     with pytest.raises(InputError, match=r"procedures.task-1 must be"):
@@ -407,10 +407,10 @@ def test_a_protocol_may_set_how_the_trials_of_a_task_are_registered():
         ("task-4", "fiducials"),
         ("task-5", "fiducials"),
     }
-    told = {step.task: step.sentence for step in trials}
-    assert told["task-2"].startswith("Play Task 2 by a trace over the skin ")
-    assert told["task-3"].startswith("Play Task 3 by landmarks of the face ")
-    assert told["task-4"].startswith("Play Task 4 ")
+    sentences = {step.task: step.sentence for step in trials}
+    assert sentences["task-2"].startswith("Play Task 2 by a trace over the skin ")
+    assert sentences["task-3"].startswith("Play Task 3 by landmarks of the face ")
+    assert sentences["task-4"].startswith("Play Task 4 ")
     sent = StudyStep("P07", "trial", task="task-2", method="surface").arguments()
     assert StudyStep.from_arguments(check_arguments("StudyStep", sent)).method == "surface"
     with pytest.raises(InputError, match=r"methods.task-9 must be one of the study's tasks"):

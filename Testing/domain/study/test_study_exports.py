@@ -37,8 +37,10 @@ def test_every_answer_and_every_score_is_a_row(data):
     assert [row["item"] for row in before] == [item.name for item in SSQ.items]
     assert {(row["trainee"], row["mode"], row["answer"]) for row in before} == {("A", "hmd", "1")}
     assert len(items) == sum(len(answered.answers) for answered in data.answers)
-    told = {row["scale"]: float(row["score"]) for row in scores if row["step"] == "hmd/before/ssq"}
-    assert told == SSQ.score([1] * 16)
+    exported = {
+        row["scale"]: float(row["score"]) for row in scores if row["step"] == "hmd/before/ssq"
+    }
+    assert exported == SSQ.score([1] * 16)
 
 
 def test_every_answered_questionnaire_is_a_statement_with_its_scores(data):
@@ -77,9 +79,9 @@ def test_a_score_is_exported_with_its_parts(data):
         for part in ("time", "accuracy", "safety"):
             assert 0 <= float(row[f"score_{part}_desirability"]) <= 1
         assert float(row["score_reference_time_s"]) > 0
-    told = statements(data)[data.trials.index(with_score[0])]["result"]["extensions"]
+    extensions = statements(data)[data.trials.index(with_score[0])]["result"]["extensions"]
     key = f"{HOME_PAGE}/xapi/values/score_tre_mm"
-    assert told[key] == with_score[0].values["score_tre_mm"]
+    assert extensions[key] == with_score[0].values["score_tre_mm"]
 
 
 def test_a_score_of_the_first_version_is_exported_without_later_measures(tmp_path):
@@ -116,14 +118,14 @@ def test_a_trials_statement_has_success_and_completion_time(data):
     )
     unscored = replace(third, values={"completion_time_s": 110.0})
     protocol = replace(data.protocol, pass_mark=80.0)
-    told = statements(
+    exported = statements(
         replace(data, trials=(first, second, third, unscored), protocol=protocol, answers=())
     )
-    assert [s["result"].get("success") for s in told] == [True, False, False, None]
-    assert {s["version"] for s in told} == {"1.0.0"}
-    assert {s["timestamp"] for s in told} == {"2026-01-01T10:01:50Z"}
-    assert {s["result"]["duration"] for s in told} == {"PT110.00S"}
-    context = told[0]["context"]["extensions"]
+    assert [s["result"].get("success") for s in exported] == [True, False, False, None]
+    assert {s["version"] for s in exported} == {"1.0.0"}
+    assert {s["timestamp"] for s in exported} == {"2026-01-01T10:01:50Z"}
+    assert {s["result"]["duration"] for s in exported} == {"PT110.00S"}
+    context = exported[0]["context"]["extensions"]
     assert context[f"{HOME_PAGE}/xapi/started"] == "2026-01-01T10:00:00Z"
     assert context[f"{HOME_PAGE}/xapi/pass-mark"] == 80.0
 
@@ -132,10 +134,10 @@ def test_a_statement_has_no_success_without_a_pass_mark_for_its_score_version(da
     earlier = replace(data.protocol, pass_mark=80.0, score_version="2")
     old = tuple(replace(trial, score_version="2") for trial in data.trials[:1])
     trials = (*old, *data.trials)
-    told = statements(replace(data, trials=trials, protocol=earlier, answers=(), aborted=()))
-    assert ["success" in one["result"] for one in told] == [True] + [False] * len(data.trials)
-    assert all("score" in one["result"] for one in told[1:])
-    for one in told[1:]:
+    exported = statements(replace(data, trials=trials, protocol=earlier, answers=(), aborted=()))
+    assert ["success" in one["result"] for one in exported] == [True] + [False] * len(data.trials)
+    assert all("score" in one["result"] for one in exported[1:])
+    for one in exported[1:]:
         assert f"{HOME_PAGE}/xapi/pass-mark" not in one["context"]["extensions"]
 
 

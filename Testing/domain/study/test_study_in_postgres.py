@@ -376,7 +376,7 @@ def test_a_study_is_copied_there_and_back_to_the_last_bit(place, tmp_path, capsy
 
 
 @pytest.mark.parametrize(
-    ("words", "status", "told"),
+    ("words", "status", "printed"),
     [
         (("pass-mark", "--novices", "A", "--experts", "B"), 2, "scored trials, and 3 are needed"),
         (("compare-methods",), 2, "lie on one line"),
@@ -386,12 +386,12 @@ def test_a_study_is_copied_there_and_back_to_the_last_bit(place, tmp_path, capsy
     ids=lambda value: value[0] if isinstance(value, tuple) else "",
 )
 def test_every_command_that_takes_a_study_takes_an_address(
-    words, status, told, place, tmp_path, monkeypatch, capsys
+    words, status, printed, place, tmp_path, monkeypatch, capsys
 ):
     study_with_trials(place)
     monkeypatch.chdir(tmp_path)
     assert main([words[0], str(place), *words[1:]]) == status
-    assert told in "".join(capsys.readouterr())
+    assert printed in "".join(capsys.readouterr())
 
 
 def test_a_study_is_copied_only_into_an_empty_one(place, tmp_path, capsys):
@@ -438,17 +438,17 @@ def test_a_password_is_found_in_its_file_and_shown_nowhere(own_server, tmp_path)
     passwords = tmp_path / "pgpass"
     environment = {"PGPASSFILE": str(passwords), "PATH": "/usr/bin", "HOME": str(tmp_path)}
 
-    def told():
+    def output():
         done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
         assert "hunter" not in done.stdout + done.stderr
         return done.stdout + done.stderr
 
-    assert "asks for a password; put it into ~/.pgpass" in told()
+    assert "asks for a password; put it into ~/.pgpass" in output()
     passwords.write_text(f"127.0.0.1:{own_server.port}:*:seat:hunter3\n")
     passwords.chmod(0o600)
-    assert "refuses this user" in told()
+    assert "refuses this user" in output()
     passwords.write_text(f"127.0.0.1:{own_server.port}:*:seat:hunter2\n")
-    assert "each compared with its original" in told()
+    assert "each compared with its original" in output()
 
 
 def test_another_computer_is_reached_only_over_tls(own_server, tmp_path):

@@ -43,9 +43,9 @@ def test_the_interval_of_a_proportion_is_wilsons(count, total):
 
 
 def test_a_chart_of_few_trials_is_drawn_with_a_note():
-    told = TreCalibration.of([point(0.3), point(0.4)], without_truth=3).sentences()
-    assert "2 of 2 true errors" in told[0]
-    assert told[1:] == [
+    sentences = TreCalibration.of([point(0.3), point(0.4)], without_truth=3).sentences()
+    assert "2 of 2 true errors" in sentences[0]
+    assert sentences[1:] == [
         "2 trials can say nothing about a share.",
         "3 trials have no true target error and cannot be shown.",
     ]
@@ -55,8 +55,8 @@ def test_a_chart_of_few_trials_is_drawn_with_a_note():
 
 
 def test_older_intervals_without_a_common_offset_are_counted():
-    told = TreCalibration.of([point(0.3), point(0.4, allows_for_offset=False)]).sentences()
-    assert any("1 of the intervals" in sentence for sentence in told)
+    sentences = TreCalibration.of([point(0.3), point(0.4, allows_for_offset=False)]).sentences()
+    assert any("1 of the intervals" in sentence for sentence in sentences)
 
 
 def test_the_report_counts_missing_errors_and_separates_modes():

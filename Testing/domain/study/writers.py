@@ -48,14 +48,14 @@ class KilledWriter:
 
     def __init__(self, path, first):
         context = multiprocessing.get_context("fork")
-        self._told, telling = os.pipe()
-        self._process = context.Process(target=write_until_killed, args=(path, first, telling))
+        self._receiving, sending = os.pipe()
+        self._process = context.Process(target=write_until_killed, args=(path, first, sending))
         self._process.start()
-        os.close(telling)
+        os.close(sending)
 
     def kill(self):
         """Kill it and return the numbers of the trials reported as stored."""
         self._process.kill()
         self._process.join()
-        with os.fdopen(self._told) as lines:
+        with os.fdopen(self._receiving) as lines:
             return {int(line) for line in lines}

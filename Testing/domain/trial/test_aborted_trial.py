@@ -124,8 +124,8 @@ def test_deleting_a_trainee_deletes_aborted_trials_for_good(study, tmp_path):
 def test_the_export_of_a_trainee_has_the_aborted_trials(study, tmp_path):
     AbortedTrials(study).add(make_aborted())
     assert export_trainee(study, "T-001", tmp_path / "all.json") == 0
-    told = json.loads((tmp_path / "all.json").read_text())["aborted_trials"]
-    assert [(each["record"]["reason"], len(each["record"]["points"])) for each in told] == [
+    exported = json.loads((tmp_path / "all.json").read_text())["aborted_trials"]
+    assert [(each["record"]["reason"], len(each["record"]["points"])) for each in exported] == [
         ("trainee", 3)
     ]
 

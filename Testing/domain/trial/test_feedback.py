@@ -149,9 +149,9 @@ def test_a_bias_explained_by_scatter_is_not_reported():
     score = gentle_score(110.0, 0.5, common_bias_mm=0.8)
     by_chance = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.2))
     assert "common bias" not in [one.topic for one in by_chance]
-    told, *others = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.01))
-    assert (told.topic, tuple(others)) == ("common bias", by_chance)
-    assert told.gain == pytest.approx(gentle_score(110.0, 0.5).score - score.score)
+    advice, *others = advise(score, EVEN, {}, CommonBias((0.8, 0.0, 0.0), p=0.01))
+    assert (advice.topic, tuple(others)) == ("common bias", by_chance)
+    assert advice.gain == pytest.approx(gentle_score(110.0, 0.5).score - score.score)
 
 
 def test_the_score_sentences_state_the_common_bias_and_its_limit():
@@ -228,11 +228,12 @@ def test_competence_is_shown_by_passed_trials_in_the_same_mode():
     assert progress.competence.competent_at is not None
     assert progress.competence.false_discovery <= 0.05
     assert "shown competence since number" in progress.sentences[2]
-    long = [past(i, 80.0) for i in range(100)]
-    told = progress_of(long, long[-1].trial_id, pass_mark=60.0)
-    assert told.competence.false_discovery > 0.05
-    risk = f"{100 * told.competence.false_discovery:.0f} % get this far by chance within 100 trials"
-    assert risk in told.sentences[2]
+    hundred = [past(i, 80.0) for i in range(100)]
+    progress = progress_of(hundred, hundred[-1].trial_id, pass_mark=60.0)
+    assert progress.competence.false_discovery > 0.05
+    percent = 100 * progress.competence.false_discovery
+    risk = f"{percent:.0f} % get this far by chance within 100 trials"
+    assert risk in progress.sentences[2]
     other = [past(i, 80.0, mode="hmd") for i in range(19)] + [past(19, 80.0)]
     assert progress_of(other, other[-1].trial_id, 60.0).competence.competent_at is None
 

@@ -70,13 +70,13 @@ def test_the_outcome_of_a_procedure_is_submitted_with_the_score(record):
     analysis = analyze_trial(record, SCENARIO, truth=REVEALED)
     arguments = json.loads(json.dumps(score_arguments(analysis)))
     check_arguments(CommandName.TRIAL_SCORED, arguments)
-    told = arguments["details"]["procedure"]
-    assert told["score"] == analysis.procedure.score.score
-    assert told["scoreVersion"] == "procedure-1"
-    assert [each["name"] for each in told["trajectories"]] == [
+    submitted = arguments["details"]["procedure"]
+    assert submitted["score"] == analysis.procedure.score.score
+    assert submitted["scoreVersion"] == "procedure-1"
+    assert [each["name"] for each in submitted["trajectories"]] == [
         each.name for each in SCENARIO.procedure("seeg").trajectories
     ]
-    first, errors = told["trajectories"][0], analysis.procedure.analysis.trajectories[0]
+    first, errors = submitted["trajectories"][0], analysis.procedure.analysis.trajectories[0]
     assert first["targetMm"] == errors.target.length_mm
     assert first["keptMm"] == min(errors.kept_mm.values()) == errors.kept_mm[first["nearest"]]
 

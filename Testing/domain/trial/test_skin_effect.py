@@ -1,4 +1,4 @@
-"""What a shift of the skin did to a trial is told after it, stored, exported and reported."""
+"""What a shift of the skin did to a trial is said after it, stored, exported and reported."""
 
 from dataclasses import replace
 
@@ -68,15 +68,15 @@ def test_the_error_without_the_shift_is_computed_from_the_points_moved_back(scen
 def test_one_sentence_tells_what_the_shift_was_and_what_it_did(scenario):
     analysis, truth = scored(scenario, SKIN)
     assert truth.true_tre_mm > 0.5
-    (told,) = analysis.feedback.skin_sentences
-    assert told == (
+    (sentence,) = analysis.feedback.skin_sentences
+    assert sentence == (
         "The skin had shifted by 4.0 mm (RMS) and was indented by 0.5 mm: the true error at the "
         f"target was {truth.true_tre_mm:.2f} mm, and would have been "
         f"{analysis.score.unshifted_tre_mm:.2f} mm without that."
     )
     first = score_arguments(analysis)["details"]["feedback"][0]
-    assert (first["key"], first["text"]) == ("skin and error", told)
-    assert told in analysis.feedback.sentences
+    assert (first["key"], first["text"]) == ("skin and error", sentence)
+    assert sentence in analysis.feedback.sentences
 
 
 def test_unshifted_skin_leaves_score_and_record_unchanged(scenario):

@@ -68,13 +68,13 @@ def keep_panel(folder: Path) -> CurriculumMessage:
     host.find("curriculumCollapsibleButton").grab().save(str(picture))
     reduce_colors(picture)
     with Study.open_for_reading(path) as study:
-        told = CurriculumMessage.of("T001", CurriculumStore(study).standing("T001"))
+        message = CurriculumMessage.of("T001", CurriculumStore(study).standing("T001"))
     host.close()
-    return told
+    return message
 
 
-def keep_seat(folder: Path, told: CurriculumMessage) -> None:
-    """Keep the page of a simulator that was told this."""
+def keep_seat(folder: Path, message: CurriculumMessage) -> None:
+    """Keep a picture of a simulator's page that shows this curriculum."""
     config = folder / "records-config"
     config.mkdir()
     (config / "preferences.json").write_text(json.dumps({"order": "any"}))
@@ -85,7 +85,7 @@ def keep_seat(folder: Path, told: CurriculumMessage) -> None:
         Client(port=simulator.port) as slicer,
     ):
         slicer.send_command("Hello", hello, timeout=60)
-        slicer.send_command("Curriculum", told.arguments(), timeout=60)
+        slicer.send_command("Curriculum", message.arguments(), timeout=60)
         browser = launch(playwright)
         page = open_page(browser, simulator.url, simulator.code, size=SIZE)
         for item, menu in (
@@ -95,7 +95,7 @@ def keep_seat(folder: Path, told: CurriculumMessage) -> None:
         ):
             page.click(f"[data-name='{item}']")
             page.wait_for_selector(f"body[data-menu='{menu}']")
-        page.fill("[data-name='trainee'] input", told.trainee)
+        page.fill("[data-name='trainee'] input", message.trainee)
         page.click("[data-name='assignments']")
         page.wait_for_selector("body[data-menu='assignments']")
         page.evaluate("page.stage.setQuality('high'); frames_(4)")

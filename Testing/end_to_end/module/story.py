@@ -61,7 +61,7 @@ class Story:
         host.press("startSimulatorButton")
         self.wait_until_connected()
         wanted = "computes the robot's kinematics"
-        host.wait_until(lambda: wanted in host.text("programText"), "it is told by what")
+        host.wait_until(lambda: wanted in host.text("programText"), "the kinematics are named")
 
     def create_trainee(self) -> None:
         host = self.host
@@ -166,7 +166,7 @@ class Story:
         replay = host.scene.GetFirstNodeByName(f"Replay of {TRAINEE}, task-1")
         assert replay.GetNumberOfItems() > 100
         host.press("worstTouchButton")
-        host.wait_until(lambda: "clearance" in host.text("replayText"), "the replay is told")
+        host.wait_until(lambda: "clearance" in host.text("replayText"), "the replay is described")
 
     def export(self) -> None:
         host = self.host
@@ -246,7 +246,7 @@ class Story:
         """End the simulator's process as a crash would; the module notices it."""
         host = self.host
         os.kill(int(self._pid_file.read_text()), signal.SIGKILL)
-        host.wait_until(lambda: "ended by itself" in host.text("programText"), "the end is told")
+        host.wait_until(lambda: "ended by itself" in host.text("programText"), "its end is shown")
         host.wait_until(lambda: not host.text("stateText").startswith("Connected"), "the link, too")
 
     def _touch(self, first: int, last: int) -> None:

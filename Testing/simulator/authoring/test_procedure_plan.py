@@ -188,12 +188,12 @@ def test_a_scenario_without_a_skull_accepts_no_procedure(copy, own_procedure, tm
 
 
 def test_the_planned_lines_are_measured_in_a_table_and_a_file(copy, tmp_path, capsys):
-    told = tmp_path / "lines.json"
-    assert main(["scenario", "lines", str(copy), "--json", str(told)]) == 0
+    path = tmp_path / "lines.json"
+    assert main(["scenario", "lines", str(copy), "--json", str(path)]) == 0
     printed = capsys.readouterr().out.splitlines()
     assert printed[1].startswith("line  ")
     assert printed[2].startswith("Left subthalamic nucleus")
     assert printed[2].endswith("yes")
-    (measured,) = json.loads(told.read_text(encoding="utf-8"))
+    (measured,) = json.loads(path.read_text(encoding="utf-8"))
     assert [line["isHeld"] for line in measured["lines"]] == [True, True]
     assert measured["wrong"] == []

@@ -70,8 +70,8 @@ def test_the_first_planned_target_is_the_one_whose_error_is_reported(planning):
 
 def test_a_target_outside_the_head_is_reported(planning):
     outside = replace(planning.scenario, target_position=np.array([0.0, -100.0, 95.0]))
-    told = check_plan(PlanningSetup(outside, planning.mesh))
-    assert any("Tumor is" in sentence and "outside of the head" in sentence for sentence in told)
+    found = check_plan(PlanningSetup(outside, planning.mesh))
+    assert any("Tumor is" in sentence and "outside of the head" in sentence for sentence in found)
 
 
 def moved(task, index, point):

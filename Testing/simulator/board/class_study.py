@@ -62,7 +62,7 @@ def _play(
 ) -> None:
     """Store a scored trial, the trainee's `number`-th; three are played on each second day."""
     started = (FIRST_DAY + timedelta(days=2 * (number // 3), minutes=4 * (number % 3))).isoformat()
-    told = make_record(
+    value = make_record(
         trialId=str(uuid.UUID(int=rng.getrandbits(128))),
         trainee=name,
         task=assignment.task,
@@ -71,8 +71,8 @@ def _play(
     )
     version = score_version(RegistrationMethod(assignment.method))
     score = replace(gentle_score(seconds, 0.25), version=version)
-    record = TrialRecord.from_json(told)
-    study_trials.add(connection, record, told)
+    record = TrialRecord.from_json(value)
+    study_trials.add(connection, record, value)
     study_trials.add_results(connection, record.trial_id, (), {}, score)
 
 

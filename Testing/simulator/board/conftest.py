@@ -23,7 +23,7 @@ class WatchedSimulator:
     """A view server of the local network.
 
     Attributes:
-        served: it, with what its presenter was told.
+        served: the server, with its presenter's calls.
         address: by TLS.
         fingerprint: of its certificate.
         config: its folder of settings.

@@ -113,10 +113,10 @@ def test_a_study_is_registered_by_every_method_that_its_trials_allow(
         study.set_truth(record["trialId"], 1.0, pose.ravel().tolist())
     words = ["compare-methods", str(tmp_path / "study.db"), "--scenario", str(landmarked)]
     assert main([*words, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)["methods"]
-    assert list(told) == ["landmarks", "surface", "landmarks-surface"]
-    assert told["landmarks-surface"]["true_tre_mm"] < 0.2 < told["landmarks"]["true_tre_mm"]
-    assert told["surface"]["expected_tre_mm"] < told["landmarks"]["expected_tre_mm"]
+    methods = json.loads(capsys.readouterr().out)["methods"]
+    assert list(methods) == ["landmarks", "surface", "landmarks-surface"]
+    assert methods["landmarks-surface"]["true_tre_mm"] < 0.2 < methods["landmarks"]["true_tre_mm"]
+    assert methods["surface"]["expected_tre_mm"] < methods["landmarks"]["expected_tre_mm"]
 
 
 @pytest.mark.parametrize(
@@ -153,9 +153,9 @@ def test_a_match_is_reported_with_units_and_a_note_that_its_residual_is_not_its_
     files, landmarked, capsys
 ):
     assert matched(files, landmarked) == 0
-    told = capsys.readouterr().out
-    assert "mm expected at" in told
-    assert "does not mean a small error" in told
+    printed = capsys.readouterr().out
+    assert "mm expected at" in printed
+    assert "does not mean a small error" in printed
 
 
 def few(trace):
@@ -183,9 +183,9 @@ def test_a_trace_that_cannot_be_matched_is_reported_in_one_sentence(
 ):
     write_point_cloud(files / "trace.ply", spoil(traced[2]), "World")
     assert matched(files, landmarked) == 2
-    told = capsys.readouterr().err
-    assert said in told
-    assert told.count("\n") == 1
+    printed = capsys.readouterr().err
+    assert said in printed
+    assert printed.count("\n") == 1
 
 
 def test_an_open_or_foreign_mesh_is_reported_in_one_sentence(files, landmarked, capsys):

@@ -1,4 +1,4 @@
-"""The procedures of the default head, carried out by the simulated robot and told by the truth."""
+"""The procedures of the default head, carried out by the simulated robot, against the truth."""
 
 import numpy as np
 import pytest

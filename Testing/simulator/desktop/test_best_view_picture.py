@@ -56,11 +56,11 @@ def inbox(setup):
     inbox = Inbox()
     inbox.bodies, inbox.screen, inbox.problem = outgoing.BODIES, Screen(), ""
     content = scene_glb(setup.scenario, setup.robot, setup.scenario.task(TASK))
-    told = json.loads(outgoing.scene("0" * 64, setup.scenario, TASK, AxesChoice.CAMERA))
+    message = json.loads(outgoing.scene("0" * 64, setup.scenario, TASK, AxesChoice.CAMERA))
     inbox.scene = LoadedScene(
         read_parts(content, outgoing.BODIES),
-        {name: Viewpoint.from_json(value) for name, value in told["cameras"].items()},
-        told["fiducials"],
+        {name: Viewpoint.from_json(value) for name, value in message["cameras"].items()},
+        message["fiducials"],
     )
     return inbox
 

@@ -53,7 +53,7 @@ def _at_once():
 
 
 class Outside:
-    """What the presenter is told of the process around it."""
+    """What the presenter knows of the process around it."""
 
     def __init__(self, folder):
         self.has_slicer = False

@@ -173,14 +173,14 @@ def names_of_pages(base: type = SessionPage) -> set[str]:
 
 def with_curriculum(session) -> None:
     """Give the trainee a curriculum with as many assignments as there may be, and long titles."""
-    told = AssignmentMessage(
+    assignment = AssignmentMessage(
         *("long", "task-5", "competent", "open", 100), mode="hmd", method="landmarks-surface"
     )
     others = [
-        replace(told, name=f"n{number}", state=state)
+        replace(assignment, name=f"n{number}", state=state)
         for number, state in enumerate(("reached", "locked") * ((MAX_ASSIGNMENTS - 1) // 2))
     ]
-    longest = replace(told, procedure="biopsy", played=3, mark=70.0, weakest="distance")
+    longest = replace(assignment, procedure="biopsy", played=3, mark=70.0, weakest="distance")
     session._services.curricula.take(
         CurriculumMessage("P07", "The first weeks " * 5, "long", (longest, *others))
     )

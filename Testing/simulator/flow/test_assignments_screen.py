@@ -140,13 +140,13 @@ def test_the_page_closes_when_the_curriculum_ends(page, outside):
 def test_later_updates_from_slicer_are_shown_at_once(page, outside):
     reached = replace(TOLD.assignments[1], state=REACHED, done=3)
     three = replace(TOLD.assignments[2], state=OPEN, missing=(), done=40)
-    told = (TOLD.assignments[0], reached, three)
-    outside.services.curricula.take(replace(TOLD, next="three", assignments=told))
+    assignments = (TOLD.assignments[0], reached, three)
+    outside.services.curricula.take(replace(TOLD, next="three", assignments=assignments))
     page.step(20)
     assert [item.value for item in page.menu.items[:3]] == ["reached", "reached", "40 %"]
     assert "Next: Task 3, which you have not played yet." in page.menu.paragraphs
     assert "show competence (LC-CUSUM)" in page.item("assignment three").help
-    outside.services.curricula.take(replace(TOLD, next="", assignments=told[:2]))
+    outside.services.curricula.take(replace(TOLD, next="", assignments=assignments[:2]))
     page.step(20)
     assert page.presenter.seat().assignments == "2 of 2 reached"
     assert "All assignments are reached." in page.menu.paragraphs

@@ -165,9 +165,9 @@ def test_the_tutorial_and_a_scored_trial_are_done_with_the_mouse_alone(newcomer,
     player.play()
     assert {step for step, _ in player.read} >= {TutorialStep.UNDO, TutorialStep.PAUSE}
     assert newcomer.menu.name == "tutorial-done"
-    told = FinishedTutorials(outside.services.records).latest("P7")
-    assert (told.device, told.mode) == ("mouse", "desktop")
-    assert max(told.errors_mm) < 3.0
+    finished = FinishedTutorials(outside.services.records).latest("P7")
+    assert (finished.device, finished.mode) == ("mouse", "desktop")
+    assert max(finished.errors_mm) < 3.0
     newcomer.choose("trial-run")
     newcomer.until_menu(None)
     train_and_view_the_result(newcomer, outside, "trial-run")

@@ -98,13 +98,13 @@ def test_one_sentence_about_shifted_skin_is_shown_after_the_trial_and_none_befor
     assert "skin had" not in str(trainee.menu)
     trainee.until_menu("result")
     (own,) = entries_of(outside, trial, "scored")
-    (told,) = [each for each in own["details"]["feedback"] if each["key"] == "skin and error"]
-    assert told["text"] in trainee.menu.paragraphs
-    assert told["text"].startswith(
+    (feedback,) = [each for each in own["details"]["feedback"] if each["key"] == "skin and error"]
+    assert feedback["text"] in trainee.menu.paragraphs
+    assert feedback["text"].startswith(
         "The skin had shifted by 3.0 mm (RMS) and was indented by 0.5 mm"
     )
-    assert told["values"]["tre"] == pytest.approx(trainee.state.training.result.true_tre_mm)
-    assert told["values"]["without"] < told["values"]["tre"]
+    assert feedback["values"]["tre"] == pytest.approx(trainee.state.training.result.true_tre_mm)
+    assert feedback["values"]["without"] < feedback["values"]["tre"]
 
 
 @pytest.mark.soak

@@ -52,8 +52,8 @@ class Operation:
         trainee.step(15)
         shown = trainee.presenter.shown.latest
         pictures = trainee.presenter.pictures(shown)
-        told = outgoing._procedure(shown, pictures)
-        self.seen[name] = trainee.presenter.screen, told, shown
+        message = outgoing._procedure(shown, pictures)
+        self.seen[name] = trainee.presenter.screen, message, shown
 
     def next_step(self, item: str, tool: Tool) -> None:
         """Choose what leads to the next phase, which brings another tool."""
@@ -194,8 +194,8 @@ def score(operation: Operation) -> None:
     """Score it as Slicer does, and look at all pages of the result."""
     trainee = operation.trainee
     trainee.until_menu("waiting")
-    told = trainee.submit("GetTrial", trialId=operation.registration["trialId"]).data
-    record = TrialRecord.from_json(told["record"])
+    data = trainee.submit("GetTrial", trialId=operation.registration["trialId"]).data
+    record = TrialRecord.from_json(data["record"])
     truth = trainee.submit("SubmitRegistration", **operation.registration).data
     head_to_world = np.reshape(truth["headToWorld"], (4, 4))
     scenario = trainee.loop.setup.scenario
@@ -269,7 +269,7 @@ def test_the_registration_can_be_accepted_only_once_there_is_one(operation):
 
 
 def test_the_error_at_a_checkpoint_follows_from_the_registration(operation):
-    screen, _told, state = operation.seen["verifying"]
+    screen, _message, state = operation.seen["verifying"]
     (checked,) = state.training.procedure.checkpoints
     error_mm = MM_PER_M * checked.error
     assert f"{checked.name}: {error_mm:.1f} mm off" in screen.status
@@ -312,9 +312,9 @@ def test_the_bulls_eye_agrees_with_the_numbers_until_the_guide_is_on_the_line(op
 
 def test_the_ruler_measures_from_the_guides_tip_according_to_the_plan(operation):
     for number in range(2):
-        screen, told, _state = operation.seen[f"drilled {number}"]
-        assert told["tool"] == "drill"
-        assert told["aim"] is None
+        screen, message, _state = operation.seen[f"drilled {number}"]
+        assert message["tool"] == "drill"
+        assert message["aim"] is None
         ruler = screen.ruler
         length_mm = math.dist(ENTRIES[number], TARGETS[number])
         assert ruler.entry == pytest.approx(30.0, abs=0.1)

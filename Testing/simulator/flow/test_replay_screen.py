@@ -35,8 +35,8 @@ class Place(Trainee):
     """A trainee with a keyboard, who plays trials in which every touch counts.
 
     Attributes:
-        outside: what the presenter is told of the process around it.
-        shown: the states that the views were told.
+        outside: what the presenter knows of the process around it.
+        shown: the states that the views received.
     """
 
     # At the loop's usual rate: what is shown again has enough samples.
@@ -296,8 +296,8 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
     study.take(StudyStep("P07", "break", 4, 9, minutes=5.0))
     result.step(20)
     assert result.menu.facts[0].value == "81 / 100"
-    told = result.menu.paragraphs[-1]
-    assert told.startswith("Step 4 of 9: take a break of at least 5 minutes, 0")
+    paragraph = result.menu.paragraphs[-1]
+    assert paragraph.startswith("Step 4 of 9: take a break of at least 5 minutes, 0")
     names = [item.name for item in result.menu.items]
     assert names == ["errors", "worst", "replay", "menu"]
     study.take(StudyStep("P07", "trial", 5, 9, "task-2", "desktop"))
@@ -312,7 +312,7 @@ def test_the_result_says_what_a_study_asks_for_next_and_offers_nothing_else(resu
     ]
     study.take(StudyStep("P07"))
     result.step(20)
-    assert not any(told.startswith("Step") for told in result.menu.paragraphs)
+    assert not any(paragraph.startswith("Step") for paragraph in result.menu.paragraphs)
 
 
 def test_a_trial_started_by_slicer_ends_the_replay_and_is_what_the_views_show(place):

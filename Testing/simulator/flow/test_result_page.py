@@ -1,4 +1,4 @@
-"""The page of the result: what is told of a score, and how a trial beyond a limit looks."""
+"""The page of the result: what it says of a score, and how a trial beyond a limit looks."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ def result_of(registered):
     def show(score=95.0, **details):
         trial = registered.state.training.trial_id
         assert registered.submit("TrialScored", trialId=trial, score=score, details=details).ok
-        told = lambda: registered.state.training.result  # noqa: E731
-        registered.until(lambda: told() is not None and told().details == details, "the score")
+        result = lambda: registered.state.training.result  # noqa: E731
+        registered.until(lambda: result() is not None and result().details == details, "the score")
         registered.until_menu("result")
         registered.step(50)
         return registered.menu

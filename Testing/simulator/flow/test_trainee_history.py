@@ -1,4 +1,4 @@
-"""What each trainee has done is told by the journals, whatever else lies in their folder."""
+"""What each trainee has done is read from the journals, whatever else lies in their folder."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monke
     monkeypatch.setattr(trial_screen, "TRIAL_RUN_S", 3600.0)
     trainee.start("trial-run")
     monkeypatch.setattr(trial_screen, "TRIAL_RUN_S", trainee.state.elapsed + 3.0)
-    trainee.until(lambda: trainee.presenter.screen.status[2] == "00:03 left", "time is told")
+    trainee.until(lambda: trainee.presenter.screen.status[2] == "00:03 left", "the remaining time")
     trainee.until_menu("practice")
     assert trainee.state.training.phase == "paused"
     trainee.hands.key("Space")
@@ -393,7 +393,7 @@ def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):
     pilot.steer_to(above - (0.0, 0.0, 0.13), 0.0, fine=True, ends_in_contact=True)
     pilot.hands.push(0.0, 0.0, 0.0, False)
     pilot.step(20)
-    told = len(pilot.watcher.screens)
+    count = len(pilot.watcher.screens)
     assert pilot.submit("Jog", velocityMmS=[0, 0, -10], durationS=0.3).ok
     pilot.step(30)
     depth_mm = round(2000.0 * pilot.state.depth) / 2.0
@@ -402,4 +402,4 @@ def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):
     assert warning.text == f"Pressing {depth_mm:.1f} mm: ease off."
     german = Texts(LANGUAGES["de"]).again(warning.text)
     assert german == f"Du drückst {depth_mm:.1f} mm tief: Lass nach.".replace(".", ",", 1)
-    assert len(pilot.watcher.screens) - told < 20
+    assert len(pilot.watcher.screens) - count < 20

@@ -105,17 +105,17 @@ def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, re
     assert says[0] in read[TutorialStep.RIGHT]
     assert says[1] in read[TutorialStep.TURN_VIEW]
     assert trainee.menu.name == "tutorial-done"
-    told = FinishedTutorials(outside.services.records).latest("P07")
-    assert (told.device, told.mode, told.trainee) == (device.value, "desktop", "P07")
-    assert 5.0 < told.seconds < 60.0
-    assert set(told.step_seconds) == {step.value for step, _ in player.read}
-    assert max(told.first_error_mm, *told.errors_mm) < 3.0
+    finished = FinishedTutorials(outside.services.records).latest("P07")
+    assert (finished.device, finished.mode, finished.trainee) == (device.value, "desktop", "P07")
+    assert 5.0 < finished.seconds < 60.0
+    assert set(finished.step_seconds) == {step.value for step, _ in player.read}
+    assert max(finished.first_error_mm, *finished.errors_mm) < 3.0
     facts = {fact.label: fact.value for fact in trainee.menu.facts}
     shown = [
         float(each.removesuffix(" mm")) for each in facts["Errors of the last three"].split(", ")
     ]
     # Both are rounded, the file's to more digits.
-    np.testing.assert_allclose(shown, told.errors_mm, atol=0.055)
+    np.testing.assert_allclose(shown, finished.errors_mm, atol=0.055)
     trainee.choose("trial-run")
     trainee.until_menu(None)
     assert trainee.state.training.task == "trial-run"
@@ -126,7 +126,7 @@ def test_the_tutorial_is_played_and_leads_to_the_trial_run(who, device, says, re
     trainee.loop.stop()
     (path,) = outside.services.records.glob("*.journal")
     (noted,) = read_journal(path).of_kind("tutorial")
-    assert (noted["device"], noted["errorsMm"]) == (device.value, list(told.errors_mm))
+    assert (noted["device"], noted["errorsMm"]) == (device.value, list(finished.errors_mm))
 
 
 def test_a_step_counts_only_the_movement_it_asks_for(learner):

@@ -140,7 +140,7 @@ class Trainee:
             self.step()
             steps += 1
             if steps > MAX_STEPS:
-                # What must be on the disk before it is told takes the disk's own time.
+                # What must be on the disk before it is shown takes the disk's own time.
                 time.sleep(0.005)
                 give_up = give_up or time.monotonic() + PATIENCE_S
                 assert time.monotonic() < give_up, f"no {what}; the screen: {self.presenter.screen}"

@@ -54,10 +54,10 @@ def test_a_trigger_goes_from_zero_to_one(gamepads, ear, plugged, trigger):
 
 @pytest.mark.usefixtures("plugged")
 def test_unchanged_inputs_are_not_reported_again(gamepads, ear):
-    told = len(ear.inputs)
+    count = len(ear.inputs)
     for _ in range(5):
         gamepads.poll()
-    assert len(ear.inputs) <= max(told, 1)
+    assert len(ear.inputs) <= max(count, 1)
 
 
 def test_a_gamepad_can_be_plugged_and_unplugged_repeatedly(gamepads, ear, plugged):

@@ -286,8 +286,8 @@ def test_deleting_a_trainee_deletes_who_they_were_on_the_platform(lab, browser, 
         export_trainee(study, "T001", tmp_path / "data.json")
         erase_trainee(study, "T001", None)
     assert PlatformLinks(lab.study).pseudonyms() == set()
-    told = json.loads((tmp_path / "data.json").read_text())["learning_platforms"]
-    assert told == [{"issuer": lab.platform.address, "subject": "user-7654321"}]
+    exported = json.loads((tmp_path / "data.json").read_text())["learning_platforms"]
+    assert exported == [{"issuer": lab.platform.address, "subject": "user-7654321"}]
     assert b"user-7654321" not in PlatformLinks(lab.study).path.read_bytes()
 
 

@@ -121,10 +121,10 @@ def test_a_trial_can_be_registered_from_thirty_points_on(landmarked):
     trial.must(CommandName.TRACE, on=False)
     assert trial.state.phase is Phase.COMPLETE
     assert "30 points are traced. Register them, or keep tracing." in trial.state.instruction
-    told = trial.must(CommandName.GET_TRIAL).data
-    assert len(told["trace"]) == MIN_TRACE_POINTS
+    trial_data = trial.must(CommandName.GET_TRIAL).data
+    assert len(trial_data["trace"]) == MIN_TRACE_POINTS
     last = trial.state.trace.points[-1]
-    assert told["trace"][-1] == [*(1000.0 * x for x in last.position), last.sim_time]
+    assert trial_data["trace"][-1] == [*(1000.0 * x for x in last.position), last.sim_time]
     trial.now += 100.0
     reply = trial.must(CommandName.REGISTER)
     assert reply.data["completionTimeS"] == last.elapsed == trial.training.elapsed(trial.now)

@@ -42,7 +42,7 @@ class ReadingTrainee:
 
     It knows how large a head is and about where this one is, which ways the sticks move the tip,
     and how it has moved since the start. It keeps the places that agree with all that it has read:
-    distances and directions where they are told, "off the path", and "on the skin away from the
+    distances and directions where they are shown, "off the path", and "on the skin away from the
     point". It leads the tip along the skin to the nearest of them, back onto the skin where it has
     left it, and presses Touch on the way to read which point is there; it remembers that. Where it
     reads "On the skin", it goes to the middle of the places where that is said, and touches.
@@ -123,12 +123,12 @@ class ReadingTrainee:
 
     def _read_status(self) -> None:
         for text in self._trainee.presenter.screen.status:
-            told = re.match(r"Point \d+: (less than )?([\d.]+) mm (.*)", text)
-            if told is not None and told[1]:
-                self._places.is_within(self._at, float(told[2]) / 1000.0)
-            elif told is not None:
-                way = np.sum([WAYS[word] for word in told[3].split(", ")], axis=0)
-                self._places.is_away(self._at, float(told[2]) / 1000.0, way)
+            guidance = re.match(r"Point \d+: (less than )?([\d.]+) mm (.*)", text)
+            if guidance is not None and guidance[1]:
+                self._places.is_within(self._at, float(guidance[2]) / 1000.0)
+            elif guidance is not None:
+                direction = np.sum([WAYS[word] for word in guidance[3].split(", ")], axis=0)
+                self._places.is_away(self._at, float(guidance[2]) / 1000.0, direction)
 
     def _approach(self, place: np.ndarray) -> None:
         """Bring the tip nearer to a place on the skin, until something else is to be done."""

@@ -238,14 +238,14 @@ def test_nothing_reveals_whose_trial_it_is_when_it_was_how_good_or_in_which_mode
     rater.presenter.shown.playback.play_from(1e6)
     rater.presenter.shown.playback.advance(1.0)
     rate_all(rater)
-    told = everything_shown(rater)
+    shown = everything_shown(rater)
     for trial_id in rater.work.trial_ids:
         record = study.trial(trial_id).record
         for secret in (record.trial_id, record.trainee, day_of(record.started_utc)):
-            assert secret not in told, secret
+            assert secret not in shown, secret
     for name in ("trainee", "score", "mode", "startedUtc", "trialId", "trueTreMm"):
-        assert f'"{name}"' not in told, name
-    assert not re.search(r"\b(hmd|headset|Worst touch|schlechteste Berührung)\b", told)
+        assert f'"{name}"' not in shown, name
+    assert not re.search(r"\b(hmd|headset|Worst touch|schlechteste Berührung)\b", shown)
     assert rater.presenter.seat() == Seat()
 
 

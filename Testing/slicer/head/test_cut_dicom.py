@@ -51,7 +51,7 @@ ENDS = plain(END_OF_ITEM) + plain(END_OF_SEQUENCE)
             with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + HUGE + ENDS)), id="in an item"
         ),
         pytest.param(
-            with_first(sequence(8 + len(HUGE), plain(ITEM, len(HUGE)) + HUGE)), id="of told length"
+            with_first(sequence(8 + len(HUGE), plain(ITEM, len(HUGE)) + HUGE)), id="of known length"
         ),
         pytest.param(
             with_first(plain((0x0009, 0x1001), FOUR_GB), b"1.2.840.10008.1.2\0  "), id="implicit"
@@ -73,10 +73,12 @@ def test_a_file_that_claims_more_than_it_holds_is_refused_unread(content, tmp_pa
     [
         pytest.param(SLICE, id="plain"),
         pytest.param(
-            with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + SMALL + ENDS)), id="sequence"
+            with_first(sequence(UNDEFINED, plain(ITEM, UNDEFINED) + SMALL + ENDS)),
+            id="sequence of unknown length",
         ),
         pytest.param(
-            with_first(sequence(8 + len(SMALL), plain(ITEM, len(SMALL)) + SMALL)), id="told length"
+            with_first(sequence(8 + len(SMALL), plain(ITEM, len(SMALL)) + SMALL)),
+            id="sequence of known length",
         ),
         pytest.param(with_first(sequence(0, b"")), id="empty sequence"),
         pytest.param(

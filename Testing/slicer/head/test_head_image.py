@@ -34,14 +34,14 @@ def depths(volume):
     ids=["RAS", "oblique"],
 )
 def test_mri_lies_on_a_1_mm_grid_where_the_head_is(spacing, axes):
-    made, told, _head = images(phantom(spacing=spacing, axes=axes, size=SIZE))
+    made, sentence, _head = images(phantom(spacing=spacing, axes=axes, size=SIZE))
     assert np.array_equal(made.ijk_to_ras[:3, :3], np.eye(3))
     assert made.values.dtype == np.uint8
     depth = depths(made)
     assert np.median(made.values[(depth > 2) & (depth < 4)]) > 200
     assert np.median(made.values[depth > 20]) == pytest.approx(255 * 0.75, abs=12)
     assert made.values[(depth < -3) & (depth > -50)].mean() < 5
-    assert told == "Images: MRI, 1 mm, values from 0 to 100 as 0 to 255."
+    assert sentence == "Images: MRI, 1 mm, values from 0 to 100 as 0 to 255."
     assert 150 < made.window <= 255
     assert made.level == made.window / 2
 
@@ -49,26 +49,26 @@ def test_mri_lies_on_a_1_mm_grid_where_the_head_is(spacing, axes):
 def test_mri_with_8_bit_values_keeps_them():
     scan = phantom(size=SIZE)
     scan = Volume(np.rint(scan.values), scan.ijkToRas)
-    made, told, _head = images(scan)
-    assert told == "Images: MRI, 1 mm, its own values, 0 to 255."
+    made, sentence, _head = images(scan)
+    assert sentence == "Images: MRI, 1 mm, its own values, 0 to 255."
     assert np.median(made.values[depths(made) > 20]) == MRI["brain"]
 
 
 def test_ct_keeps_its_hounsfield_units_within_their_usual_range():
     scan = phantom({**CT, "bone": 9000.0}, spacing=(2.0, 2.0, 2.0), lowest=-20.0, size=SIZE)
-    made, told, _head = images(scan)
+    made, sentence, _head = images(scan)
     assert made.values.dtype == np.int16
     assert made.values.max() == HOUNSFIELD[1]
     depth = depths(made)
     assert np.median(made.values[depth > 20]) == CT["brain"]
     assert np.median(made.values[(depth < -3) & (depth > -50)]) == -1000
-    assert told == "Images: CT, 1 mm, Hounsfield units from -1024 to 3071."
+    assert sentence == "Images: CT, 1 mm, Hounsfield units from -1024 to 3071."
 
 
 def test_anything_far_from_the_head_becomes_air():
     scan = phantom(noise=2.0, size=SIZE)
     scan.values[2:8, 2:8, 20:90] = 60.0
-    made, _told, head = images(scan)
+    made, _sentence, head = images(scan)
     far = depths(made) < -KEPT_MM - 3.0
     assert not made.values[far & (np.indices(made.values.shape)[2] > 20)].any()
     skin = skinOf(head, HeadSettings(), lambda _step, _share: None)
@@ -78,7 +78,7 @@ def test_anything_far_from_the_head_becomes_air():
 
 
 def test_slicer_reads_the_file_as_it_was_written(tmp_path):
-    made, _told, _head = images(phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0, size=SIZE))
+    made, _sentence, _head = images(phantom(CT, spacing=(2.0, 2.0, 2.0), lowest=-20.0, size=SIZE))
     path = tmp_path / "volume.nrrd"
     write_nrrd(path, made.values, made.ijk_to_ras)
     assert path.stat().st_size < MAX_FILE_BYTES / 2

@@ -70,7 +70,7 @@ class Answers:
         if answer not in buttons:
             FAILURES.add(f"“{text}” has no button {answer}; it has {', '.join(buttons)}.")
             answer = buttons[-1]
-        FAILURES.tell(sys.exc_info()[1])
+        FAILURES.note_shown(sys.exc_info()[1])
         self.messages.append(Message(title.strip(), text, details, answer))
         return answer
 

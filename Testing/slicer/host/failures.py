@@ -21,29 +21,29 @@ class Failures:
 
     Attributes:
         texts: one traceback or sentence a failure.
-        heard: is told each of them; None where nobody is.
+        listener: receives each of them, if there is one.
     """
 
     def __init__(self) -> None:
         self.texts: list[str] = []
-        self.heard: Callable[[str], None] | None = None
-        self._told: list[BaseException] = []
+        self.listener: Callable[[str], None] | None = None
+        self._shown: list[BaseException] = []
 
     def add(self, text: str) -> None:
         """Remember a failure that is no exception."""
         self.texts.append(text)
-        if self.heard is not None:
-            self.heard(text)
+        if self.listener is not None:
+            self.listener(text)
 
-    def tell(self, exception: BaseException | None) -> None:
+    def note_shown(self, exception: BaseException | None) -> None:
         """Remember that the user was shown this exception."""
         if exception is not None:
-            self._told.append(exception)
+            self._shown.append(exception)
 
     def catch(self, exception: BaseException) -> None:
         """Take what a slot raised, unless the user was shown it as a sentence."""
-        isTold = any(exception is told for told in self._told)
-        if not (isTold and isinstance(exception, InputError)):
+        wasShown = any(exception is shown for shown in self._shown)
+        if not (wasShown and isinstance(exception, InputError)):
             text = "".join(traceback.format_exception(exception))
             if text not in self.texts:  # A timer would repeat it ten times a second.
                 self.add(text)
@@ -69,7 +69,7 @@ class ErrorLog(Checked):
         self._handler = _Handler(self)
         logging.getLogger().addHandler(self._handler)
         self.write("INFO", "Unknown", "Slicer of the tests has started.")
-        FAILURES.heard = lambda text: self.write("CRITICAL", "Stream", text)
+        FAILURES.listener = lambda text: self.write("CRITICAL", "Stream", text)
 
     def write(self, level: str, origin: str, text: str) -> None:
         """Append an entry."""
@@ -79,7 +79,7 @@ class ErrorLog(Checked):
 
     def close(self) -> None:
         """Write no more."""
-        FAILURES.heard = None
+        FAILURES.listener = None
         logging.getLogger().removeHandler(self._handler)
 
 

@@ -55,7 +55,7 @@ def replay(tour: Tour) -> str:
     hands.wait_until(lambda: slicer.util.getNodes("Replay of *"), "the replay is there")
     hands.wait_until(lambda: hands.find("worstTouchButton").enabled, "the replay is ready")
     hands.click("worstTouchButton")
-    hands.wait_until(lambda: "clearance" in hands.text("replayText"), "it is told")
+    hands.wait_until(lambda: "clearance" in hands.text("replayText"), "the clearance is shown")
     return hands.text("replayText")
 
 

@@ -84,7 +84,7 @@ def verify(tour: Tour) -> str:
     _touch_all(tour)
     tour.play("--checkpoint", str(CHECKPOINT))
     text = "procedureInstructionText"
-    hands.wait_until(lambda: "checkpoint was" in hands.text(text), "its error is told")
+    hands.wait_until(lambda: "checkpoint was" in hands.text(text), "its error is shown")
     words = hands.text(text)
     hands.click("acceptButton")
     hands.wait_until(lambda: hands.find("alignButton").enabled, "the guide is aligned next")
@@ -94,11 +94,11 @@ def verify(tour: Tour) -> str:
 def align(tour: Tour) -> str:
     """Let the robot align the guide, and lock it; then take the drill out to align it again."""
     hands = tour.hands
-    told = _align_and_lock(tour)
+    state = _align_and_lock(tour)
     hands.click("retractDrillButton")
     hands.wait_until(lambda: hands.find("alignButton").enabled, "the guide is aligned again")
     _align_and_lock(tour)
-    return told
+    return state
 
 
 def _align_and_lock(tour: Tour) -> str:
@@ -130,7 +130,7 @@ def insert(tour: Tour) -> str:
     tour.play("--insert")
     hands.click("releaseButton")
     table, text = hands.find("procedureErrorsTable"), "procedureScoreText"
-    hands.wait_until(lambda: table.rowCount == 1 and hands.text(text), "the errors are told")
+    hands.wait_until(lambda: table.rowCount == 1 and hands.text(text), "the errors are shown")
     hands.must("Not acceptable" not in hands.text(text), hands.text(text))
     table.selectRow(0)
     hands.wait_until(lambda: hands.text("nextStepButton") == "Show result", "it is scored")

@@ -17,7 +17,7 @@ def zip_file(tour: Tour) -> str:
     tour.dialogs.answer("Save the scenario", path)
     hands.click("exportScenarioButton")
     hands.wait_until(path.is_file, "the file is written", SCENARIO_TIMEOUT_S)
-    hands.wait_until(lambda: "was written" in hands.text("scenarioText"), "it is told")
+    hands.wait_until(lambda: "was written" in hands.text("scenarioText"), "the message is shown")
     text = hands.text("scenarioText")
     tour.dialogs.answer("Add a scenario", path)
     hands.click("importScenarioButton")

@@ -20,7 +20,7 @@ NEAR_ENOUGH_MM = 1.5
 TRAVEL_MM_S, TOUCH_MM_S = 400, 100
 LOOK_EVERY_S = 0.2
 STAND_OFF_MM = 30.0
-"""Where the robot stops before the planned entry, unless told otherwise."""
+"""Where the robot stops before the planned entry, by default."""
 PAST_INNER_MM = 1.0
 """The drill goes so far past the planned inner table: the bone is not where it is shown."""
 FEED_MM_S, LONGEST_FEED_S, FED_MM = 5.0, 2.0, 0.1

@@ -50,7 +50,7 @@ def connect_to_web_page(tour: Tour) -> str:
         hands.click("probeButton")
         hands.wait_until(lambda: "web page" in hands.text("stateText"), "it is recognized")
         hands.click("connectButton")
-        hands.wait_until(lambda: hands.text("linkText") == "No simulator", "it is told")
+        hands.wait_until(lambda: hands.text("linkText") == "No simulator", "the error is shown")
         text = hands.text("stateText")
         hands.idle_for(3.0)
         hands.click("connectButton")
@@ -141,11 +141,11 @@ def close_scene_during_trial(tour: Tour) -> str:
 
 
 def touch_the_others(tour: Tour) -> str:
-    told = tour.touch(8, 15)
+    report = tour.touch(8, 15)
     tour.hands.wait_until(
         lambda: tour.hands.find("residualsTable").rowCount == 15, "15 pairs are registered"
     )
-    return told
+    return report
 
 
 def fix_registration(tour: Tour) -> str:

@@ -26,7 +26,7 @@ LOOKED_FROM = CameraPose((0.5, -0.5, 0.4), (0.5, 0.0, 0.25), (0.0, 0.0, 1.0), 30
 
 
 class RecordingPresenter:
-    """A `Presenter` that keeps what it is told, and tells what a test wants."""
+    """A `Presenter` that records its calls, and sends what a test wants."""
 
     def __init__(self):
         self.screen = Screen()
@@ -118,7 +118,7 @@ class ServedViews:
         self.thread.call(self.presenter.tell, *news)
 
     def wait_for_call(self, *call):
-        """Wait until the presenter has been told something; return all that it was told."""
+        """Wait for a call of the presenter; return all calls."""
 
         async def wait():
             while call not in self.presenter.calls:
@@ -170,7 +170,7 @@ class ViewClient:
             self._run(self._socket.send_str(text))
 
     def ping(self):
-        """Send a ping; its answer is not told."""
+        """Send a ping; its answer is not returned."""
         self._run(self._socket.ping())
 
     def next(self, kind: str | None = None) -> dict:

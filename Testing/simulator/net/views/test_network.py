@@ -86,8 +86,8 @@ def test_plain_http_gets_no_answer_from_the_local_network_port(port):
 def test_the_displayed_fingerprint_is_that_of_the_served_certificate(port, certificates):
     with connected(port, ssl.TLSVersion.TLSv1_3) as browser:
         shown = browser.getpeercert(binary_form=True)
-    told = own_certificate(certificates).fingerprint
-    assert bytes.fromhex(told.replace(":", "")) == hashlib.sha256(shown).digest()
+    displayed = own_certificate(certificates).fingerprint
+    assert bytes.fromhex(displayed.replace(":", "")) == hashlib.sha256(shown).digest()
 
 
 def test_a_certificate_is_kept_and_a_truncated_one_is_replaced(tmp_path):

@@ -61,9 +61,9 @@ def test_five_wrong_codes_create_a_new_one_and_start_a_pause(served):
     first = served.code
     for _ in range(4):
         assert pair(served, wrong(first))[0] == 403
-    status, headers, told = pair(served, wrong(first))
+    status, headers, body = pair(served, wrong(first))
     assert (status, int(headers["Retry-After"])) == (429, 1)
-    assert b"new code" in told
+    assert b"new code" in body
     assert served.new_codes == [served.code]
     status, headers, _ = pair(served, served.code)
     assert (status, int(headers["Retry-After"])) == (429, 1)
@@ -111,8 +111,8 @@ def test_a_key_keeps_the_role_it_was_issued_for(served):
         body = {"code": served.code, "role": role}
         headers = request(served.url, "/pair", "POST", json=body)[1]
         cookie = {"Cookie": headers["Set-Cookie"].split(";")[0]}
-        status, _, told = request(served.url, "/role", headers=cookie)
-        assert (status, json.loads(told)) == (200, {"role": role})
+        status, _, answer = request(served.url, "/role", headers=cookie)
+        assert (status, json.loads(answer)) == (200, {"role": role})
     assert request(served.url, "/role")[0] == 401
 
 

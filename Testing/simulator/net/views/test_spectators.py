@@ -44,7 +44,7 @@ def is_cut_off(view):
 
 
 def until(wanted, view):
-    next(told for told in wearers(view) if told == wanted)
+    next(wearer for wearer in wearers(view) if wearer == wanted)
 
 
 def test_every_message_of_the_protocol_has_an_example():
@@ -104,9 +104,9 @@ def test_a_spectator_is_sent_everything_that_a_view_is_except_the_code(served, c
     assert seen == [served.code, "Touch 3"]
     served.tell(Feedback(1, "touch", "touch"), Control("gamepad"))
     for _ in range(2):
-        told = spectator.all_until(lambda message: message["type"] == "state")
-        assert "pairing" not in {message["type"] for message in told}
-    # A new code is told to the views, and to no spectator either.
+        messages = spectator.all_until(lambda message: message["type"] == "state")
+        assert "pairing" not in {message["type"] for message in messages}
+    # A new code is sent to the views, but to no spectator.
     served.thread.call(served.server.announce, "https://192.0.2.1:18946")
     assert "https://192.0.2.1:18946" in view.next("pairing")["addresses"]
     served.tell(Feedback(2, "touch"))

@@ -55,9 +55,9 @@ def test_poses_match_those_of_the_simulation(served, connect, control_loop):
     matrices.append(np.eye(4))
     assert len(state["poses"]) == len(BODIES)
     for (x, y, z, qx, qy, qz, qw), expected in zip(state["poses"], matrices, strict=True):
-        told = quaternion_matrix([qw, qx, qy, qz])
-        told[:3, 3] = x, y, z
-        assert told == pytest.approx(expected, abs=3e-6)
+        pose = quaternion_matrix([qw, qx, qy, qz])
+        pose[:3, 3] = x, y, z
+        assert pose == pytest.approx(expected, abs=3e-6)
     assert state["clearanceMm"] == pytest.approx(1000 * now.clearance, abs=1e-3)
     assert (state["phase"], state["next"], state["touched"]) == ("idle", None, [])
     assert state["camera"] == "close-up"

@@ -1,4 +1,4 @@
-"""What views are told of a trace: only what is new, and all of it to a view that joins late."""
+"""What views receive of a trace: only what is new, but all of it when they join late."""
 
 import threading
 from dataclasses import replace
@@ -47,7 +47,7 @@ class RepeatedStates:
 
 
 class TracedTrial:
-    """A trial by surface whose tip is dragged by hand, and what views are told of it."""
+    """A trial by surface whose tip is dragged by hand, and what views receive of it."""
 
     def __init__(self, control_loop, loop_thread):
         self.trial = Trial(with_landmarks(control_loop.setup.scenario))
@@ -62,7 +62,7 @@ class TracedTrial:
         self.source.end()
 
     def news(self, view):
-        """Have the trial told as it stands; return the next message of its trace."""
+        """Send the trial as it stands; return the next message of its trace."""
         self.source.latest = replace(self._idle, training=self.trial.state)
         return view.next("trace")
 
@@ -121,8 +121,8 @@ def test_guidance_comes_with_the_trace_and_disappears_when_the_trial_ends(traced
     traced.served.presenter.guidance = GUIDED
     view = connect(traced.served)
     view.join()
-    told = traced.news(view)
-    assert (told["points"], told["coveredMm"], told["next"]) == ([], 10.0, NEXT)
+    message = traced.news(view)
+    assert (message["points"], message["coveredMm"], message["next"]) == ([], 10.0, NEXT)
     traced.draw(30, 0.30)
     assert traced.news(view)["next"] == NEXT
     traced.trial.must(CommandName.REGISTER)

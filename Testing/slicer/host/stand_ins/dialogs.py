@@ -18,7 +18,7 @@ class QMessageBox(QtWidgets.QMessageBox):
 
     def exec(self) -> int:
         if ANSWERS.are_given_by_hand:
-            FAILURES.tell(sys.exc_info()[1])
+            FAILURES.note_shown(sys.exc_info()[1])
             return super().exec()
         details = QtWidgets.QMessageBox.ButtonRole.ActionRole  # The button Show Details.
         buttons = {
@@ -59,7 +59,7 @@ class QMessageBox(QtWidgets.QMessageBox):
 
 
 class ctkMessageBox(QMessageBox):
-    """A message box that may be told not to come again."""
+    """A message box with a choice not to show it again."""
 
 
 class QDialog(QtWidgets.QDialog):
