@@ -1,4 +1,4 @@
-"""A stand-in of `vtkSlicerOpenIGTLinkCommand`: one command on its way, and its answer."""
+"""A stand-in of `vtkSlicerOpenIGTLinkCommand`: one sent command, and its answer."""
 
 from __future__ import annotations
 
@@ -60,11 +60,11 @@ class HeadlessCommand(vtk.vtkObject):
         return self._content
 
     def SetTimeoutSec(self, seconds: float) -> None:
-        """Set how long an answer is waited for."""
+        """Set how long to wait for an answer."""
         self._timeoutSec = seconds
 
     def GetTimeoutSec(self) -> float:
-        """Return how long an answer is waited for, in seconds."""
+        """Return how long to wait for an answer, in seconds."""
         return self._timeoutSec
 
     def GetCommandStatus(self) -> int:
@@ -108,7 +108,7 @@ class HeadlessCommand(vtk.vtkObject):
 
 @dataclass(frozen=True)
 class OutgoingCommand:
-    """A command on its way.
+    """A sent command.
 
     The real connector keeps what a command says, and reports its events to the object that was made
     in Python, whether or not that still lives.

@@ -89,7 +89,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         return self._state
 
     def Start(self) -> int:
-        """Begin to connect or to listen, again and again until `Stop`; return 1 on success."""
+        """Start to connect or to listen, repeatedly until `Stop`; return 1 on success."""
         if self._sockets is not None or self._type == self.TypeNotDefined:
             return 0
         isServer = self._type == self.TypeServer
@@ -120,7 +120,7 @@ class HeadlessConnector(slicer.vtkMRMLScriptedModuleNode):
         return self.GetNthNodeReference(_INCOMING, index)
 
     def SendCommand(self, command: HeadlessCommand) -> None:
-        """Send a command to every peer; without one nothing is sent, and nothing is said."""
+        """Send a command to every peer; without one nothing is sent, silently."""
         if command.IsInProgress():
             logging.error("The command %s is already in progress.", command.GetName())
             return

@@ -1,4 +1,4 @@
-"""Slicer's side without Slicer: receives, registers, scores and keeps trials, then writes files.
+"""Slicer's side without Slicer: receives, registers, scores and stores trials, writes files.
 
     python -m rastrainer_headless.main --port 18944 --scenario DIR --output DIR [--trials N]
 

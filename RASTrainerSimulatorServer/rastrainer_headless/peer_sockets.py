@@ -14,11 +14,11 @@ _crashes: list[str] = []
 
 
 class CrashError(RuntimeError):
-    """Slicer would not have survived what happened."""
+    """Slicer would have crashed."""
 
 
 def recordCrash(sentence: str) -> CrashError:
-    """Remember a crash, from any thread; the error may be raised where that is of use."""
+    """Record a crash, from any thread; the caller may raise the error."""
     _crashes.append(sentence)
     logging.critical("Slicer would not have survived: %s", sentence)
     return CrashError(sentence)

@@ -282,7 +282,7 @@ class ViewPlane:
     Attributes:
         axes: (2, 3) float, unit vectors to the right and up.
         focus: (3,) float, what is in the middle.
-        pixelsPerMm: how near it is looked at.
+        pixelsPerMm: the scale.
     """
 
     axes: np.ndarray
@@ -318,7 +318,7 @@ def fitScreen(
 Side = tuple[int, int]
 
 SIDES: tuple[Side, ...] = ((1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
-"""To the right and up is the favorite; each number is −1, 0 or 1 along right and up."""
+"""Upper right is preferred; each number is −1, 0 or 1 along right and up."""
 
 _COST_OF_OVERLAP = 10.0
 
@@ -326,7 +326,7 @@ _COST_OF_OVERLAP = 10.0
 def placeLabels(
     anchors: np.ndarray, sizes: np.ndarray, obstacles: np.ndarray, gap: float
 ) -> Sequence[Side]:
-    """Return on which side of its anchor each label is.
+    """Return on which side of its anchor each label goes.
 
     The labels are placed one after the other, each where it covers the least.
 

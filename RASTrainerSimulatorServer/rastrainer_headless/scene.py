@@ -40,7 +40,7 @@ class HeadlessScene:
         self._markupsLogic.SetMRMLScene(self.scene)
         # In a saved scene the slice views show the images.
         self._sliceLogics = [self._sliceLogic(name, axes) for name, axes in SLICES.items()]
-        # It shows of each Sequence what its browser has chosen.
+        # It shows the item of each Sequence that its browser has chosen.
         self._sequencesLogic = slicer.vtkSlicerSequencesLogic()
         self._sequencesLogic.SetMRMLApplicationLogic(self._applicationLogic)
         self._sequencesLogic.SetMRMLScene(self.scene)
@@ -100,7 +100,7 @@ class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
         self.SetSaveWithScene(False)
 
     def GetCode(self) -> int:
-        """Return the status code; 1 is well."""
+        """Return the status code; 1 is OK."""
         return self._status.code
 
     def GetSubCode(self) -> int:
@@ -108,7 +108,7 @@ class HeadlessStatusNode(slicer.vtkMRMLScriptedModuleNode):
         return self._status.subcode
 
     def GetErrorName(self) -> str:
-        """Return the name of the trouble."""
+        """Return the name of the error."""
         return self._status.name
 
     def GetStatusString(self) -> str:

@@ -65,7 +65,7 @@ def _isCutNifti(path: Path) -> bool:
 
 
 def _niftiSize(header: bytes) -> float:
-    """Return how many bytes a NIfTI-1 file has at least, 0 where it is none."""
+    """Return the least number of bytes of a NIfTI-1 file; 0 if it is none."""
     for order in "<>":
         if len(header) == _HEADER_SIZE and struct.unpack_from(f"{order}i", header)[0] == len(
             header
@@ -176,7 +176,7 @@ _ITEM_GROUP, _SEQUENCE_DELIMITER = b"\xfe\xff", b"\xfe\xff\xdd\xe0"
 _META_GROUP, _TRANSFER_SYNTAX = b"\x02\x00", b"\x02\x00\x10\x00"
 _FIRST_ELEMENT = 132
 _IMPLICIT = b"1.2.840.10008.1.2"
-"""With which all transfer syntaxes begin."""
+"""Prefix of all transfer syntaxes."""
 _NOT_FOLLOWED = (b"1.2.840.10008.1.2.1.99", b"1.2.840.10008.1.2.2")
 """Deflated and big-endian data sets."""
 _SHORT_KINDS = b"AE AS AT CS DA DS DT FL FD IS LO LT PN SH SL SS ST TM UI UL US".split()
@@ -186,7 +186,7 @@ _SEQUENCE = b"SQ"
 
 
 def isCutDicom(path: Path) -> bool:
-    """Return whether a DICOM file ends before what it announces (PS3.5, 7.1, 7.5 and A.4).
+    """Return whether a DICOM file is shorter than it claims (PS3.5, 7.1, 7.5 and A.4).
 
     Readers ask for as much memory as an element says it has: 4 GB for a few odd bytes.
     """

@@ -1,4 +1,4 @@
-"""Where the robot, scenarios, studies and the browser page that come with RASTrainer are found."""
+"""Where to find the robot, scenarios, studies and browser page that come with RASTrainer."""
 
 from __future__ import annotations
 

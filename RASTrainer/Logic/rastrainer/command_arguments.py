@@ -84,7 +84,7 @@ _ASSIGNMENT: Mapping[str, Argument] = {
 
 
 def checked_assignments(value: Any) -> tuple[dict[str, Any], ...]:
-    """Accept a list of where a trainee stands with each assignment; what is left out is default.
+    """Accept a list of a trainee's progress in each assignment; missing values get defaults.
 
     Raises:
         ValueError: anything else; the words follow "must be".

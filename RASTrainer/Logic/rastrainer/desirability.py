@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 TIME_FLOOR = 0.04
-"""Desirability of a time without end: being slow never costs as much as being wrong."""
+"""Desirability of an infinite time: being slow never costs as much as being wrong."""
 
 
 def falling(value: float, half: float, power: int = 2) -> float:

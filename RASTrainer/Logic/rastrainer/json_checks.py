@@ -139,11 +139,11 @@ class Argument:
 
     @property
     def is_required(self) -> bool:
-        """Whether it may not be left out."""
+        """Whether it is required."""
         return self.default is ...
 
     def checked(self, values: Mapping[str, Any], name: str, what: str) -> Any:
-        """Return the accepted value of that name, or the default where it is left out.
+        """Return the accepted value of that name, or the default if it is missing.
 
         Raises:
             InputError: the value is not acceptable; `what` begins the sentence.
@@ -197,7 +197,7 @@ def text(max_length: int = 64, min_length: int = 1) -> Callable[[Any], str]:
 
 
 def pseudonym() -> Callable[[Any], str]:
-    """Accept what a trainee may be called: short printable text without a space at an end."""
+    """Accept a trainee's pseudonym: short printable text without a space at either end."""
 
     def check(value: Any) -> str:
         if text()(value) != value.strip():

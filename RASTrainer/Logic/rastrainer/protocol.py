@@ -15,7 +15,7 @@ DEFAULT_VIEW_PORT = 18945
 FIDUCIAL_COUNT = 15
 TRIAL_RUN = "trial-run"
 MIN_TRACE_POINTS, MAX_TRACE_POINTS = 30, 500
-"""Of a trace over the skin: fewer do not hold a registration, more add next to nothing."""
+"""Points of a trace: fewer do not determine a registration, more add next to nothing."""
 TRACE_SPACING_MM = 1.0
 """How far the tip moves from one point of a trace to the next."""
 
@@ -81,7 +81,7 @@ COMMANDED_ABORTS = (AbortReason.TRAINEE, AbortReason.CLIENT, AbortReason.PRACTIC
 """In the simulator's menu, by a client's command, or at the end of a trial run's time. The other
 reason is for a trial interrupted by the end of the simulator and not resumed before another."""
 MIN_ABORTED_S = 10.0
-"""An aborted trial without any touch is kept if it took longer than this."""
+"""An aborted trial without any touch is stored if it took longer than this."""
 
 
 class Mode(str, Enum):

@@ -49,7 +49,7 @@ SEARCHED = {
 
 
 def clean_environment(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return an environment as Slicer's launchers found it; one without them stays as it is.
+    """Return an environment as Slicer's launchers found it; without them it is unchanged.
 
     What the user had set in the variables of `SEARCHED` and in PATH comes back where the launchers
     have saved it.
@@ -169,14 +169,14 @@ def python_libraries(environment: Mapping[str, str]) -> dict[str, Path]:
 
 
 def _linked(libraries: Mapping[str, Path], folder: Path) -> str:
-    """Link to the libraries in a folder and return it, empty where there are none."""
+    """Link to the libraries in a folder and return it; empty if there are none."""
     if not libraries:
         return ""
     folder.mkdir(exist_ok=True)
     for name, path in libraries.items():
         link = folder / name
         if os.path.realpath(link) != str(path):
-            # Another simulator may start just now.
+            # Another simulator may be starting at this moment.
             partial = folder / f".{uuid.uuid4().hex}"
             partial.symlink_to(path)
             partial.replace(link)

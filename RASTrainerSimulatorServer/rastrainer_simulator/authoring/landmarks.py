@@ -4,7 +4,7 @@ Proposed are those of the head of Colin27, carried to where the head is alike: t
 turned, shifted and scaled along its three axes until it lies on the other one (ICP; the worst tenth
 of the points does not count). Then the skin around each landmark is moved as a rigid patch until it
 lies on the skin there, because eyes, nose and ears are not where the size of the head alone puts
-them. What results is a proposal, to be looked at.
+them. The result is a proposal, to be checked.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ ABOVE_BASE_MM = 10.0
 COUNTED_SHARE = 0.9
 SCALES = (0.7, 1.4)
 PATCH_LIMIT_MM = 12.0
-"""A patch that would move farther has found something else, and stays."""
+"""A patch that would move farther has found something else, and is not moved."""
 NOSE_BELOW_MM = (25.0, 70.0)
 """How far below the nasion the tip of the nose is."""
 POSES_TRIED = 12
@@ -95,7 +95,7 @@ def _propose_landmarks(scenario: Scenario) -> ProposedLandmarks:
 def unreachable(planning: PlanningSetup, landmarks: Sequence[Landmark]) -> list[str]:
     """Return the names of landmarks that the robot cannot touch in some pose of a trial.
 
-    It reaches one if it can touch a place within 6 mm of it: a landmark is no exact place.
+    It reaches one if it can touch a place within 6 mm of it: a landmark is not an exact point.
     """
     poses = planning.poses(range(POSES_TRIED))
     return [each.name for each in landmarks if not _is_reached(planning, each.position, poses)]
@@ -244,7 +244,7 @@ def read_placed_landmarks(path: Path) -> tuple[Landmark, ...]:
 
 
 def check_placed_landmarks(folder: Path, landmarks: Sequence[Landmark]) -> list[str]:
-    """Return a sentence for each thing that is wrong with landmarks on the head of a scenario.
+    """Return a sentence for each fault of landmarks on the head of a scenario.
 
     Raises:
         InputError: the scenario cannot be read.
@@ -255,7 +255,7 @@ def check_placed_landmarks(folder: Path, landmarks: Sequence[Landmark]) -> list[
 
 
 def check_on_planned_head(planning: PlanningSetup, landmarks: Sequence[Landmark]) -> list[str]:
-    """Return a sentence for each thing that is wrong with landmarks: their places, or the reach."""
+    """Return a sentence for each fault of landmarks: their positions, or the reach."""
     wrong = check_landmarks(planning.mesh, landmarks)
     if wrong:
         return wrong
@@ -269,7 +269,7 @@ def write_proposal(folder: Path, path: Path) -> list[str]:
     """Write landmarks for the head of a scenario to a markups file; return sentences about them.
 
     Raises:
-        InputError: the scenario cannot be read, or the file not be written.
+        InputError: the scenario cannot be read, or the file not written.
     """
     proposed = _propose_landmarks(load_scenario(folder))
     names = tuple(landmark.name for landmark in proposed.landmarks)

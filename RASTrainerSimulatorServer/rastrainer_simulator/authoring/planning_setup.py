@@ -28,7 +28,7 @@ def touchable(
     normals: np.ndarray,
     poses: Iterable[np.ndarray],
 ) -> np.ndarray:
-    """Return which places (n,) bool can be touched in every pose of the head.
+    """Return which points (n,) bool can be touched in every pose of the head.
 
     Args:
         planner: looks for the touches, with the same `collision`.
@@ -89,7 +89,7 @@ class PlanningSetup:
 
     @cached_property
     def views(self) -> TouchViews:
-        """Finds from where touches are seen best."""
+        """Finds the viewpoints from which touches are seen best."""
         return TouchViews(self.setup, self.mesh)
 
     def poses(self, seeds: range, wider: float = 1.0) -> list[np.ndarray]:
@@ -105,7 +105,7 @@ class PlanningSetup:
     def touchable(
         self, positions: np.ndarray, normals: np.ndarray, poses: Iterable[np.ndarray]
     ) -> np.ndarray:
-        """Return which places (n,) bool can be touched in every pose of the head.
+        """Return which points (n,) bool can be touched in every pose of the head.
 
         The links keep 5 mm off head, stand, table and each other, and the tool's shaft, which
         starts 3 mm behind its tip, is off the head; see `TouchPlanner`. Shapes (n, 3), RAS mm.

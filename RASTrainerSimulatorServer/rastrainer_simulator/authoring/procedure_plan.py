@@ -1,4 +1,4 @@
-"""A procedure on a scenario's head: checked, measured, and brought into it from its own file."""
+"""A procedure on a scenario's head: checked, measured, and added from its own file."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ from rastrainer_simulator.collision.touch_planner import PlanReach
 from rastrainer_simulator.core.setup import SimulationSetup
 
 STAND_OFFS_M = (0.01, 0.03, 0.05, 0.08)
-"""Of the guide's tip from the entry: where it may be locked, and the way there."""
+"""Distances of the guide's tip from the entry: where it may be locked, and on the way there."""
 POSES_TRIED = 12
 
 
 class GuideReach:
-    """Tells where the robot can hold the guide."""
+    """Determines where the robot can hold the guide."""
 
     def __init__(self, planning: PlanningSetup) -> None:
         """`planning` has the robot and the head; its collision takes on the poses."""
@@ -109,7 +109,7 @@ def _check_on_head(planning: PlanningSetup, procedure: Procedure) -> list[str]:
 def _lines_held(
     planning: PlanningSetup, procedure: Procedure, poses_tried: int = POSES_TRIED
 ) -> tuple[list[bool], list[str]]:
-    """Return whether the guide can be held on each line, and a sentence for each on which not."""
+    """Return whether the guide can be held on each line, and a sentence for each failure."""
     reach, held, wrong = GuideReach(planning), [], []
     nominal, *others = planning.poses(range(poses_tried))
     for trajectory in procedure.trajectories:
@@ -164,7 +164,7 @@ def measure_procedures(
 
     Args:
         folder: of the scenario.
-        procedure: in the place of the scenario's own.
+        procedure: in place of the scenario's own.
 
     Raises:
         InputError: the scenario cannot be read, has no skull, or a mesh is unusable.
@@ -193,7 +193,7 @@ def _measured(planning: PlanningSetup, procedure: Procedure, skull: Path) -> Mea
 def with_procedure(
     scenario: Scenario, procedure: Procedure
 ) -> tuple[Scenario, dict[str, HeadMesh]]:
-    """Return a scenario with a procedure, in the place of one of the same name.
+    """Return a scenario with a procedure, in place of one of the same name.
 
     Returns:
         The scenario, and the meshes of all its no-go structures by file name. A new mesh whose file

@@ -33,7 +33,7 @@ ROBOT_FOOT_MM = 110.0
 
 
 def check_standing(scenario: Scenario, head: HeadMesh) -> list[str]:
-    """Return a sentence for each thing that is not on the table."""
+    """Return a sentence for everything that is not on the table."""
     table, wrong = scenario.furniture, []
     half = table.table_size[:2] / 2.0
     low, high = table.table_center - half, table.table_center + half
@@ -103,7 +103,7 @@ def check_plan(planning: PlanningSetup) -> list[str]:
 
 
 def start_clearance_mm(scenario: Scenario, head: HeadMesh) -> float:
-    """Return how far above the head's highest place the tip is where a trial starts, at least."""
+    """Return how far above the top of the head the tip is at least when a trial starts."""
     top = transforms.apply(scenario.head_to_world, head.vertices)[:, 2].max()
     target = transforms.apply(scenario.head_to_world, scenario.target_position)[2]
     return float(target + MM_PER_M * SimulationSettings().start_height - top)
@@ -166,7 +166,7 @@ WORST_SPREAD = 1.0
 POSES_TRIED = 12
 COMPLEXITY_TOLERANCE = 0.02
 SHORTEST_PATH_TOLERANCE = 0.01
-"""As a share of the path."""
+"""Tolerance, as a share of the path."""
 
 
 def measured(planning: PlanningSetup, task: Task) -> Task:

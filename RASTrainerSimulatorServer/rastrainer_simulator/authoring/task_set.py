@@ -31,7 +31,7 @@ MAX_BENDING_DEG = 30.0
 """Most that a normal within that distance may differ: excludes ears, nostrils, eyelids, brows."""
 
 DOWNWARD = -0.4
-"""A point whose normal points farther down than this (its S) cannot be seen or touched well."""
+"""A point whose normal has a lower S than this cannot be seen or touched well."""
 
 
 def smooth_places(mesh: HeadMesh, spacing_mm: float) -> np.ndarray:

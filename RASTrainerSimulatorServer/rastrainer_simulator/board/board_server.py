@@ -87,7 +87,7 @@ class BoardServer:
         """Listen and return the port; 0 is any free one.
 
         Raises:
-            InputError: the study cannot be read, or the port not be listened on.
+            InputError: the study cannot be read, or the port cannot be used.
         """
         await self._class.begin()
         return await self._http.listen(host, port)
@@ -146,7 +146,7 @@ class BoardServer:
         sending = asyncio.create_task(self._keep_sending(socket, is_changed))
         try:
             async for _message in socket:
-                # A board's page has nothing to say here.
+                # A board's page has nothing to send here.
                 await socket.close(code=1008, message=b"Nothing is to be sent here.")
         finally:
             self._pages.discard(is_changed)
@@ -164,7 +164,7 @@ class BoardServer:
                 await asyncio.sleep(TILES_S)
 
     async def _add(self, request: web.Request) -> web.Response:
-        """Pair with a simulator. Without its fingerprint, answer what it is, to be compared."""
+        """Pair with a simulator. Without its fingerprint, return it for comparison."""
         _check_teacher(request)
         values = await _body(request)
         try:
@@ -228,7 +228,7 @@ class BoardServer:
 
 
 async def _confirm_pairing(_request: web.Request) -> web.Response:
-    """Tell a browser, which cannot read its cookie, that it has one; without, it is refused."""
+    """Confirm to a browser, which cannot read its cookie, that it has one; else refuse it."""
     return web.json_response({}, headers={hdrs.CACHE_CONTROL: "no-store"})
 
 

@@ -1,4 +1,4 @@
-"""The table of a class: read whenever the study has changed, and put into words."""
+"""The table of a class: read whenever the study has changed, and phrased in words."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ LOCK_WAIT_S = 5.0
 
 @dataclass(frozen=True)
 class ClassStanding:
-    """Where the active trainees of a study stand.
+    """The standings of the active trainees of a study.
 
     Attributes:
         standings: Of those with a curriculum, by pseudonym.
@@ -59,7 +59,7 @@ class ClassReader:
         self._found: ClassStanding | None = None
 
     def read(self) -> ClassStanding:
-        """Return where everybody stands; the same object as before where nothing has changed.
+        """Return everybody's standing; the same object as before if nothing has changed.
 
         Raises:
             InputError: the study cannot be read, or has too many active trainees.
@@ -68,7 +68,7 @@ class ClassReader:
         try:
             return self._read()
         except InputError:
-            # It is opened anew next time: it may have been restored meanwhile.
+            # It is reopened next time: it may have been restored meanwhile.
             self.close()
             raise
 
@@ -127,7 +127,7 @@ class ClassWatch:
     """Keeps what was last read of a study, also while it cannot be read."""
 
     def __init__(self, place: StudyPlace | None) -> None:
-        """Read nothing yet, and without a study never."""
+        """Read nothing yet; without a study nothing is ever read."""
         self._thread = None if place is None else StudyThread(lambda: ClassReader(place))
         self._found: ClassStanding | None = None
         self._tables: dict[str, list[dict[str, Any]]] = {}
@@ -135,7 +135,7 @@ class ClassWatch:
         self._task: asyncio.Task[None] | None = None
 
     async def begin(self) -> None:
-        """Read once, and from now on again and again.
+        """Read once now, and repeatedly from now on.
 
         Raises:
             InputError: the study cannot be read, and waiting would not help.
@@ -183,7 +183,7 @@ class ClassWatch:
             except InputError as error:
                 self._problem = str(error)
             except Exception:
-                # The seats are still to be seen.
+                # The seats must still be shown.
                 _log.exception(UNEXPECTED)
                 self._problem = UNEXPECTED
 

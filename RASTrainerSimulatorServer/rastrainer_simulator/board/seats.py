@@ -1,6 +1,6 @@
-"""The seats of a teacher's board: which there are, and pairing, watching and ordering them.
+"""The seats of a teacher's board: their list, and pairing, watching and giving them orders.
 
-Their addresses and keys are kept by the teacher's own computer. Certificates are those of before.
+The teacher's own computer stores addresses and keys. Certificates must be those seen at pairing.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class SeatList:
         return iter(tuple(self._entries.values()))
 
     def put(self, entry: SeatEntry) -> None:
-        """Add a seat, or replace the one with the same `id`, and keep that.
+        """Add a seat, or replace the one with the same `id`, and save the list.
 
         Raises:
             InputError: there are too many, or the file cannot be written.
@@ -84,7 +84,7 @@ class SeatList:
         self._write({**self._entries, entry.id: entry})
 
     def remove(self, seat: str) -> None:
-        """Forget a seat; one that is not there stays away.
+        """Forget a seat; an unknown one is no error.
 
         Raises:
             InputError: the file cannot be written.
@@ -163,7 +163,7 @@ TIMEOUT_S = 8.0
 FILE_S = 120.0
 """For a scene, which is some megabytes, over a slow network."""
 HEARTBEAT_S = 4.0
-"""A simulator that answers no ping for half of this is away."""
+"""A simulator that answers no ping for half of this is unreachable."""
 MAX_MESSAGE_BYTES = 2**20
 MAX_FILE_BYTES = 32 * 2**20
 MAX_REASON = 300
@@ -193,7 +193,7 @@ class RefusedError(InputError):
 
 
 class SeatClient:
-    """Requests to simulators; certificates are checked by their fingerprints, not by who signed."""
+    """Requests to simulators; certificates are checked by fingerprint, not by issuer."""
 
     def __init__(self) -> None:
         """Open nothing yet; in the event loop's thread."""
@@ -215,7 +215,7 @@ class SeatClient:
         """Return the fingerprint of the certificate at an https address, to be compared.
 
         Raises:
-            SeatUnreachableError: nobody answers by TLS.
+            SeatUnreachableError: no server answers by TLS.
         """
         parts = urlsplit(address)
         place = (parts.hostname or "", parts.port or 0)
@@ -267,7 +267,7 @@ class SeatClient:
         return content, headers
 
     async def stream(self, entry: SeatEntry) -> aiohttp.ClientWebSocketResponse:
-        """Open the stream of a simulator; the hello is to be sent.
+        """Open the stream of a simulator; the caller sends the hello.
 
         Raises:
             SeatUnreachableError, OtherCertificateError, UnpairedError: see there.

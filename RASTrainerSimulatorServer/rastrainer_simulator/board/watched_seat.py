@@ -1,4 +1,4 @@
-"""One watched simulator: what it says of its seat, and its scene in a teacher's browser.
+"""One watched simulator: the state of its seat, and its scene in a teacher's browser.
 
 The browser sees the scene by way of the board, which has the key. The page and its code are the
 board's own; only the scene, sounds, pictures and what moves come from the simulator.
@@ -55,7 +55,7 @@ _SPACES = str.maketrans({NARROW_SPACE: " ", NO_BREAK_SPACE: " "})
 
 
 def _words(longest: int) -> Callable[[Any], str]:
-    """Accept words of a simulator in any language."""
+    """Accept text of a simulator in any language."""
     check = text(longest, min_length=0)
 
     def checked(value: Any) -> str:
@@ -98,13 +98,13 @@ MEMBERS: Mapping[str, Callable[[Any], Any]] = {
     "elapsed": whole_number(0, 10_000_000),
     "touch": one_of(*(stage.value for stage in TouchStage)),
 }
-"""What a simulator says of its seat, and how each member is checked."""
+"""What a simulator reports about its seat, and how each member is checked."""
 _OF_LATER_SIMULATORS = {"assignments": ""}
-"""What an earlier one does not say, and what that means."""
+"""Members that earlier versions lack, and their defaults."""
 
 
 class SeatLink(str, Enum):
-    """How the connection to a seat is."""
+    """State of the connection to a seat."""
 
     CONNECTING = "connecting"
     WATCHING = "watching"
@@ -114,14 +114,14 @@ class SeatLink(str, Enum):
 
 
 class WatchedSeat:
-    """Watches one simulator in a task of its own.
+    """Watches one simulator in a separate task.
 
     Attributes:
         entry: which one.
     """
 
     def __init__(self, entry: SeatEntry, client: SeatClient, changed: Callable[[], None]) -> None:
-        """Begin to watch; `changed` is called whenever the tile is another."""
+        """Start to watch; `changed` is called whenever the tile changes."""
         self.entry = entry
         self._client = client
         self._changed = changed
@@ -130,7 +130,7 @@ class WatchedSeat:
         self._task = asyncio.create_task(self._watch())
 
     def tile(self) -> dict[str, Any]:
-        """Return what a board shows of it, ready for JSON; `seat` is None while it is away."""
+        """Return what a board shows of it, ready for JSON; `seat` is None if unreachable."""
         entry = self.entry
         return {
             "id": entry.id,
@@ -159,7 +159,7 @@ class WatchedSeat:
             await asyncio.sleep(RETRY_S)
 
     async def _watch_once(self) -> None:
-        """Take what the simulator says until the connection ends.
+        """Receive what the simulator sends until the connection ends.
 
         Raises:
             InputError: it cannot be watched, or says something else than simulators do.
@@ -183,7 +183,7 @@ class WatchedSeat:
 
 
 def checked_seat(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a simulator says of its seat; what a newer one adds is left out.
+    """Return what a simulator reports about its seat; additions of newer versions are ignored.
 
     Raises:
         InputError: something is missing or cannot be.
@@ -203,7 +203,7 @@ FILES = {
     "/sounds/{name:[a-z-]{1,32}}.wav": "audio/wav",
     "/scenarios/{name:[a-z0-9-]{1,40}}.png": "image/png",
 }
-"""What a page asks a simulator for, and what it is, whatever the simulator says."""
+"""What a page may request of a simulator, and its type, whatever the simulator says."""
 _KEPT_HEADERS = (hdrs.CONTENT_ENCODING, hdrs.CACHE_CONTROL, hdrs.VARY, "X-File-Size")
 _SPECTATOR_HELLO = json.dumps({"type": HELLO, "kind": SPECTATOR, "device": "", "refreshHz": 0})
 _HELLO_S = 5.0

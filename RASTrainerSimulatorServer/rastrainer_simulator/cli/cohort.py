@@ -23,7 +23,7 @@ from rastrainer_simulator.virtual.scripted_trainee import Skill
 SHIPPED_PROTOCOL = ("studies", "published-protocol.json")
 TYPICAL_FLE_MM = 1.5
 TRIAL_TIME_SD = 0.12
-"""Of the logarithm of drawn times beside the tempo: heads, paths and slips of the hand."""
+"""SD of the logarithm of drawn times besides the tempo: heads, paths and slips of the hand."""
 MAX_TRAINEES = 100_000
 
 

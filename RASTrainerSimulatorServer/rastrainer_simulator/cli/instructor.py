@@ -56,7 +56,7 @@ def run_board(arguments: argparse.Namespace) -> int:
     """Serve the board until it is stopped, and return the exit status.
 
     Raises:
-        InputError: the list of seats or the study cannot be read, or the port not listened on.
+        InputError: the list of seats or the study cannot be read, or the port cannot be used.
     """
     check_ports(arguments)
     config = arguments.config or config_folder()
@@ -89,7 +89,7 @@ async def _serve(config: Path, port: int, study: StudyPlace | None) -> None:
 
 
 def add_instructor_pin_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `instructor-pin`: set the PIN that a seat asks of its instructors."""
+    """Add `instructor-pin`: set the PIN that a seat asks its instructors for."""
     parser = subparsers.add_parser(
         "instructor-pin",
         help="set the PIN that instructors need at this seat",
@@ -110,7 +110,7 @@ def run_instructor_pin(arguments: argparse.Namespace) -> int:
     """Set or remove the PIN, and return the exit status.
 
     Raises:
-        InputError: it is no PIN, the two differ, or it cannot be kept.
+        InputError: it is no PIN, the two differ, or it cannot be saved.
     """
     pin = InstructorPin(arguments.config or config_folder())
     if arguments.remove:

@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve until it is stopped, or print what to register, and return the exit status.
 
     Raises:
-        InputError: settings, key, certificate or study cannot be used, or the port not listened on.
+        InputError: settings, key, certificate or study cannot be used, or the port is in use.
     """
     if importlib.util.find_spec("jwt") is None:
         raise InputError("This needs PyJWT: install it with pip install 'rastrainer[lti]'.")

@@ -1,4 +1,4 @@
-"""What several commands have: options, the study or the error they lead to, what they print."""
+"""What several commands share: options, the study they name, errors, and output."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 
 def check_ports(arguments: argparse.Namespace) -> None:
-    """Raise `InputError` if a given `--port` or `--view-port` is none; 0 is any free one."""
+    """Raise `InputError` if a given `--port` or `--view-port` is invalid; 0 is any free one."""
     for option in ("port", "view_port"):
         port = getattr(arguments, option, None)
         if port is not None and not 0 <= port < 65536:
@@ -94,7 +94,7 @@ def read_known_study(arguments: argparse.Namespace) -> StudyData:
 
 
 def announce(program: str, what: str) -> None:
-    """Print at once what a program of ours does, such as "board" and "is on http://…"."""
+    """Print at once what one of our programs does, such as "board" and "is on http://…"."""
     print(f"RASTrainer {program} {what}", flush=True)
 
 

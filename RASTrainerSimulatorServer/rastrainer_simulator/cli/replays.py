@@ -125,7 +125,7 @@ def add_rate_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_rate(arguments: argparse.Namespace) -> int:
-    """Let the rater work, say how far that went, and return the exit status.
+    """Let the rater work, report the progress, and return the exit status.
 
     Raises:
         InputError: an argument is not usable, there is nothing to rate, or a replay cannot be

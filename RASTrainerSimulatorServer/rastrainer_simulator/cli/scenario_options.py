@@ -1,4 +1,4 @@
-"""The options of `rastrainer scenario`, and what they say, checked."""
+"""The options of `rastrainer scenario`, and their checked values."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def title_of(arguments: argparse.Namespace) -> str:
 
 
 def targets_of(arguments: argparse.Namespace) -> tuple[PlannedTarget, ...]:
-    """Return the planned targets; raise `InputError` where one cannot be used."""
+    """Return the planned targets; raise `InputError` if one cannot be used."""
     return tuple(
         PlannedTarget(_text("--target", name, LONGEST_NAME), _numbers("--target", numbers))
         for name, *numbers in arguments.target
@@ -136,7 +136,7 @@ def targets_of(arguments: argparse.Namespace) -> tuple[PlannedTarget, ...]:
 
 
 def trajectory_of(arguments: argparse.Namespace) -> PlannedTrajectory | None:
-    """Return the planned trajectory; raise `InputError` where it cannot be used."""
+    """Return the planned trajectory; raise `InputError` if it cannot be used."""
     if not arguments.trajectory:
         return None
     name, *numbers = arguments.trajectory
@@ -151,7 +151,7 @@ def head_arguments(arguments: argparse.Namespace) -> list[str]:
 
 
 def procedure_of(arguments: argparse.Namespace) -> Procedure | None:
-    """Return the procedure of a command line; raise `InputError` where it cannot be used."""
+    """Return the procedure of a command line; raise `InputError` if it cannot be used."""
     return None if arguments.procedure is None else read_procedure(arguments.procedure)
 
 

@@ -72,7 +72,7 @@ class SentStatements:
 
 
 class Sender:
-    """Sends what a study has, and says what became of it."""
+    """Sends the statements of a study, and reports the outcome."""
 
     def __init__(
         self,
@@ -108,7 +108,7 @@ class Sender:
         return len(self._refused)
 
     def watch(self, period_s: float) -> None:
-        """Send again and again, until the process is ended; an absent store is waited for.
+        """Send repeatedly until the process is ended, waiting for an unreachable store.
 
         Raises:
             InputError: as `send`.

@@ -37,7 +37,7 @@ def add_copy_study_parser(subparsers: argparse._SubParsersAction) -> None:
 
 
 def run_copy_study(arguments: argparse.Namespace) -> int:
-    """Copy, say how much, and return the exit status.
+    """Copy, print the number of rows, and return the exit status.
 
     Raises:
         InputError: a study cannot be used, or TO holds something.
@@ -101,7 +101,7 @@ def _count(connection: Connection, table: Table) -> int:
 
 
 def add_delete_trainee_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `delete-trainee`: one trainee, completely and for good."""
+    """Add `delete-trainee`: one trainee, completely and permanently."""
     parser = subparsers.add_parser(
         "delete-trainee",
         help="delete a trainee from a study and from the journals, for good",
@@ -125,7 +125,7 @@ def run_delete_trainee(arguments: argparse.Namespace) -> int:
 
     Raises:
         InputError: there is no such study or trainee, a journal cannot be deleted, or --yes or
-            --records lacks.
+            --records is missing.
     """
     with Study.open(arguments.study, must_exist=True) as study:
         count = len(study.history(arguments.pseudonym))

@@ -1,4 +1,4 @@
-"""Commands for what trainees are to reach: `rastrainer curriculum` and `rastrainer pass-mark`."""
+"""Commands for what trainees should reach: `rastrainer curriculum` and `rastrainer pass-mark`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ HEADER = ("assignment", "trial", "so far", "goal", "after", "trials", "mean")
 
 
 def add_curriculum_parser(subparsers: argparse._SubParsersAction) -> None:
-    """Add `curriculum`: what trainees are to reach, and where each of them stands."""
+    """Add `curriculum`: what trainees should reach, and the standing of each of them."""
     parser = subparsers.add_parser(
         "curriculum",
         help="set the curriculum of a study's trainees, and print where they stand",

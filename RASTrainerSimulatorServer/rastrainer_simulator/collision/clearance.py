@@ -91,7 +91,7 @@ class DistanceBounds:
         self.forget()
 
     def forget(self) -> None:
-        """Make all due, as after something else than the arm has moved."""
+        """Make all due, for example after something other than the arm has moved."""
         self._due = [(-1.0, row) for row in range(self._count)]
 
     def due(self, traveled: float, rough: Callable[[], np.ndarray] | None = None) -> list[int]:
@@ -318,7 +318,7 @@ class LineOfSight:
         self._lowest = table_height + ABOVE_TABLE_M
 
     def is_free(self, eye: Vector, place: Vector, margin: float = 0.0) -> bool:
-        """Return whether a place is seen from an eye past head, links and table; World, m.
+        """Return whether a point is seen from an eye past head, links and table; World, m.
 
         The links are thicker by `margin`, m. The tool does not count.
         """
@@ -327,7 +327,7 @@ class LineOfSight:
         return is_clear and not self._head.is_crossed(eye, place)
 
     def is_past_tool(self, eye: Vector, place: Vector) -> bool:
-        """Return whether the tool leaves a place to be seen from an eye; World, m."""
+        """Return whether the tool leaves a point visible from an eye; World, m."""
         return self._are_off(eye, place, range(self._link_count, len(self._radii)), 0.0)
 
     def _are_off(self, eye: Vector, place: Vector, rows: range, margin: float) -> bool:

@@ -80,7 +80,7 @@ class TableClearance:
         return (above, self._arm.names[-1]) if above < best else (best, name)
 
     def _bounds(self, posed: PosedArm) -> np.ndarray:
-        """Return below what the distance of no capsule can be, (n,) float, m."""
+        """Return a lower bound of the distance of each capsule, (n,) float, m."""
         bounds = np.minimum(posed.ends[:, 0, 2], posed.ends[:, 1, 2]) - self._below
         if self._stand is None:
             return bounds
@@ -113,7 +113,7 @@ class SelfClearance:
         self._reaches = arm.reach[self._first] + arm.reach[self._second]
         self._radii = (arm.radii[self._first] + arm.radii[self._second]).tolist()
         self._names = [(arm.names[i], arm.names[j]) for i, j in self._pairs]
-        # Both of a pair may move toward each other.
+        # Both links of a pair may move toward each other.
         self._distance_bounds = DistanceBounds(len(self._pairs), closing=2.0)
 
     def nearest(self, posed: PosedArm, traveled: float) -> tuple[float, tuple[str, ...]]:
@@ -128,7 +128,7 @@ class SelfClearance:
         return best, () if pair is None else self._names[pair]
 
     def _bounds(self, posed: PosedArm) -> np.ndarray:
-        """Return below what the distance of no pair can be, (pairs,) float, m."""
+        """Return a lower bound of the distance of each pair, (pairs,) float, m."""
         middles = posed.middles
         between = middles.take(self._first, 0) - middles.take(self._second, 0)
         return np.sqrt(np.einsum("ij,ij->i", between, between)) - self._reaches
@@ -232,7 +232,7 @@ class Collision:
     def nearest_to_shaft(
         self, link_to_world: Mapping[str, np.ndarray], limit: float
     ) -> Nearest | None:
-        """Return the place of the head nearest to the shaft; None where none is within `limit`."""
+        """Return the place of the head nearest to the shaft; None if none is within `limit`."""
         return self._head.nearest_to_shaft(self._arm.pose(link_to_world), limit)
 
 

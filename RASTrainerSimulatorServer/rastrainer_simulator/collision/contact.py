@@ -5,7 +5,7 @@ A tick of the simulation is
     moved = contact.move(q, displacement, to_joints)
 
 with `displacement` what the operator wants of the tip (World, m) and `to_joints(displacement)` the
-caller's way from an allowed displacement to joint angles: inverse kinematics with the wanted
+caller's conversion of an allowed displacement to joint angles: inverse kinematics with the wanted
 direction of the tool, then the joints' velocity limit. `moved` holds the new joint angles, where
 the links are, all clearances, and what stopped the motion. The tip goes up to the surface and
 along it, never behind a plane of contact.
@@ -38,7 +38,7 @@ from rastrainer_simulator.vectors import (
 )
 
 TOLERANCE = 2e-5
-"""Deepest overlap, m, of tip or shaft that is let pass: the next tick takes it back."""
+"""Deepest overlap, m, of tip or shaft that is tolerated: the next tick undoes it."""
 
 _CORRECTIONS = 3
 _SHORTEST_SHARE = 0.05
@@ -67,7 +67,7 @@ class Moved:
 
 
 class Contact:
-    """Keeps the arm out of the head, of itself, of the table and of the head's stand.
+    """Keeps the arm from entering the head, itself, the table and the head's stand.
 
     Equal calls give equal results: what is cached from the last tick only saves time.
     """

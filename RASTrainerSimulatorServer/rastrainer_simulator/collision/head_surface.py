@@ -169,7 +169,7 @@ def _corner_angles(corners: np.ndarray) -> np.ndarray:
 
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True)
 _ANY = fcl.CollisionRequest()
-# Nearer than this, the line to the nearest point has no direction of its own.
+# Nearer than this, the line to the nearest point has no reliable direction.
 _TOUCHING = 1e-9
 _BASE_THICKNESS = 0.001
 

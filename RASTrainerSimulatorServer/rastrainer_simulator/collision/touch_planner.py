@@ -17,7 +17,7 @@ from rastrainer_simulator.robot.kinematics import Kinematics, make_kinematics
 from rastrainer_simulator.robot.model import RobotModel
 
 CLEARANCE_M = 0.005
-"""Of the links to the head, to each other and to the table; the tool itself goes into the head."""
+"""Clearance of the links to head, each other and table; the tool itself goes into the head."""
 SHORTEST_TRAJECTORY_M = 1e-3
 _UP = np.array([0.0, 0.0, 1.0])
 

@@ -69,7 +69,7 @@ def moving_links(robot: RobotModel) -> tuple[str, ...]:
 
 
 class Postures:
-    """Makes postures of what `Contact` gives."""
+    """Makes postures from the results of `Contact`."""
 
     def __init__(self, robot: RobotModel) -> None:
         self._tip = robot.tip.name
@@ -90,7 +90,7 @@ class Postures:
 
 
 class JointMotion:
-    """Moves the joints toward a target of the tip; it keeps no posture itself."""
+    """Moves the joints toward a target of the tip; it stores no posture itself."""
 
     def __init__(
         self, robot: RobotModel, rest: Joints, settings: FabrikSettings | None = None

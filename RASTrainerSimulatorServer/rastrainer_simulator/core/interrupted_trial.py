@@ -31,7 +31,7 @@ from rastrainer_simulator.vectors import ZERO, vector
 
 @contextlib.contextmanager
 def refusing_malformed(sentence: str) -> Iterator[None]:
-    """Raise InputError where entries of a journal are not as they should be: forged, or foreign.
+    """Raise InputError if entries of a journal are not as they should be: forged, or foreign.
 
     Its message is the `sentence`, without its full stop, and what was wrong.
     """
@@ -94,7 +94,7 @@ def _ahead(effect: Mapping[str, Any]) -> HeadAhead | None:
 
 
 def meters(value_mm: float) -> float:
-    """Return the number that times 1000 is the given one to the last bit."""
+    """Return the number whose product with 1000 is the given one to the last bit."""
     near = value_mm / MM_PER_M
     candidates = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
     return next((each for each in candidates if MM_PER_M * each == value_mm), near)

@@ -36,7 +36,7 @@ from rastrainer_simulator.vectors import (
 )
 
 BEHIND_MM = 1.0
-"""A tip that rests on the skin may be a little within it: the search begins so far behind it."""
+"""A tip that rests on the skin may be a little within it: the search begins this far behind it."""
 
 
 PlannedBone = Mapping[str, tuple[BoneAhead | None, ...]]
@@ -123,7 +123,7 @@ class ProcedureMotion:
             self._outline = HeadOutline(head.vertices, scenario.target_position)
 
     def reset(self, feed: Feed = NO_FEED) -> None:
-        """Take on a feed, and end a commanded one."""
+        """Adopt a feed, and end a commanded one."""
         self.feed = feed
         self._drive.stop()
 
@@ -165,7 +165,7 @@ class ProcedureMotion:
         stand_off_mm: float,
         texts: Texts,
     ) -> PathCommand | LocalizedText:
-        """Return the robot's own way onto the planned line, or why there is none.
+        """Return the robot's own path onto the planned line, or why there is none.
 
         Args:
             guide: where it is now.
@@ -194,11 +194,11 @@ class ProcedureMotion:
 
 
 TRAVEL_SPEED = 0.10
-"""Of the tip around the head, m/s."""
+"""Speed of the tip around the head, m/s."""
 APPROACH_SPEED = 0.03
-"""Of the tip along the planned line, m/s."""
+"""Speed of the tip along the planned line, m/s."""
 MARGIN = 0.03
-"""How far the tip stays off the head on its way, m."""
+"""How far the tip stays off the head on its path, m."""
 STEP = math.radians(10.0)
 """Between two waypoints, seen from the middle of the head."""
 _OUTWARD = 0.005

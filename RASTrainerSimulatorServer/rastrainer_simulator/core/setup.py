@@ -273,7 +273,7 @@ def scenario_sha256(scenario: Scenario, keeps_skull: bool = False) -> str:
 
 
 def landmarks_sha256(scenario: Scenario) -> str:
-    """Return one hash of a scenario's landmarks: names and places, in their order."""
+    """Return one hash of a scenario's landmarks: names and positions, in their order."""
     whole = hashlib.sha256()
     for landmark in scenario.landmarks:
         name = json.dumps(landmark.name).encode()

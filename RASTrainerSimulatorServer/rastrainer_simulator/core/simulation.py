@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from rastrainer_simulator.core.interrupted_trial import InterruptedTrial
 
 BEHIND_THE_TOOL = ("links", "self", "table")
-"""Parts of the arm that the trainee does not steer but that may collide."""
+"""Parts of the arm that the trainee does not steer directly but that may collide."""
 
 
 class Simulation:
@@ -103,7 +103,7 @@ class Simulation:
         return self._training.trial_seed
 
     def restart_from(self, point: StartingPoint) -> None:
-        """Count ticks, time and revisions on from another simulation, before the first step."""
+        """Continue ticks, time and revisions of another simulation, before the first step."""
         self._training.restart_from(point.revision)
         self._axes.camera = point.camera or self._axes.camera
         self.state = self._state(point.tick, point.sim_time, Motion.NONE)
@@ -239,7 +239,7 @@ class Simulation:
         tip = self._posture.tip.position
         moved = self._moved(dt, motion_request)
         if moved.stopped_by in BEHIND_THE_TOOL and motion_request.direction is not None:
-            # The turn of the tool may be what the arm has no room for: the tip comes first.
+            # The arm may only lack room to turn the tool: the tip comes first.
             moved = self._moved(dt, replace(motion_request, direction=None, across=None))
         self._posture = self._postures.of(moved)
         settings = self.setup.settings.proximity

@@ -1,1 +1,1 @@
-"""The desktop window: a view in its own process, which draws what the simulator says."""
+"""The desktop window: a view in its own process, which draws what the simulator sends."""

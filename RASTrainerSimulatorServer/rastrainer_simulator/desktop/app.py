@@ -41,7 +41,7 @@ POLL_S = 0.004
 """How often the window polls the keyboard while nothing arrives."""
 LEAST_REFRESH_HZ = 60.0
 MIN_PAUSE_S = 0.002
-"""Between two pictures, however slowly they are drawn: what has arrived is taken in by then."""
+"""Between two pictures, however slow: the messages that have arrived are processed by then."""
 TRIED_FRAMES = 12
 SLOWEST_FRAME_S = 1.0 / 45.0
 """Where pictures take longer, the quality is lowered."""
@@ -131,7 +131,7 @@ class DesktopWindow:
             self._window.close()
 
     async def _step(self, log: IO[str] | None) -> None:
-        """Take what has come, and draw it if it shows."""
+        """Process what has arrived, and draw it if it is visible."""
         begin = time.monotonic()
         for event in without_late_repeats(pygame.event.get(), self._keys.is_held):
             self._take(event)
@@ -149,14 +149,14 @@ class DesktopWindow:
             return
         self._frames.due()
         if self._picture.draw():
-            # They were made while the picture before was still to be seen.
+            # They were made while the previous picture was still visible.
             pygame.event.clear(pygame.MOUSEBUTTONDOWN)
         self._frames.shown()
         self._log_frame(log)
         self._lower_quality_if_slow(time.monotonic() - begin)
         self._frames.report(begin)
         rest = begin + 1.0 / max(LEAST_REFRESH_HZ, self._window.refresh_hz) - time.monotonic()
-        # Not drawn faster than it can be seen; what arrives meanwhile is taken in.
+        # Not drawn faster than it can be seen; what arrives meanwhile is processed.
         await asyncio.sleep(max(MIN_PAUSE_S, rest))
 
     def _take(self, event: pygame.event.Event) -> None:
@@ -180,7 +180,7 @@ class DesktopWindow:
         self._keys.take(event)
 
     def _show_sticks(self) -> None:
-        """Have the sticks drawn as they stand; those that are not shown are let go."""
+        """Have the sticks drawn as deflected; those that are not shown are released."""
         if not self._picture.has_sticks:
             self._mouse_sticks.release()
         self._picture.pushes = self._mouse_sticks.pushes
@@ -191,7 +191,7 @@ class DesktopWindow:
         return screen is not None and screen.menu is not None
 
     def _take_own_key(self, event: pygame.event.Event) -> None:
-        """Do what a key of the window does, once for as long as it is held."""
+        """Carry out a key of the window, once for as long as it is held."""
         if event.type == pygame.KEYUP:
             self._own_held.discard(event.key)
         elif event.key not in self._own_held:
@@ -221,7 +221,7 @@ class DesktopWindow:
         keeping.add_done_callback(self._screenshots.discard)
 
     async def _keep(self, keep: Coroutine[Any, Any, None], path: Path) -> None:
-        """Save a picture after those before it."""
+        """Save a picture after the previous ones."""
         try:
             async with self._one_screenshot:
                 await keep
@@ -264,7 +264,7 @@ class DesktopWindow:
 
 
 def _lower_priority() -> None:
-    """Leave the processor to the simulator: on Linux each thread has a priority of its own."""
+    """Leave the processor to the simulator: on Linux each thread has its own priority."""
     if not hasattr(os, "setpriority"):
         return
     tasks = Path("/proc/self/task")
@@ -272,7 +272,7 @@ def _lower_priority() -> None:
     ordinary = os.getpriority(os.PRIO_PROCESS, 0)
     for thread in threads:
         with contextlib.suppress(OSError):  # It may have ended.
-            # What has a place of its own, such as SDL's sound, keeps it.
+            # Threads with their own priority, such as SDL's sound, keep it.
             if os.getpriority(os.PRIO_PROCESS, thread) == ordinary:
                 os.setpriority(os.PRIO_PROCESS, thread, max(ordinary, NICENESS))
 
@@ -287,11 +287,11 @@ class FrameCount:
         self._shown = self._due = 0
 
     def due(self) -> None:
-        """Something to be drawn has arrived."""
+        """Note that something to be drawn has arrived."""
         self._due += 1
 
     def shown(self) -> None:
-        """A picture with all that has arrived was drawn."""
+        """Note that a picture with all that has arrived was drawn."""
         self._shown += 1
 
     def report(self, now: float) -> None:
@@ -317,7 +317,7 @@ class Sounds:
 
     @property
     def names(self) -> Iterable[str]:
-        """The sounds there are."""
+        """The available sounds."""
         return self._sounds.keys()
 
     def play(self, name: str, volume: float) -> bool:
@@ -332,5 +332,5 @@ class Sounds:
         return True
 
     def close(self) -> None:
-        """Give the loudspeaker back."""
+        """Release the loudspeaker."""
         pygame.mixer.quit()

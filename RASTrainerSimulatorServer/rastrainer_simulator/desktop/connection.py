@@ -1,6 +1,6 @@
 """Connect to the simulator, receive its stream, and reconnect whenever the connection is lost.
 
-What is not understood of a screen is left out.
+Unknown parts of a screen are ignored.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class ServerConnection:
         self._last_event = 0
 
     def send(self, message: str, /, **members: Any) -> None:
-        """Send a message of that type; without a connection what was pressed does not count."""
+        """Send a message of that type; without a connection it is dropped."""
         if self._stream is not None:
             self._outgoing.put_nowait({"type": message, **members})
 
@@ -83,7 +83,7 @@ class ServerConnection:
                 f"{self._url}/stream",
                 protocols=(SUBPROTOCOL,),
                 max_msg_size=LARGEST_MESSAGE,
-                # The simulator says something 60 times a second; a slow picture is no silence.
+                # The simulator sends 60 times a second; a slow picture is no silence.
                 timeout=aiohttp.ClientWSTimeout(ws_receive=SILENCE_S, ws_close=1.0),
             )
         except aiohttp.WSServerHandshakeError as error:
@@ -104,7 +104,7 @@ class ServerConnection:
                 sending.cancel()
 
     def send_first(self, stream: aiohttp.ClientWebSocketResponse) -> None:
-        """Greet; from now on messages are sent."""
+        """Send the hello; messages may be sent from now on."""
         self._stream = stream
         self.send(HELLO, kind="desktop", device="", refreshHz=self._refresh_hz)
 

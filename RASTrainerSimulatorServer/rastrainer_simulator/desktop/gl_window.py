@@ -49,9 +49,9 @@ class GlWindow:
         Raises:
             RASTrainerError: there is no display, or no OpenGL.
         """
-        # What VTK has to say of its own passes is not for people; errors still are.
+        # VTK's warnings about its own render passes are not for users; errors still are.
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-        # A trainee looks at the screen for long without touching a key.
+        # A trainee may look at the screen for a long time without touching a key.
         os.environ.setdefault("SDL_VIDEO_ALLOW_SCREENSAVER", "0")
         try:
             pygame.display.init()
@@ -114,7 +114,7 @@ class GlWindow:
         return pixels.reshape(height, width, 3)[::-1].copy()
 
     def close(self) -> None:
-        """Free the graphics resources and take the window away."""
+        """Free the graphics resources and close the window."""
         self.render_window.Finalize()
         self._window.destroy()
         pygame.display.quit()

@@ -23,7 +23,7 @@ from rastrainer_simulator.scene.nodes import NEXT, TRACED, Color
 from rastrainer_simulator.scene.surfaces import surface
 
 RADIUS_M, BALL_M = 0.001, 0.0022
-"""Of an arrow's shaft, and of the ball at its end."""
+"""Radius of an arrow's shaft, and of the ball at its end."""
 _SHAFT_SIDES = 12
 
 
@@ -40,7 +40,7 @@ class ErrorArrows:
         self.actors = [_actor(tone, mapper) for tone, mapper in self._mappers.items()]
 
     def show(self, arrows: tuple[ErrorArrow, ...]) -> bool:
-        """Show these in place of others; return whether they are others."""
+        """Show these in place of the previous ones; return whether they differ."""
         if arrows == self._shown:
             return False
         self._shown = arrows
@@ -158,13 +158,13 @@ MARK_M = 0.0011
 RING_M, RIM_M = (0.0052, 0.0075), (0.0075, 0.0088)
 """Inner and outer radius of the ring, and of its dark rim."""
 LIFT_M = 0.003
-"""So far above the skin the ring lies: it is flat, and the skin is not."""
+"""Height of the ring above the skin: it is flat, and the skin is not."""
 _RING_SIDES = 40
 _CORNERS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
 _FACES = np.array(
     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
 )
-"""An octahedron: on a few pixels nobody tells it from a ball."""
+"""An octahedron: in a few pixels it cannot be distinguished from a ball."""
 
 
 class TraceMarks:
@@ -181,7 +181,7 @@ class TraceMarks:
         self._place(np.eye(4))
 
     def show(self, trace: ShownTrace, head_to_world: np.ndarray) -> bool:
-        """Show a trace on a head, (4, 4) float, m; return whether it is another."""
+        """Show a trace on a head, (4, 4) float, m; return whether it has changed."""
         self._place(head_to_world)
         if trace is self._shown:
             return False

@@ -190,7 +190,7 @@ class Inbox:
 
     Attributes:
         state: members of the latest `state` message, as of the last `read_state`; None before.
-        holder: what drives the arm; "" while nobody does.
+        holder: what drives the arm; "" if nothing does.
         has_control: whether it is this window's keys or mouse.
         pairing: code and addresses by which other views are paired; None while unknown.
         bodies: names in the order of a state's poses.
@@ -218,7 +218,7 @@ class Inbox:
         self._has_changed = asyncio.Event()
 
     def take_state(self, text: str) -> None:
-        """Replace the state by a message, which nobody reads before it is to be drawn.
+        """Replace the state by a message, which is not parsed until it is drawn.
 
         So a window that draws slowly still keeps up with what is sent 60 times a second.
         """
@@ -238,11 +238,11 @@ class Inbox:
             _log.warning("A state of the simulator cannot be used: %s", error)
 
     def touch(self) -> None:
-        """Wake the thread that waits for news."""
+        """Wake the thread that waits for messages."""
         self._has_changed.set()
 
     async def wait(self, timeout: float) -> None:
-        """Wait for news, but at most `timeout` seconds."""
+        """Wait for messages, but at most `timeout` seconds."""
         with contextlib.suppress(asyncio.TimeoutError):
             await asyncio.wait_for(self._has_changed.wait(), timeout)
         self._has_changed.clear()

@@ -229,7 +229,7 @@ class ReducedScene:
         window = self._window
         drawn = window.render_window.GetRenderFramebuffer()
         spare = window.render_window.GetDisplayFramebuffer()
-        # By way of another buffer: no part of a buffer may be copied over itself.
+        # Through another buffer: no part of a buffer may be copied over itself.
         copy_frame(window, drawn, corner, spare, corner)
         # Its last pixels are mixed with those beyond: the same again, not those of another picture.
         last_row, beyond = (0, right, top - 1, top), (0, right, top, top + 1)

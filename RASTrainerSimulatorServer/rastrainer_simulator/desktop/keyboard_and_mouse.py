@@ -1,4 +1,4 @@
-"""What is pressed and dragged in the window, as messages to the simulator."""
+"""Keys and drags in the window, as messages to the simulator."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ CODES: Mapping[int, str] = {
 def without_late_repeats(
     events: Sequence[pygame.event.Event], is_held: Callable[[int], bool]
 ) -> list[pygame.event.Event]:
-    """Return the events of one look, with at most one repeat of a key, and none once it is up.
+    """Return the events of one poll, with at most one repeat of a key, and none once it is up.
 
-    SDL repeats a key until its release is looked at. A window that draws for a second has looked at
+    SDL repeats a key until its release is polled. A window that draws for a second has polled
     nothing meanwhile: a key that was only tapped would type a row of letters.
 
     `is_held` returns whether a key, by its SDL scancode, was down before.
@@ -73,7 +73,7 @@ class OperatorKeys:
         self._sent_at = 0.0
 
     def take(self, event: pygame.event.Event) -> None:
-        """Take one of SDL's events."""
+        """Handle one of SDL's events."""
         if event.type == pygame.KEYDOWN:
             self._press(CODES.get(event.scancode, ""), event.unicode)
         elif event.type == pygame.KEYUP:
@@ -91,7 +91,7 @@ class OperatorKeys:
         return CODES.get(scancode, "") in self._held
 
     def keep_alive(self) -> None:
-        """Say often enough that what is held is still held."""
+        """Confirm often enough that what is held is still held."""
         now = time.monotonic()
         if self._held and now - self._sent_at >= ALIVE_S:
             self._connection.send(ALIVE)
@@ -117,10 +117,10 @@ class OperatorKeys:
 LEFT_BUTTON = 1
 RIGHT_BUTTON = 3
 DEG_PER_HEIGHT = 180.0
-"""A drag over the window's whole height turns the view by so much."""
+"""Angle by which a drag over the window's whole height turns the view."""
 ZOOM_PER_NOTCH = 0.9
 ZOOM_LIMITS = (0.25, 4.0)
-"""In one message; nobody turns the wheel faster."""
+"""Limit for one message; no one turns the wheel faster."""
 Push = tuple[float, float]
 """Right and up, −1 to 1 each."""
 
@@ -138,12 +138,12 @@ class ViewMouse:
         self._zoom = 1.0
 
     def take(self, event: pygame.event.Event, height: int) -> None:
-        """Take one of SDL's events; `height` is the window's, in pixels."""
+        """Handle one of SDL's events; `height` is the window's, in pixels."""
         if event.type in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             if event.button == RIGHT_BUTTON:
                 self._is_dragging = event.type == pygame.MOUSEBUTTONDOWN
         elif event.type == pygame.MOUSEMOTION and self._is_dragging:
-            # What is seen follows the pointer: the eye goes the other way.
+            # The scene follows the pointer: the eye moves the opposite way.
             right, down = event.rel
             self._around -= DEG_PER_HEIGHT * right / height
             self._higher += DEG_PER_HEIGHT * down / height
@@ -155,7 +155,7 @@ class ViewMouse:
             self._is_dragging = False
 
     def tell(self, is_wanted: bool) -> None:
-        """Send what has come together, or forget it."""
+        """Send the accumulated motion, or drop it."""
         if is_wanted and (self._around, self._higher, self._zoom) != (0.0, 0.0, 1.0):
             nearest, farthest = ZOOM_LIMITS
             self._connection.send(
@@ -169,10 +169,10 @@ class ViewMouse:
 
 
 class MouseSticks:
-    """Sends how the sticks stand, and lets go of them when the button or the window does.
+    """Sends the deflection of the sticks, and releases them when the button or the window is left.
 
     Attributes:
-        pushes: how the left and the right stick stand.
+        pushes: deflection of the left and the right stick.
     """
 
     def __init__(self, connection: ServerConnection) -> None:
@@ -182,7 +182,7 @@ class MouseSticks:
         self._sent_at = 0.0
 
     def take(self, event: pygame.event.Event, size: tuple[int, int]) -> bool:
-        """Take one of SDL's events while the sticks are shown; return whether it was for them.
+        """Handle one of SDL's events while the sticks are shown; return whether it was for them.
 
         `size` is the window's, in pixels.
         """
@@ -202,12 +202,12 @@ class MouseSticks:
         return False
 
     def release(self) -> None:
-        """Let both sticks go."""
+        """Release both sticks."""
         self._dragged = None
         self._tell(((0.0, 0.0), (0.0, 0.0)))
 
     def keep_alive(self) -> None:
-        """Say often enough that what is held is still held."""
+        """Confirm often enough that what is held is still held."""
         now = time.monotonic()
         if any(map(any, self.pushes)) and now - self._sent_at >= ALIVE_S:
             self._connection.send(ALIVE)

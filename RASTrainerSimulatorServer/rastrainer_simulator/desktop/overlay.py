@@ -51,7 +51,7 @@ STICKS = ("left", "right")
 
 @dataclass(frozen=True)
 class Content:
-    """What is to be laid over the picture.
+    """What is laid over the picture.
 
     Attributes:
         screen: what the trainee reads.
@@ -105,7 +105,7 @@ class Overlay:
         left = (self._size[0] - width) // 2
         top = self._size[1] - self._brush.px(theme.MARGIN) - height
         if not Box(left, top, width, height).contains(x, y):
-            # Looked up again and again while the pointer rests.
+            # Looked up repeatedly while the pointer rests.
             return ""
         boxes = strips.hint_boxes(shown, self._brush, room)
         hit = (hint.item for hint, box in boxes if box.contains(x - left, y - top))
@@ -144,7 +144,7 @@ class Overlay:
         room = min(brush.px(theme.INSTRUCTION_WIDTH), self._size[0] - 2 * margin)
         aside = (self._size[0] - room) // 2 - 2 * margin
         if self._paint("status", screen.status, strips.status, brush, aside):
-            # A menu is on the left, where the status is else, and there is no inset then.
+            # A menu is on the left, in place of the status, and there is no inset then.
             right = self._size[0] - margin - self._slots["status"].sprite.size[0]
             self._place("status", margin if screen.menu is None else right, margin)
         top = margin
@@ -273,7 +273,7 @@ class Overlay:
     def _paint(
         self, name: str, content: Any, paint: Callable[..., np.ndarray], *how: Hashable
     ) -> bool:
-        """Paint a slot's content if it is another, or hide it where there is none.
+        """Paint a slot's content if it has changed, or hide it if there is none.
 
         Returns whether it is to be placed.
         """
@@ -313,7 +313,7 @@ class _Slot:
         self._key: Hashable = None
 
     def needs_painting(self, key: Hashable) -> bool:
-        """Return whether something else is to be painted, and take note of it."""
+        """Return whether the content to be painted has changed, and remember it."""
         needs_painting, self._key = key != self._key, key
         return needs_painting
 

@@ -1,4 +1,4 @@
-"""The picture of a moment: what the simulator said last, drawn."""
+"""The current picture: the simulator's latest messages, drawn."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Pointer:
         self._is_hand = False
 
     def move(self, place: tuple[int, int], now: float) -> None:
-        """The mouse was moved or clicked at `now` (s)."""
+        """Note that the mouse was moved or clicked at `now` (s)."""
         self._place, self._moved = place, now
 
     def place(self, now: float) -> tuple[int, int]:
@@ -60,7 +60,7 @@ class Pointer:
         return self._place if is_visible else NOWHERE
 
     def point(self, can_click: bool) -> None:
-        """Be a hand over what can be clicked."""
+        """Become a hand over what can be clicked."""
         if can_click != self._is_hand:
             self._is_hand = can_click
             shape = pygame.SYSTEM_CURSOR_HAND if can_click else pygame.SYSTEM_CURSOR_ARROW
@@ -75,7 +75,7 @@ def notice(key: str, language: str) -> Screen:
 
 @lru_cache(maxsize=8)
 def own_facts(language: str, holder: str, pairing: tuple[str, str] | None) -> tuple[str, ...]:
-    """Return who holds the control, and how another view is paired where that is to be shown."""
+    """Return who has control, and how to pair another view if that should be shown."""
     texts = Texts(LANGUAGES.get(language, {}))
     key = f"source.{holder}"
     source = texts.say(key) if key in texts else holder
@@ -97,7 +97,7 @@ class Picture:
 
     Attributes:
         pointer: the mouse's.
-        pushes: how the sticks that the mouse drags stand.
+        pushes: deflection of the sticks that the mouse drags.
     """
 
     def __init__(self, window: GlWindow, inbox: Inbox, quality: Quality):
@@ -143,11 +143,11 @@ class Picture:
         return "" if screen is None or screen.menu is None else screen.menu.name
 
     def redraw(self) -> None:
-        """Draw at the next occasion, whatever has changed."""
+        """Draw at the next opportunity, whatever has changed."""
         self._must_draw = True
 
     def is_due(self, now: float) -> bool:
-        """Take in what has come, and return whether the picture is to be drawn."""
+        """Process what has arrived, and return whether the picture must be drawn."""
         self._window.fit()
         self._inbox.read_state()
         self._take_scene()
@@ -225,7 +225,7 @@ class Picture:
         self._mark(now)
 
     def _choose_camera(self, state: Mapping[str, Any], now: float) -> None:
-        """Look as the simulator says; beside a menu, and from afar while no trial is open."""
+        """Set the view that the simulator chose: aside for a menu, from afar without a trial."""
         screen = self._inbox.screen
         view = Viewpoint.from_json(state["view"])
         beside = None if state["inset"] is None else Viewpoint.from_json(state["inset"])
@@ -295,7 +295,7 @@ class Picture:
         return touch_ring(state, tool[:3, 3], self.viewports.main, self._window.size)
 
     def _target(self) -> tuple[Direction, int] | None:
-        """Return the direction to the next place and its distance in mm, if out of sight."""
+        """Return the direction to the next point and its distance in mm, if out of sight."""
         state = self._inbox.state
         if self._scene is None or self._loaded is None or state is None:
             return None

@@ -1,7 +1,7 @@
 """Save what the window shows as a picture of the best quality.
 
 Software rendering takes seconds for that, and the window must not freeze: a trainee may be moving
-the arm. So a process of its own draws it.
+the arm. So a separate process draws it.
 """
 
 from __future__ import annotations
@@ -54,12 +54,12 @@ class Screenshot:
 
     @classmethod
     def of(cls, inbox: Inbox, path: Path, size: tuple[int, int], quality: Quality) -> Screenshot:
-        """Return what the inbox says now; `size` is in pixels."""
+        """Return the content of the inbox now; `size` is in pixels."""
         members = (inbox.scene, inbox.state, inbox.screen, inbox.trace)
         return cls(path, size, quality, *members, inbox.problem, inbox.holder)
 
     def inbox(self) -> Inbox:
-        """Return an inbox that says the same again."""
+        """Return an inbox with this content."""
         inbox = Inbox()
         inbox.scene, inbox.state = self.scene, self.state
         inbox.screen, inbox.trace = self.screen, self.trace

@@ -55,7 +55,7 @@ class Quality(str, Enum):
 
 
 def first_quality(renderer_name: str) -> Quality:
-    """Return what to begin with, by OpenGL's name of the renderer."""
+    """Return the initial quality, by OpenGL's name of the renderer."""
     name = renderer_name.lower()
     is_software = any(known in name for known in SOFTWARE_RENDERERS)
     return Quality.LOW if is_software else Quality.HIGH
@@ -76,7 +76,7 @@ class CameraTransition:
         self._from, self._to, self._since = self.at(now), to, now
 
     def follow(self, to: Viewpoint) -> None:
-        """Have a viewpoint that moves itself as the end of the way, or be there already."""
+        """Replace the destination by one that itself moves, or by one that is already reached."""
         self._to = to
 
     def is_moving(self, now: float) -> bool:
@@ -169,7 +169,7 @@ class Viewports:
         self._chosen = (camera, aside)
 
     def is_moving(self, now: float) -> bool:
-        """Return whether the main view's camera is on its way, or has arrived and draws finer."""
+        """Return whether the main view's camera is moving, or has arrived and draws finer."""
         if self._transition is None:
             return False
         return self._transition.is_moving(now) or (
@@ -178,7 +178,7 @@ class Viewports:
 
     @property
     def cameras(self) -> Collection[str]:
-        """Names of the views there are."""
+        """Names of the existing views."""
         return self._cameras.keys()
 
     @property

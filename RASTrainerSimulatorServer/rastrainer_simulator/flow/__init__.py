@@ -1,1 +1,1 @@
-"""The trainee's way from the first menu to the result: menus, instructions, controls."""
+"""The trainee's path from the first menu to the result: menus, instructions, controls."""

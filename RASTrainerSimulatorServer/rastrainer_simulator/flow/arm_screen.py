@@ -32,11 +32,11 @@ from rastrainer_simulator.vectors import (
 from rastrainer_simulator.viewpoint.view_control import FRONT
 
 STEP_MM = 5.0
-"""The distance to the target is shown in such steps: a running figure cannot be read."""
+"""The distance to the target is shown in these steps: a constantly changing one is unreadable."""
 LOOKED_AT_MM = 20.0
 """Nearer than this, a point is found by looking at it."""
 DEPTH_STEP_MM = 0.5
-"""The same of the depth: a screen reader says each change of a warning."""
+"""The same for the depth: a screen reader speaks each change of a warning."""
 _LEVEL = (
     ControlName.MOVE_FORWARD,
     ControlName.MOVE_LEFT,
@@ -54,7 +54,7 @@ class ArmScreen:
         self._is_within_reach = True
 
     def take(self, event: Event) -> None:
-        """Take note of what happened."""
+        """Process an event."""
         if event.kind is EventKind.REACH:
             self._is_within_reach = event.data["isWithinReach"]
             self._obstacle = event.data["obstacle"]
@@ -79,7 +79,7 @@ class ArmScreen:
         return ()
 
     def coverage(self) -> str:
-        """Return what the paint on the skin says; "" where none is painted."""
+        """Return the legend of the paint on the skin; "" if there is none."""
         return ""
 
     def ruler(self) -> DepthRuler | None:
@@ -87,7 +87,7 @@ class ArmScreen:
         return None
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return what is wrong with where the arm is."""
+        """Return the warnings about the arm's position."""
         say = self._session.texts.say
         warnings = []
         state = self._state
@@ -105,7 +105,7 @@ class ArmScreen:
         return tuple(warnings)
 
     def _forget_arm(self) -> None:
-        """Forget what was wrong: the arm is put where it starts."""
+        """Forget the warnings: the arm is moved to its start."""
         self._obstacle, self._is_within_reach = "", True
 
     def _change_camera(self) -> None:
@@ -165,9 +165,9 @@ class ArmScreen:
 
 
 FARTHEST = 0.045
-"""Beside the way up to which the tip is on it, m."""
+"""Distance beside the path up to which the tip is on it, m."""
 BACK_WITHIN = 0.03
-"""Beside the way from which it is on it again, m."""
+"""Distance beside the path below which it is on it again, m."""
 ABOVE_LEAST = 0.35
 """Share of the largest component from which another one is worth a word."""
 
@@ -176,9 +176,9 @@ _WORDS = (("left", "right"), ("back", "forward"), ("down", "up"))
 
 @dataclass(frozen=True)
 class PathArc:
-    """The way over the head from one point to the next (World, m).
+    """The path over the head from one point to the next (World, m).
 
-    The tool is lifted, carried around the head and lowered: the way is the arc about the head's
+    The tool is lifted, carried around the head and lowered: the path is the arc about the head's
     center from one to the other, at any height.
     """
 
@@ -187,7 +187,7 @@ class PathArc:
     end: Vector
 
     def beside(self, tip: Vector) -> float:
-        """Return how far the tip is beside the way, along the head, in m."""
+        """Return how far the tip is beside the path, along the head, in m."""
         out = subtract(tip, self.center)
         first, last, here = (unit(subtract(p, self.center)) for p in (self.start, self.end, tip))
         return length(out) * _angle_to_arc(here, first, last)
@@ -208,7 +208,7 @@ def _angle(a: Vector, b: Vector) -> float:
 
 
 def direction_words(tip: Vector, target: Vector, axes: Axes) -> tuple[str, ...]:
-    """Return which ways the tip has to go, as the operator sees it, the longest first.
+    """Return the directions in which the tip has to go, as the operator sees it, longest first.
 
     Each is "left", "right", "back", "forward", "down" or "up"; a short part has no word.
     """

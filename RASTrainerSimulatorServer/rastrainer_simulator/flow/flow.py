@@ -75,7 +75,7 @@ class Flow:
         return state if tutorial is None else tutorial.practice.shown(state)
 
     def take(self, result: StepResult) -> None:
-        """Take a tick in which something happened."""
+        """Process a tick in which something happened."""
         touch = self.shown(result.state).touch
         for event in result.events:
             said = result.state.training.instruction
@@ -114,19 +114,19 @@ class Flow:
             self._trial_screen.open_menu()
 
     def pressed(self, control: ControlName) -> None:
-        """Take a press of a control."""
+        """Process a press of a control."""
         if self._session.pages.top is None:
             self._screen_of_work.pressed(control)
         else:
             self._session.pages.pressed(control)
 
     def taken_over(self) -> None:
-        """Another operator takes the control: they begin in the menu."""
+        """Start in the menu: another operator has taken control."""
         if self._session.pages.top is None:
             self._screen_of_work.open_menu()
 
     def pause(self, why: str) -> None:
-        """Pause what runs, since nobody can see it; `why` is the key of a sentence."""
+        """Pause what runs, since no one can see it; `why` is the key of a sentence."""
         if self.playback is not None:
             self.playback.pause(True)
         session = self._session
@@ -214,7 +214,7 @@ class Flow:
         return self._session.has_open_trial or self._session.tutorial is not None
 
     def _advance_tutorial(self, dt: float, tutorial: Tutorial) -> None:
-        """Advance the tutorial; at its end, or where its head is gone, it is left."""
+        """Advance the tutorial; leave it at its end, or if its head is gone."""
         session = self._session
         self._unseen = ""
         if tutorial.setup is not self._control_loop.setup:
@@ -258,7 +258,7 @@ class Flow:
             session.pages.open(ExperimentPage(session), has_grace=was_working)
 
     def _note_trial(self, previous_id: str) -> None:
-        """Take note of a new trial, and of a trial run whose points are all touched."""
+        """Note a new trial, and a trial run whose points are all touched."""
         session = self._session
         training = session.training
         if training.phase is not Phase.PAUSED:
@@ -299,7 +299,7 @@ class Flow:
         return (ScreenMessage(self._session.texts.say("warning.slicer"), Tone.WARNING),)
 
     def _pause_warnings(self) -> tuple[ScreenMessage, ...]:
-        """Say why the trial was paused where it was not the trainee who did it."""
+        """Say why the trial was paused, unless the trainee did it."""
         if self._unseen:
             return (ScreenMessage(self._session.texts.say(self._unseen), Tone.WARNING),)
         said = self._session.training.instruction

@@ -118,15 +118,15 @@ class FlowPresenter:
             self._refresh()
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return where the pictures of a state are looked from."""
+        """Return the viewpoint of the pictures of a state."""
         return self._view.pictures(now)
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
-        """Return where the ghost beside the arm is; None where none is shown."""
+        """Return the pose of the ghost beside the arm; None if none is shown."""
         return None if self._flow.playback is not None else self._session.ghost.poses(now)
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:
-        """Return how a trainee who traces the skin is guided; not at all while a trial is shown."""
+        """Return how a trainee who traces the skin is guided; not at all during a replay."""
         is_replayed = self._flow.playback is not None
         return TraceGuidance() if is_replayed else self._session.places.guidance(now)
 
@@ -136,7 +136,7 @@ class FlowPresenter:
         return seat_of(self._session, self.screen, self.control.holder, count)
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
-        """Do what a teacher wants; return why it cannot be done, "" if it is."""
+        """Carry out a teacher's order; return why it is impossible, or ""."""
         problem = instruct(self._session, self._flow, order, text)
         self._is_changed = True
         self._settle()
@@ -159,18 +159,18 @@ class FlowPresenter:
         return answer
 
     def view_joined(self, view: int, hello: Hello) -> None:
-        """Take note of a view; with a headset the next trial is one in a headset."""
+        """Register a view; with a headset the next trial is one in a headset."""
         self._views.join(view, hello)
         self._choose_mode(hello)
 
     def view_left(self, view: int) -> None:
-        """Forget a view; nobody sees the trial any more if it was the trainee's."""
+        """Forget a view; if it was the trainee's, no one sees the trial any more."""
         self._lose_sight(view, "unseen.left")
         self._choose_mode(self._views.leave(view))
         self._settle()
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
-        """Take a key: what it types, where a text has the focus, or what it does."""
+        """Process a key: it types if a text has the focus, otherwise it has its function."""
         source = self._views.source(SourceKind.KEYBOARD, view)
         if is_down and self._types(source, code, text):
             self._is_changed = True
@@ -179,7 +179,7 @@ class FlowPresenter:
         self._settle()
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Take a gamepad that a browser reads."""
+        """Process the input of a gamepad that a browser reads."""
         source = self._views.source(SourceKind.BROWSER_GAMEPAD, view)
         self.controls.set_inputs(source, w3c_gamepad_inputs(axes, buttons))
         self._settle()
@@ -192,7 +192,7 @@ class FlowPresenter:
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Take XR controllers' sticks and where the eyes above them look, or those on a screen."""
+        """Process XR controllers' sticks and the gaze above them, or sticks on a screen."""
         source = self._views.sticks_source(view, self._session.screen_sticks.is_shown)
         if source.kind is SourceKind.XR:
             self._views.look(view, yaw_deg)
@@ -203,12 +203,12 @@ class FlowPresenter:
         self._settle()
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Turn the view for the operator; nobody else may."""
+        """Turn the view, which only the operator may do."""
         source = self._views.source(SourceKind.MOUSE, view)
         self._view.turn(source, around_deg, higher_deg, zoom)
 
     def on_press(self, view: int, control: str) -> None:
-        """Take one press of a control; a name that is none does nothing."""
+        """Process one press of a control; an unknown name does nothing."""
         if control not in ControlName._value2member_map_:
             return
         name = ControlName(control)
@@ -220,7 +220,7 @@ class FlowPresenter:
         self._settle()
 
     def on_item(self, view: int, name: str) -> None:
-        """Take a click on an item of the menu, or on a hint that presses a control."""
+        """Process a click on an item of the menu, or on a hint that presses a control."""
         pressed = name.removeprefix(PRESS) if name.startswith(PRESS) else ""
         control = ControlName._value2member_map_.get(pressed)
         source = self._views.hand_source(SourceKind.MOUSE, view)
@@ -234,13 +234,13 @@ class FlowPresenter:
         self._settle()
 
     def on_text(self, view: int, name: str, value: str) -> None:
-        """Take what now stands in a text item."""
+        """Process the new text of a text item."""
         if self.controls.allows(self._views.hand_source(SourceKind.KEYBOARD, view)):
             self._session.pages.write(name, value)
             self._is_changed = True
 
     def on_frames(self, view: int, frames: Frames) -> None:
-        """Take how smoothly a view draws; what the trainee looks at is recorded."""
+        """Process how smoothly a view draws; that of the trainee's view is recorded."""
         self._views.hear(view, True)
         hello = self._views.hello(view)
         if hello is None or view != self._views.watched(self.controls.holder):
@@ -251,25 +251,25 @@ class FlowPresenter:
         self._control_loop.note_display(report)
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Pause the trial when the one who operates no longer sees it, and free the control."""
+        """Pause the trial when the operator no longer sees it, and release control."""
         if not is_visible:
             self._lose_sight(view, "unseen.hidden")
             self._settle()
 
     def on_silence(self, view: int) -> None:
-        """Pause the trial when its picture stands still, and free the control."""
+        """Pause the trial when its picture freezes, and release control."""
         self._lose_sight(view, "unseen.still")
         self._views.hear(view, False)
         self._settle()
 
     def pressed(self, control: ControlName) -> None:
-        """A control was pressed by the operator."""
+        """Process a control that the operator has pressed."""
         self._flow.pressed(control)
         self._is_changed = True
         self._settle()
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """An input was pressed; return whether an open page wants it for itself."""
+        """Offer a pressed input to the open page; return whether the page consumes it."""
         page = self._session.pages.top
         self._is_changed = True
         return page is not None and page.input_pressed(device, name)
@@ -282,7 +282,7 @@ class FlowPresenter:
         self._is_changed = True
 
     def refused(self, _source: Source) -> None:
-        """Explain how to take control to the one who tries to."""
+        """Explain how to take control to an operator who tries."""
         holder = self.controls.holder
         if holder is None:
             return
@@ -294,18 +294,18 @@ class FlowPresenter:
         self._is_changed = True
 
     def unplugged(self, source: Source) -> None:
-        """Drop a gamepad that is gone; a trial that it drove is paused, since nobody can act."""
+        """Drop a gamepad that is gone; a trial that it drove is paused, since no one can act."""
         if source == self.controls.holder:
             self._flow.pause("unseen.unplugged")
         self.controls.forget(source)
 
     def warn(self, about: str, key: str = "", **values: object) -> None:
-        """Show a warning until it is called off by an empty key."""
+        """Show a warning until it is withdrawn by an empty key."""
         self._session.notices.warn(about, key, **values)
         self._is_changed = True
 
     def happened(self, what: FeedbackEvent) -> None:
-        """Let something be heard and felt, once."""
+        """Play a sound and a vibration, once."""
         preferences = self._session.preferences
         volume = 0.0 if preferences.muted else preferences.volume / 100.0
         self._number += 1
@@ -315,7 +315,7 @@ class FlowPresenter:
         self._publish(feedback)
 
     def _may_be_taken(self) -> bool:
-        """Return whether another operator may take the control from one who rests."""
+        """Return whether another operator may take control from an idle one."""
         return not self._session.lock.is_locked
 
     def _lose_sight(self, view: int, why: str) -> None:
@@ -331,7 +331,7 @@ class FlowPresenter:
             self._session.mode = (Mode.HMD if self._views.has_headset else Mode.DESKTOP).value
 
     def _take_tick(self, result: StepResult) -> None:
-        """Keep a tick in which something happened; called in the control loop's thread."""
+        """Queue a tick in which something happened; called in the control loop's thread."""
         if result.events:
             self._results.append(result)
 

@@ -1,4 +1,4 @@
-"""The views of a simulator: who operates with which, and how the pictures are turned."""
+"""The views of a simulator: who operates which, and how the pictures are turned."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ class ViewSources:
         self._yaw_deg: dict[int, float] = {}
 
     def join(self, view: int, hello: Hello) -> None:
-        """Take note of a view."""
+        """Register a view."""
         self._views[view] = hello
 
     def leave(self, view: int) -> Hello | None:
-        """Forget a view; return what it was, None where it is not known."""
+        """Forget a view and return it; None if it is unknown."""
         self._silent.discard(view)
         self._touched.discard(view)
         self._yaw_deg.pop(view, None)
         return self._views.pop(view, None)
 
     def hello(self, view: int) -> Hello | None:
-        """Return what a view is; None where it is not known."""
+        """Return a view; None if it is unknown."""
         return self._views.get(view)
 
     @property
@@ -47,14 +47,14 @@ class ViewSources:
         return any(hello.kind == "headset" for hello in self._views.values())
 
     def hear(self, view: int, is_heard: bool) -> None:
-        """Take note whether a view says that it draws."""
+        """Note whether a view reports that it draws."""
         if is_heard:
             self._silent.discard(view)
         else:
             self._silent.add(view)
 
     def look(self, view: int, yaw_deg: float) -> None:
-        """Take where the eyes of a headset look, degrees from World's x."""
+        """Note where the eyes of a headset look, degrees from World's x."""
         self._yaw_deg[view] = yaw_deg
 
     def yaw_deg(self, holder: Source | None) -> float | None:
@@ -81,7 +81,7 @@ class ViewSources:
     def sticks_source(self, view: int, has_screen_sticks: bool) -> Source:
         """Return whose sticks a view sends: a headset's, a touch screen's, or a mouse's.
 
-        A page has sticks of its own on a touch screen; for a mouse they have been asked for.
+        A page has its own sticks on a touch screen; for a mouse they have been asked for.
         """
         hello = self._views.get(view)
         if hello is None or hello.kind == "headset":
@@ -118,11 +118,11 @@ class OperatedView:
         self._since_noted = 0.0
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return where the pictures of a state are looked from."""
+        """Return the viewpoint of the pictures of a state."""
         return self._session.view.pictures(now, self._shown.setup.scenario.cameras)
 
     def turn(self, source: Source, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Turn the view for the operator; nobody else may."""
+        """Turn the view, which only the operator may do."""
         if self._controls.is_operator(source):
             shown = self._shown
             camera = shown.setup.scenario.cameras[shown.latest.camera]

@@ -1,7 +1,8 @@
 """The phases of a procedure: which command leads from which to which, and what it leaves behind.
 
-Nothing here knows where the head is. What the trainee is shown and told is by their registration;
-the true distances in the moment of LockGuide only decide whether the guide may be locked.
+Nothing here knows where the head is. What the trainee sees and reads follows from their
+registration; the true distances at the moment of LockGuide only decide whether the guide may be
+locked.
 """
 
 from __future__ import annotations

@@ -266,7 +266,7 @@ def nearest_vertices(mesh: HeadMesh, points: np.ndarray) -> tuple[np.ndarray, np
     compared = np.empty((POINTS_AT_ONCE, len(squares)))
     for start in range(0, len(points), POINTS_AT_ONCE):
         rows = doubled[start : start + POINTS_AT_ONCE]
-        # |v|² − 2 v·p: as |v − p|², without what all vertices share.
+        # |v|² − 2 v·p: as |v − p|², without the term that all vertices share.
         some = np.matmul(rows, columns, out=compared[: len(rows)])
         some += squares
         indices[start : start + len(rows)] = some.argmin(axis=1)

@@ -165,7 +165,7 @@ class SkinShift:
 
     @property
     def amounts(self) -> dict[str, float]:
-        """What everyone may know: no seed."""
+        """What everyone may know: all but the seed."""
         return {"shiftMm": self.rms_mm, "indentationMm": self.indentation_mm}
 
     def to_json(self) -> dict[str, Any]:
@@ -174,7 +174,7 @@ class SkinShift:
 
     @classmethod
     def from_json(cls, value: Any) -> SkinShift:
-        """Return the shift in a JSON object; what it leaves out is 0.
+        """Return the shift in a JSON object; missing values are 0.
 
         Raises:
             ValueError: anything else; the words follow "must be".

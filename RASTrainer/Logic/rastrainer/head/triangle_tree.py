@@ -134,7 +134,7 @@ class TriangleTree:
         corners: (m, 3, 3) float, mm, the corners of at least one triangle.
 
     Attributes:
-        sides: The triangles, in the tree's order; the last is there several times.
+        sides: The triangles, in the tree's order; the last is repeated.
     """
 
     def __init__(self, corners: np.ndarray) -> None:

@@ -20,7 +20,7 @@ from rastrainer.igtl.message import Message, MessageReader, pack
 from rastrainer.protocol import DEFAULT_HOST, DEFAULT_PORT, DeviceName
 
 PATIENCE_S = 60.0
-"""How long is waited by default: a machine that is busy may answer only after some seconds."""
+"""How long to wait by default, s: a busy machine may take some seconds to answer."""
 _PIECE_BYTES = 64 * 1024
 
 

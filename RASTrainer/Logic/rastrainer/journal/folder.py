@@ -97,7 +97,7 @@ def read_holder(folder: Path) -> FolderHolder | None:
     except OSError:
         return None
     try:
-        # For a moment: a simulator that starts just then tries again.
+        # Only briefly: a simulator that is just starting tries again.
         lock(descriptor)
         return None
     except OSError:

@@ -91,7 +91,7 @@ def _isSliceViewShown(layoutManager: Any) -> bool:
 
 
 def fitThreeDViews() -> None:
-    """Move the cameras of the 3D views so that all that is visible is seen."""
+    """Move the cameras of the 3D views so that everything visible is in view."""
     if slicer.app.layoutManager() is not None:
         slicer.util.resetThreeDViews()
 
@@ -201,12 +201,12 @@ def downloadSample(scene: Any, logic: Any, name: str, progress: Progress) -> Any
 
 
 def _checkReachable(uri: str, name: str) -> None:
-    """Ask once, with a limit, whether there is a network at all."""
+    """Check once, with a time limit, whether there is a network."""
     try:
         with urllib.request.urlopen(urllib.request.Request(uri, method="HEAD"), timeout=ANSWER_S):
             pass
     except urllib.error.HTTPError:
-        return  # It answers; whether it has the file is Sample Data's to find out.
+        return  # It answers; Sample Data will find out whether it has the file.
     except (OSError, ValueError):
         raise InputError(_notBrought(name)) from None
 

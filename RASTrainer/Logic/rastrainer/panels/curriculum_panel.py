@@ -1,4 +1,4 @@
-"""The part Curriculum of the section Study: what trainees are to reach, and where each stands."""
+"""The part Curriculum of the section Study: what trainees should reach, and their progress."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class LandmarksPanel:
         self.showState()
 
     def close(self) -> None:
-        """Cancel what is under way."""
+        """Cancel the running work."""
         self._work.cancel()
 
     def propose(self) -> None:

@@ -106,7 +106,7 @@ class NewScenarioPanel:
         self._showUsable()
 
     def close(self) -> None:
-        """Cancel what is under way."""
+        """Cancel the running work."""
         self._work.cancel()
 
     def loadSampleData(self) -> None:

@@ -1,4 +1,4 @@
-"""The line at the top: how the link is, who trains what, and the one thing to do now."""
+"""The line at the top: the state of the link, who trains what, and the one thing to do now."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from rastrainer.trial.analysis import TrialAnalysis
 class SectionFolding:
     """Folds and opens sections whenever the workflow moves to another one, and only then.
 
-    So what the user opens or folds stays so until then. Sections without a next step, such as
+    What the user opens or folds stays so until then. Sections without a next step, such as
     Scenario and Plan, are never changed.
     """
 
@@ -72,7 +72,7 @@ class NextStepPanel:
     def __init__(
         self, ui: Any, session: ModuleSession, actions: Mapping[NextAction, Callable[[], None]]
     ) -> None:
-        """`actions` does what belongs to a section: all but waiting and looking at something."""
+        """`actions` does what belongs to a section: everything but waiting and viewing."""
         self._ui = ui
         self._session = session
         self._actions = actions
@@ -133,7 +133,7 @@ class NextStepPanel:
         session, ui = self._session, self._ui
         simulator, trial, study = session.simulator, session.training.progress, self._studyStep
         return WorkflowState(
-            # It is said at once, before a simulator is downloaded that could not be connected to.
+            # Reported at once, before downloading a simulator to which no connection is possible.
             link=session.link.status if session.link.isInstalled else notInstalled(),
             program=simulator.program.state,
             programSentence=simulator.program.sentence,
@@ -169,7 +169,7 @@ class NextStepPanel:
         setText(ui.nowTraineeText, shortName(trainee) or _("No trainee"))
         setText(ui.nowTaskText, shortName(task))
         ui.nextStepButton.text = buttonTitle(step.title)
-        # A new text takes the shortcut away.
+        # A new text removes the shortcut.
         ui.nextStepButton.setShortcut(qt.QKeySequence(SHORTCUT))
         isPossible = step.action is not NextAction.WAIT
         tip = _("The next thing to do ({shortcut})").format(shortcut=SHORTCUT)
@@ -183,7 +183,7 @@ class NextStepPanel:
         return self._session.taskTitle if task == self._session.task else task
 
     def _lookUp(self, *_arguments: Any) -> None:
-        """Look up in the study who is chosen, and what is known of them."""
+        """Look up the chosen trainee in the study."""
         trainees = self._session.trainees
         if trainees.chosen != self._trainee:
             self._trainee = trainees.chosen
@@ -200,7 +200,7 @@ class NextStepPanel:
         self.showState()
 
     def _lookAtSetup(self, _error: str = "") -> None:
-        # It is in a file, which is not to be read ten times a second.
+        # It is in a file, which should not be read ten times a second.
         self._isSetUp = self._session.simulator.setup.isCurrent
         self.showState()
 
@@ -211,7 +211,7 @@ class NextStepPanel:
         self.showState()
 
     def _takeResult(self, analysis: TrialAnalysis) -> None:
-        # Each section shows it in a separate turn; only then is there something to look at.
+        # Each section shows it in a separate turn; only then is there something to see.
         self._session.work.later(lambda: self._noteResult(analysis.record.trainee))
 
     def _noteResult(self, trainee: str) -> None:

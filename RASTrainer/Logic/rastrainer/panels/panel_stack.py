@@ -42,12 +42,12 @@ SECTIONS = (
 )
 """In the order of the work."""
 NESTED = (CurriculumPanel, LandmarksPanel, MethodsPanel)
-"""Whose widgets are in the files of other sections."""
+"""Panels whose widgets are in the files of other sections."""
 PANELS = (
     NextStepPanel,
     *SECTIONS,
 )
-"""From above to below."""
+"""From top to bottom."""
 
 
 class PanelStack:
@@ -87,7 +87,7 @@ class PanelStack:
 
 
 def _actions(sections: Mapping[type, Any]) -> dict[NextAction, Callable[[], None]]:
-    """Return what the line at the top lets the sections do."""
+    """Return the actions of the sections that the line at the top can trigger."""
     return {
         NextAction.START_SIMULATOR: sections[SimulatorPanel].startAndConnect,
         NextAction.CONNECT: sections[SimulatorPanel].connect,

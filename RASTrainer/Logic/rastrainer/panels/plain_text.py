@@ -20,12 +20,12 @@ _LONG_WORD = re.compile(rf"[^\s/\-{_BREAK}]{{{LONGEST_WORD}}}(?=[^\s/\-{_BREAK}]
 
 
 def shortened(text: str, longest: int) -> str:
-    """Return a text of at most `longest` characters, which says by its end that more was there."""
+    """Return a text of at most `longest` characters, whose end shows that it was shortened."""
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
 def wrappable(text: str) -> str:
-    """Return a text that Qt can wrap even within its longest words."""
+    """Return a text that Qt can wrap even within long words."""
     return _LONG_WORD.sub(lambda word: word.group() + _BREAK, text)
 
 

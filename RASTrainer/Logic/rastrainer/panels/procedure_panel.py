@@ -122,14 +122,14 @@ class ProcedurePanel:
         self._listening.close()
 
     def showState(self, *_arguments: Any) -> None:
-        """Show how far the procedure is; called about ten times a second."""
+        """Show the progress of the procedure; called about ten times a second."""
         ui, status = self._ui, self._logic.status
         isConnected = self._session.link.status.state is LinkState.CONNECTED
         setText(ui.procedureStateText, stateText(status, isConnected))
         setSentence(ui.procedureInstructionText, self._instruction() if isConnected else "")
         for step in STEPS:
             isReady = status.isRegistered or Phase.VERIFYING not in step.phases
-            # What cannot be registered can only be touched again.
+            # If registration fails, the only remedy is to touch again.
             isReady |= step.button == "registerAgainButton" and self._logic.isRegistrationFailed
             isNow = status.isUnderWay and status.phase in [phase.value for phase in step.phases]
             when = _(" or ").join(WHEN[phase] for phase in step.phases)
@@ -176,7 +176,7 @@ class ProcedurePanel:
 
 
 def stateText(status: ProcedureStatus, isConnected: bool) -> str:
-    """Return where the procedure is, with the numbers that the trainee sees, too."""
+    """Return the state of the procedure, with the numbers that the trainee also sees."""
     if not isConnected:
         return _("Connect to the simulator first.")
     if not status.name:
@@ -201,7 +201,7 @@ def stateText(status: ProcedureStatus, isConnected: bool) -> str:
 
 
 def instruction(status: ProcedureStatus) -> str:
-    """Return what comes next; empty where that is not the procedure's."""
+    """Return what comes next; empty if that is not part of the procedure."""
     if not status.isUnderWay:
         return ""
     if status.phase == Phase.VERIFYING.value:
@@ -232,7 +232,7 @@ def instruction(status: ProcedureStatus) -> str:
 
 
 def scoreText(outcome: ProcedureOutcome) -> str:
-    """Return the score of a procedure, and why it is not acceptable where it is not."""
+    """Return the score of a procedure, and why it is not acceptable, if so."""
     score, analysis = outcome.score, outcome.analysis
     text = _("Score of the procedure: {score} of 100 (version {version}).").format(
         score=fixed(score.score, 1), version=score.version

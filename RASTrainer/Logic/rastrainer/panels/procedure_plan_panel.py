@@ -81,12 +81,12 @@ class ProcedurePlanPanel:
         self.showState()
 
     def close(self) -> None:
-        """Cancel what is under way, and stop listening to the session."""
+        """Cancel the running work, and stop listening to the session."""
         self._work.cancel()
         self._session.taskChosen.disconnect(self._showProcedures)
 
     def edit(self) -> None:
-        """Bring the chosen procedure into the scene, in the place of the plan there."""
+        """Load the chosen procedure into the scene, in place of the plan there."""
         with slicer.util.tryWithErrorDisplay(_("The procedure cannot be edited.")):
             ui = self._ui
             scenario = chosenScenario(ui, self._session)
@@ -116,7 +116,7 @@ class ProcedurePlanPanel:
             self.showState()
 
     def restoreLine(self) -> None:
-        """Bring the line back that was removed last."""
+        """Restore the line that was removed last."""
         if self._removed:
             restoreLine(slicer.mrmlScene, self._removed.pop())
             self.showState()
@@ -138,7 +138,7 @@ class ProcedurePlanPanel:
             startPlacing(slicer.mrmlScene, node)
 
     def toggleNoGo(self) -> None:
-        """Let instruments keep away from the chosen model or segmentation, or no longer."""
+        """Make the chosen model or segmentation a no-go structure, or no longer."""
         node = self._ui.noGoComboBox.currentNode()
         if node is not None:
             setNoGo(node, not isNoGo(node))
@@ -221,7 +221,7 @@ class ProcedurePlanPanel:
             setSentence(ui.procedurePlanText, self._problem or self._verdict())
 
     def _verdict(self) -> str:
-        """Return what is wrong with the plan as it was checked, or that nothing is."""
+        """Return the errors found by the last check of the plan, or that there are none."""
         if self._checked is None:
             return ""
         if self._checked[0] != self._seen:
@@ -230,7 +230,7 @@ class ProcedurePlanPanel:
         return "\n".join(wrong) or _("The procedure can be carried out.")
 
     def _snapshot(self) -> tuple:
-        """Return a value that changes with anything that is measured."""
+        """Return a value that changes whenever a measured input changes."""
         lines = planLines(slicer.mrmlScene)
         return (
             *(

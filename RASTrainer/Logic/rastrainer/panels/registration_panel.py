@@ -104,7 +104,7 @@ class RegistrationPanel:
             setApplied(transform, applied)
 
     def _chooseFiducial(self) -> None:
-        """Bring the chosen fiducial into the slices."""
+        """Center the slices on the chosen fiducial."""
         row, shown = self._ui.residualsTable.currentRow(), self._logic.shown
         if shown is not None and 0 <= row < len(shown.labels):
             jumpTo(slicer.mrmlScene, shown.fixed_mm[row])
@@ -151,7 +151,7 @@ class RegistrationPanel:
         )
 
     def _showResiduals(self, shown: Registration | None) -> None:
-        """Show the residuals; the chosen fiducial stays chosen, whichever row is its own now."""
+        """Show the residuals; the chosen fiducial stays chosen, whichever row it is in now."""
         table, row = self._ui.residualsTable, self._ui.residualsTable.currentRow()
         chosen = self._labels[row] if 0 <= row < len(self._labels) else ""
         self._labels = () if shown is None else shown.labels
@@ -178,7 +178,7 @@ class RegistrationPanel:
     def _showRemedies(self, remedies: tuple[Remedy, ...]) -> None:
         """Show each warning with its button, in place of those before, unless they are the same.
 
-        Otherwise a button could be replaced between press and release, and the press be lost.
+        Otherwise a button could be replaced between press and release, and the press would be lost.
         """
         if remedies == self._remedies:
             return

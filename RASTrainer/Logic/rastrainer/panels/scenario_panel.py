@@ -66,7 +66,7 @@ class ScenarioPanel:
         self._fill(session.settings.get(SCENARIO))
 
     def close(self) -> None:
-        """Cancel what is under way, and stop listening to the session."""
+        """Cancel the running work, and stop listening to the session."""
         self._work.cancel()
         self._writing.cancel()
         self._adding.cancel()
@@ -98,7 +98,7 @@ class ScenarioPanel:
                 fitThreeDViews()
 
     def useHead(self) -> None:
-        """Look at a model, or at the skin of a volume, as the head."""
+        """Show a model, or the skin of a volume, as the head."""
         with slicer.util.tryWithErrorDisplay(_("This cannot be used as the head.")):
             node = self._ui.headModelComboBox.currentNode()
             used = self._work.run(lambda report: self._logic.useHead(node, report))
@@ -152,7 +152,7 @@ class ScenarioPanel:
             self.loadIntoSimulator()
 
     def _frameImages(self, _node: Any) -> None:
-        """Let the slice views show the whole images that have come, where they were before."""
+        """Fit the slice views to newly loaded images, in place of the previous ones."""
         fitSliceViews()
         self._session.slices.showAgain()
 
@@ -171,7 +171,7 @@ class ScenarioPanel:
         setChecked(self._ui.robotCheckBox, self._logic.isRobotShown)
 
     def _fill(self, wanted: str = "") -> None:
-        """Offer the scenarios there are, and choose one; the first where it is not there."""
+        """Offer the available scenarios, and choose one; the first if it is missing."""
         listed = self._logic.listed()
         names = [entry.name for entry in listed if not entry.problem] or [""]
         chosen = wanted if wanted in names else names[0]
@@ -272,7 +272,7 @@ class MethodsPanel:
         self._showMessage("")
 
     def close(self) -> None:
-        """Cancel what is under way."""
+        """Cancel the running work."""
         self._work.cancel()
 
     def compare(self) -> None:

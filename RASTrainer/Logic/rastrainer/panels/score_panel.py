@@ -1,4 +1,4 @@
-"""The section Score: a trial's scores and their parts, its motion, and other trials beside it."""
+"""The section Score: scores of a trial and their parts, its motion, and a comparison."""
 
 from __future__ import annotations
 
@@ -69,12 +69,12 @@ class ScorePanel:
         self._show()
 
     def close(self) -> None:
-        """Cancel what is under way, and stop listening to the session."""
+        """Cancel the running work, and stop listening to the session."""
         self._work.cancel()
         self._listening.close()
 
     def showTables(self) -> None:
-        """Show the section's content as tables of the scene, or give the user's layout back."""
+        """Show the section's content as tables of the scene, or restore the user's layout."""
         if not self._ui.showTablesButton.checked:
             self._session.layout.giveBack(TABLES)
             return
@@ -197,7 +197,7 @@ class ScorePanel:
         self._showFeedback()
 
     def _nameTrial(self, trial: StoredTrial | None) -> None:
-        """Say which trial is shown, once: what is said of an export or a report stays."""
+        """Name the displayed trial once, so that messages about an export or a report stay."""
         named = "" if trial is None else trial.record.trial_id
         if named == self._named:
             return

@@ -39,7 +39,7 @@ class SelfTestFixture:
         self._folder = tempfile.TemporaryDirectory(prefix="RASTrainer-")
         folder = Path(self._folder.name)
         self.study = folder / "study.db"
-        # In memory alone: a test changes nothing that the user has chosen.
+        # In memory only: a test changes no setting of the user.
         settings = Settings()
         places = replace(
             findPlaces(moduleFile, settings),

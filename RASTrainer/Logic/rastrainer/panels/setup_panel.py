@@ -84,7 +84,7 @@ class SetupPanel:
         ui, setup = self._ui, self._simulator.setup
         setText(ui.setupText, self._sentence())
         isFetching = setup.isRunning and not setup.progress.isInstalling
-        # A maximum of 0 shows that work is under way.
+        # A maximum of 0 makes a busy indicator.
         ui.setupProgressBar.maximum = setup.progress.count if isFetching else 0
         ui.setupProgressBar.value = setup.progress.done if isFetching else 0
 
@@ -134,7 +134,7 @@ class SetupPanel:
 
 
 def costSentence(ui: Any, setup: SimulatorSetup) -> str:
-    """Say from where, how much and into which folder, before anything is done."""
+    """State source, size and folder before anything is done."""
     source = _("the public package index of Python")
     if ui.wheelsPathLineEdit.currentPath:
         source = _("the folder {path}").format(path=ui.wheelsPathLineEdit.currentPath)

@@ -1,4 +1,4 @@
-"""The section Simulator: start, connect, and how the link is, in words and color."""
+"""The section Simulator: start, connect, and the state of the link in words and color."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class SimulatorPanel:
         ).format(cost=costSentence(self._ui, self._simulator.setup))
         if slicer.util.confirmOkCancelDisplay(toolTip(question), _("Set up the simulator")):
             self._ui.setupButton.click()
-            # Not if it could not be started: another set-up may follow that is to start nothing.
+            # Not if it could not be started: a later set-up should not start anything.
             self._startsAfterSetup = self._simulator.setup.isRunning
 
     def stopSimulator(self) -> None:
@@ -85,7 +85,7 @@ class SimulatorPanel:
             self._simulator.stop()
 
     def connect(self) -> None:
-        """Connect to the simulator, unless that is under way already."""
+        """Connect to the simulator, unless a connection is already being made."""
         with slicer.util.tryWithErrorDisplay(_("The connection could not be started.")):
             if self._isOff():
                 self._link.connectTo(self._ui.hostLineEdit.text, self._ui.portSpinBox.value)
@@ -96,7 +96,7 @@ class SimulatorPanel:
             self._link.disconnect()
 
     def testConnection(self) -> None:
-        """Check once whether a simulator answers, and say so when it is known."""
+        """Check once whether a simulator answers, and show the result."""
         with slicer.util.tryWithErrorDisplay(_("The connection could not be tested.")):
             host, port = self._ui.hostLineEdit.text, self._ui.portSpinBox.value
             self._showWords(self._link.testConnection(host, port, self._showTest))
@@ -147,7 +147,7 @@ class SimulatorPanel:
         setSentence(self._ui.pairingText, self._simulator.program.pairingSentence)
 
     def _showPort(self, port: int) -> None:
-        """Show where the simulator listens, which is not the user's choice and is not kept."""
+        """Show where the simulator listens, which is not chosen by the user and not saved."""
         box = self._ui.portSpinBox
         wasBlocked = box.blockSignals(True)
         box.value = port
@@ -186,7 +186,7 @@ class SimulatorPanel:
 
 
 class RunningSimulatorPanel:
-    """Wires its widgets to the session; seen only where a simulator was found."""
+    """Wires its widgets to the session; visible only if a simulator was found."""
 
     def __init__(self, ui: Any, session: ModuleSession) -> None:
         self._ui = ui
@@ -202,12 +202,12 @@ class RunningSimulatorPanel:
         self._running.changed.disconnect(self._show)
 
     def connectToIt(self) -> None:
-        """Connect to the simulator that runs already."""
+        """Connect to the simulator that is already running."""
         with slicer.util.tryWithErrorDisplay(_("The connection could not be started.")):
             self._running.connect()
 
     def endIt(self) -> None:
-        """End the simulator that runs already."""
+        """End the simulator that is already running."""
         with slicer.util.tryWithErrorDisplay(_("The simulator could not be ended.")):
             self._running.end()
 

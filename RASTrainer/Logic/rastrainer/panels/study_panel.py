@@ -70,7 +70,7 @@ class StudyPanel:
                 self._logic.begin(Path(self._ui.protocolPathLineEdit.currentPath))
 
     def enroll(self) -> None:
-        """Give the chosen trainee a place in the study."""
+        """Enroll the chosen trainee in the study."""
         with slicer.util.tryWithErrorDisplay(_("The trainee was not enrolled.")):
             self._logic.enroll()
 
@@ -80,12 +80,12 @@ class StudyPanel:
             self._logic.startStep()
 
     def saveAnswers(self) -> None:
-        """Keep the answers of the questionnaire."""
+        """Store the answers to the questionnaire."""
         with slicer.util.tryWithErrorDisplay(_("The answers were not saved.")):
             self._logic.answer(self._form.answers())
 
     def skipStep(self) -> None:
-        """Leave the step out, for a reason; one that does not do can be completed."""
+        """Skip the step, for a reason; a reason that is refused can be completed."""
         question = _("Why is it skipped? The reason goes into the report.")
         step = None if self._progress is None else self._progress.next_step
         if step is not None:
@@ -101,7 +101,7 @@ class StudyPanel:
             self._withReason(_("Repeat the step"), question, self._logic.explainRepeat)
 
     def _withReason(self, title: str, question: str, do: Callable[[str], None]) -> None:
-        """Do what takes a reason; one that does not do can be completed."""
+        """Do what needs a reason; a reason that is refused can be completed."""
         reason = self._askWhy(title, question, "", "")
         while reason:
             try:
@@ -227,7 +227,7 @@ class QuestionnaireForm:
     """Fills a widget with the items of one questionnaire after another."""
 
     def __init__(self, widget: Any) -> None:
-        """`widget` has a form layout, which is the form's alone."""
+        """`widget` has a form layout that nothing else uses."""
         self._widget = widget
         self._key: Any = None
         self._questionnaire: Questionnaire | None = None
@@ -235,7 +235,7 @@ class QuestionnaireForm:
         self._parts: list[Any] = []
 
     def show(self, key: Any, questionnaire: Questionnaire | None) -> None:
-        """Show a questionnaire, empty, unless it is the one of this key that is shown already."""
+        """Show a questionnaire, empty, unless the one with this key is already shown."""
         if key == self._key:
             return
         self._key, self._questionnaire = key, questionnaire
@@ -293,7 +293,7 @@ class QuestionnaireForm:
 
 
 def _lineOf(item: QuestionnaireItem, questionnaire: Questionnaire) -> str:
-    """Return what an item is about, with its ends where they are its own."""
+    """Return an item's question, with the ends of its scale if they are its own."""
     if not item.anchors:
         return item.topic
     return _("{topic}: {lowest} is {low}, {highest} is {high}").format(

@@ -59,7 +59,7 @@ class PlanPanel:
         self.showState()
 
     def close(self) -> None:
-        """Cancel what is under way, and stop listening to the session."""
+        """Cancel the running work, and stop listening to the session."""
         self._keeping.cancel()
         self._listening.close()
 
@@ -154,7 +154,7 @@ class PlanPanel:
         )
 
     def _read(self) -> tuple[PlanOnImages | None, str]:
-        """Return the plan, or why there is none; recomputed only where something changed."""
+        """Return the plan, or why there is none; recomputed only after a change."""
         node = self._ui.planComboBox.currentNode()
         self._offerTargets(node)
         row = self._row()

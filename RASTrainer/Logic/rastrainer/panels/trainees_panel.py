@@ -70,7 +70,7 @@ class TraineesPanel:
         self._logic.changed.disconnect(self._show)
 
     def chooseStudy(self, path: str) -> None:
-        """Continue with the study of another file, once its whole name is there."""
+        """Continue with the study of another file, once its name is complete."""
         isFile = isinstance(self._session.studyPlace, Path)
         if not isFile or not path.endswith(".db") or Path(path) == self._session.studyFile:
             return
@@ -82,7 +82,7 @@ class TraineesPanel:
             self._session.settings.set(STUDY, path)
 
     def chooseStudyAddress(self) -> None:
-        """Continue with the study of another address; without one with that of the file."""
+        """Continue with the study at another address; without one, with that of the file."""
         session, text = self._session, self._ui.studyAddressLineEdit.text.strip()
         with slicer.util.tryWithErrorDisplay(_("The study cannot be used.")):
             try:
@@ -97,7 +97,7 @@ class TraineesPanel:
             session.settings.set(STUDY_ADDRESS, text)
 
     def _showPlace(self) -> None:
-        """Show where the study is; a file is chosen only where no address is."""
+        """Show where the study is; a file is chosen only if no address is."""
         ui, place = self._ui, self._session.studyPlace
         isFile = isinstance(place, Path)
         ui.studyAddressLineEdit.text = "" if isFile else str(place)
@@ -203,7 +203,7 @@ class TraineesPanel:
             setUsable(ui.deleteTraineeButton, self._hasTrainee, tip, reason)
 
     def showLearningCurve(self) -> None:
-        """Show score and time over the trials as a plot, or give the user's layout back."""
+        """Show score and time over the trials as a plot, or restore the user's layout."""
         if not self._ui.learningCurveButton.checked:
             self._session.layout.giveBack(CURVE)
             return
@@ -213,7 +213,7 @@ class TraineesPanel:
             showChart(self._session.layout, chart)
 
     def showCalibration(self) -> None:
-        """Plot true over expected TRE of the study's trials, or give the user's layout back."""
+        """Plot true over expected TRE of the study's trials, or restore the user's layout."""
         if not self._ui.calibrationButton.checked:
             self._session.layout.giveBack(CALIBRATION)
             return
@@ -298,7 +298,7 @@ def _entry(trainee: Trainee) -> str:
 
 
 def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:
-    """Return how many trials were aborted, the trial runs apart; "" where none was."""
+    """Return how many trials were aborted, trial runs counted separately; "" for none."""
     records = [stored.record for stored in aborted if not stored.record.is_trial_run]
     runs = len(aborted) - len(records)
     if not aborted:

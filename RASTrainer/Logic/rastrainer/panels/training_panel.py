@@ -1,4 +1,4 @@
-"""The section Training: start and steer a trial, and follow it touch by touch."""
+"""The section Training: start and control a trial, and follow it touch by touch."""
 
 from __future__ import annotations
 

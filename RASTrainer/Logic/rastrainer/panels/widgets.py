@@ -1,6 +1,6 @@
-"""What the panels do with their widgets, and work that takes a while.
+"""What the panels do with their widgets, and long-running work.
 
-During that, the window stays responsive, and its user may cancel it.
+During such work the window stays responsive, and its user may cancel it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def setLight(label: Any, color: str) -> None:
 
 
 def setText(label: Any, text: str) -> None:
-    """Show what anyone may have written; what is too long is shown in full in the tool tip."""
+    """Show what anyone may have written; overlong text is shown in full in the tool tip."""
     shown = wrappable(shortened(text, LONGEST_TEXT))
     if label.text != shown:
         label.text = shown
@@ -48,7 +48,7 @@ def setText(label: Any, text: str) -> None:
 
 
 def setSentence(label: Any, sentence: str) -> None:
-    """Show a sentence in a label, which takes no room while there is none."""
+    """Show a sentence in a label, which takes no space while it is empty."""
     setText(label, sentence)
     label.visible = bool(sentence)
 
@@ -118,7 +118,7 @@ def fillComboBox(combo: Any, entries: Iterable[tuple[str, str]], chosen: str) ->
 
 
 def chosenData(combo: Any) -> str:
-    """Return the data of the chosen entry, empty where there is none."""
+    """Return the data of the chosen entry; empty if there is none."""
     return combo.itemData(combo.currentIndex) if combo.currentIndex >= 0 else ""
 
 
@@ -142,7 +142,7 @@ def setChecked(box: Any, checked: bool) -> None:
 
 
 def millimeters(value: float | None, digits: int = 2) -> str:
-    """Return a length with its unit, a dash where it is not known."""
+    """Return a length with its unit, or a dash if it is unknown."""
     return "–" if value is None else f"{value:.{digits}f} mm"
 
 
@@ -229,11 +229,11 @@ class CancelableWork:
             self._showUsable()
 
     def connectButton(self, button: Any, start: Callable[[], None]) -> None:
-        """Have a button start the work, or cancel what is under way."""
+        """Have a button start the work, or cancel the running work."""
         connectAsPressed(button, lambda: self.cancel if self.isUnderWay else start)
 
     def cancel(self) -> None:
-        """Cancel what is under way, when it next reports its progress."""
+        """Cancel the running work, when it next reports its progress."""
         self._isCanceled = True
 
     def _progress(self, step: str, share: float) -> None:

@@ -37,9 +37,9 @@ SAME_MM = 1e-3
 PLANNED_COLOR = (0x8F / 255, 0xF0 / 255, 0xD0 / 255)
 REGISTERED_COLOR = (1.0, 0xE0 / 255, 0.0)
 PLACED_COLOR = (0x3F / 255, 0x8F / 255, 0xE0 / 255)
-"""Of the planned lines, of those as the registration showed them and of what was placed, sRGB, and
-of the errors by registration and hand: the same in every picture. Green, yellow and blue are told
-apart by people who are blind to red or green, too."""
+"""Colors (sRGB) of the planned lines, of those that the registration showed and of what was placed,
+and of the errors by registration and hand: the same in every picture. People who are blind to red
+or green can distinguish green, yellow and blue, too."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -126,7 +126,7 @@ def is_inside(mesh: HeadMesh, point: np.ndarray) -> bool:
 def axis_distance_mm(mesh: HeadMesh, start: np.ndarray, end: np.ndarray) -> float:
     """Return the distance of a straight segment from a closed body, 0 where they meet.
 
-    Unless they meet, the shortest way to a triangle begins at an end of the segment, or ends on a
+    Unless they meet, the shortest path to a triangle begins at an end of the segment, or ends on a
     side of the triangle.
 
     Args:

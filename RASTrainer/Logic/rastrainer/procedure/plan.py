@@ -278,7 +278,7 @@ MAX_NO_GO_TRIANGLES = 200_000
 
 @dataclass(frozen=True, eq=False)
 class ProcedureMeshes:
-    """What lies in the way of a procedure's instruments; RAS mm.
+    """The obstacles of a procedure's instruments; RAS mm.
 
     Attributes:
         skull: bone between its outer and its inner table; closed.

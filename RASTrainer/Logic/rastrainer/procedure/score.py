@@ -36,7 +36,7 @@ MAX_MEASURE = 1e6
 VERIFYING_S, ALIGNING_S, DRILLING_S, HANDLING_S = 15.0, 45.0, 15.0, 10.0
 """Times of the reference: once, and three for each trajectory. Our own convention."""
 STAND_OFF_MM, INSERTION_MM_S = 30.0, 8.0
-"""The way of the instrument before its entry, and its speed, in the reference."""
+"""Distance that the instrument travels before its entry, and its speed, in the reference."""
 
 
 @dataclass(frozen=True)

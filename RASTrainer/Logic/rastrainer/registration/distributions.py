@@ -11,9 +11,9 @@ import numpy as np
 TERMS = 200
 """Of the continued fraction."""
 DIRECTIONS = 12
-"""Of a quadrature over an octant, each way."""
+"""Nodes of a quadrature over an octant, in each direction."""
 MAX_STEPS = 40
-"""Of the search for a bracket; the bisection does what they leave."""
+"""Steps of the search for a bracket; the bisection does the rest."""
 
 
 def f_tail(value: float, numerator: float, denominator: float) -> float:
@@ -117,7 +117,7 @@ def _quantile(
 ) -> float:
     """Return, by bisection, the value above 0 up to which a distribution has a probability.
 
-    Where most of the middles lie is known from a narrow bracket, which takes a third of the
+    A narrow bracket tells where most of the midpoints lie, which takes a third of the
     bisection's evaluations.
 
     `guess` is above 0, and `tolerance` is a share of the value.

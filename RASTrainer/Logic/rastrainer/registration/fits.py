@@ -25,7 +25,7 @@ def fit(
 ) -> np.ndarray:
     """Return the (4, 4) float transform of the given kind from moving to fixed.
 
-    `weights` (n,) float, above 0, are for rigid fits; all points count alike without them.
+    `weights` (n,) float, above 0, are for rigid fits; without them all points count equally.
     """
     if kind == AFFINE:
         return _affine(moving, fixed)
@@ -37,7 +37,7 @@ def fit(
 def symmetric_scale(moving: np.ndarray, fixed: np.ndarray) -> float:
     """Return √(Σ|b|² / Σ|a|²), a and b the moving and fixed points about their centroids.
 
-    It treats both sets alike (Horn 1987), as VTK's and ITK's landmark transforms do. Umeyama's
+    It treats both sets equally (Horn 1987), as VTK's and ITK's landmark transforms do. Umeyama's
     least-squares scale is a little smaller; the two differ in the fourth digit on good data.
     """
     return float(np.linalg.norm(_centered(fixed)) / np.linalg.norm(_centered(moving)))

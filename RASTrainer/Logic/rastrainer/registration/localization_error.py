@@ -72,7 +72,7 @@ def isotropic_error(registration: Registration) -> LocalizationError:
 
 
 def stated_error(fle_mm: np.ndarray) -> LocalizationError:
-    """Return the error of points whose localization errors are known, and alike in all directions.
+    """Return the error of points whose localization errors are known, and equal in all directions.
 
     Args:
         fle_mm: (n,) float, the RMS length of each point's error: √3 times the standard deviation

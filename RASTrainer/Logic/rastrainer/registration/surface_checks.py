@@ -1,4 +1,4 @@
-"""How far a surface match can be trusted: what is unfit for one, how far it may slide, warnings."""
+"""How far a surface match can be trusted: unusable input, how far it may slide, and warnings."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from rastrainer.registration.warnings import RegistrationWarning
 
 LEAST_POINTS, MOST_USED, MOST_POINTS = 30, 500, 100_000
 LEAST_EXTENT_MM = 10.0
-"""RMS extent of a trace along its longest axis; a smaller one is a dab at one place."""
+"""RMS extent of a trace along its longest axis; a smaller one is a dab in one spot."""
 FAR_OFF_MM = 50.0
 HEAD_EXTENT_MM = (80.0, 500.0)
-"""Of the longest side of the box around a head."""
+"""Limits of the longest side of the box around a head, mm."""
 
 SLIDE_LIMIT_MM = 3.5
 LEAST_INLIER_SHARE = 0.8
@@ -34,7 +34,7 @@ class MatchMeasures:
     Attributes:
         rms_mm: Root mean square of the inliers' residuals. It does not predict the target error.
         inlier_share: Share of the points that count.
-        converged: Whether the best fit has stopped to move.
+        converged: Whether the best fit has stopped moving.
         starts: Number of starts.
         best_starts: How many of the starts ended in the best minimum.
         spread_mm: Largest distance at the head's center between the best and where another start
@@ -131,7 +131,7 @@ def check_start(start: object, trace: np.ndarray, mesh: HeadMesh) -> np.ndarray:
 
 
 def thinned(trace: np.ndarray, most: int = MOST_USED) -> np.ndarray:
-    """Return at most so many points of a trace, evenly taken."""
+    """Return at most `count` points of a trace, evenly spaced."""
     if len(trace) <= most:
         return trace
     return trace[np.linspace(0, len(trace) - 1, most).round().astype(int)]

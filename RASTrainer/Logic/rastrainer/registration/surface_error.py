@@ -28,7 +28,7 @@ UNKNOWN_MM, UNKNOWN_RAD = 10.0, 0.2
 """Standard deviations of a pose before the first point, on each axis: what landmarks leave open."""
 USUAL_NOISE_MM = 0.5
 DAB = 10
-"""Points that are drawn where the next place is: one centimeter of way."""
+"""Points that are drawn at the next place: one centimeter of path."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,17 +171,17 @@ def _rows(
 
 
 COVERED_MM = 10.0
-"""So far from a traced point the skin counts as covered: no next place is there."""
+"""Within this distance of a traced point the skin is covered: no next place lies there."""
 SPACING_MM = 8.0
 """Between places that are compared; of more, the best one would hardly be another."""
 ABOVE_BASE_MM = 10.0
 LEAST_UPWARD = -0.3
 """Least height of a unit normal: the tool does not reach skin that faces the table."""
 LEAST_FACING = 0.5
-"""Least cosine between a normal and the way to the eye: of other skin, little is seen."""
+"""Least cosine between a normal and the line to the eye: little is seen of other skin."""
 LEAST_OUTWARD = 0.5
-"""Least cosine between a normal and the way from the head's middle: of ears, which give way, and of
-nostrils, it is less."""
+"""Least cosine between a normal and the line from the head's middle: it is less at ears, which give
+way, and at nostrils."""
 LEAST_FLATNESS = 0.95
 """Least length of the mean of unit normals around a place: lids, lips and folds bend more."""
 BEHIND_MM = 30.0
@@ -293,7 +293,7 @@ class TraceGuide:
         self._places = places
 
     def _is_kept(self, is_drawing: bool) -> bool:
-        """Return whether the last place found is still to be drawn at."""
+        """Return whether the last place found still has to be drawn."""
         if self._told_at == len(self._places):
             return True
         if self._told is None or self._told_at < 0 or not is_drawing:

@@ -189,8 +189,8 @@ GATE = 3.5
 """A point counts up to this many standard deviations, estimated from the median distance."""
 LEAST_GATE_MM = 1.0
 GATE_STEPS = 10
-"""After so many steps, the gate only narrows: with a point at the gate, leaving it out and counting
-it again could go on forever."""
+"""After this many steps, the gate only narrows: otherwise a point at the gate could be left out and
+counted again forever."""
 _NORMAL_PER_MEDIAN = 1.4826
 _LEAST_SHARE = 1e-4
 """A step is shortened no further: the nearest points change on the spot."""
@@ -203,11 +203,11 @@ NEARBY_SD = 0.25, 1.0
 NEARBY_MM = 2.0
 """How far off at most, along each axis of the pose."""
 NEARBY_STEPS, FOLLOWED = 2, 8
-"""After so many steps, so many of the starts are followed to their ends."""
+"""After this many steps, only this many of the starts are followed to their ends."""
 
 
 def gates(distances: np.ndarray) -> np.ndarray:
-    """Return up to which distance points count, (s,) float, mm, for distances (s, n)."""
+    """Return the distance up to which points count, (s,) float, mm, for distances (s, n)."""
     spread = _NORMAL_PER_MEDIAN * np.median(distances, axis=1)
     return np.maximum(LEAST_GATE_MM, GATE * spread)
 
@@ -314,7 +314,7 @@ def _replace(now: SurfaceFit, rows: np.ndarray, other: SurfaceFit) -> None:
 def _next_share(
     share: np.ndarray, before: np.ndarray, after: np.ndarray, change: np.ndarray
 ) -> np.ndarray:
-    """Return which shares (s,) of the next steps to take, by costs and the foretold change."""
+    """Return which shares (s,) of the next steps to take, by costs and the predicted change."""
     lowest = -change / np.maximum(2.0 * (after - before - change), 1e-30)
     shorter = share * np.clip(lowest, *_SHORTENED)
     return np.where(after <= before, np.minimum(1.0, 2.0 * share), shorter)

@@ -32,7 +32,7 @@ STARTS = 8
 START_SD_MM, START_SD_DEG = 5.0, 5.0
 """Of the starts about the given one, on each axis: what three landmarks leave open."""
 WIDER_STARTS, WIDER, NEAR_SKIN_MM = 16, 3.0, 1.0
-"""So many more, so many times as far off, where none brings half of the points so near the skin."""
+"""More starts, several times as far off, if none brings half of the points near the skin."""
 COARSE_POINTS, COARSE_ITERATIONS, MIDDLE_ITERATIONS = 40, 12, 30
 COARSE_TOLERANCE_MM = 0.2
 MIDDLE_TOLERANCE_MM, TOLERANCE_MM = 0.02, 1e-3
@@ -86,7 +86,7 @@ def match_surface(
     The first match with a mesh takes about half a second more, for its search tree.
 
     Args:
-        trace_mm: (n, 3) float, World, 30 points or more, about one a millimeter of way; of more
+        trace_mm: (n, 3) float, World, 30 points or more, about one per millimeter of path; of more
             than 500 points, every so many-th is used for the fit.
         mesh: The head's closed surface, RAS.
         start: (4, 4) float, rigid, World→RAS, as from three landmarks: within about 10 mm and 10°.
@@ -153,7 +153,7 @@ def _fit(
     """Return the fits, best first; the matrices of hopeless ones; how many starts ended in each.
 
     The last is up to which distance points count. All starts are first followed with some of the
-    points; those that meet go on as one, and the best of them also from many places next to it.
+    points; those that meet continue as one, and the best of them also from many places next to it.
     """
     every = None if trimmed else np.inf
     coarse = _coarse(points, mesh, start, starts, every, seed)
@@ -172,7 +172,7 @@ def _fit(
     lowest, again = _minima(middle, mesh, points, gate)
     fine = _refined(points, mesh, middle.taken(lowest), gate, seed if starts > 1 else None)
     kept, finally_ = _minima(fine, mesh, points, gate)
-    # The hopeless ones keep their places after the others.
+    # The hopeless ones stay after the others, in their order.
     number = np.concatenate([finally_[again], len(kept) + np.arange(len(first) - len(hopeful))])
     others = coarse.matrices[first[len(hopeful) :]]
     return fine.taken(kept), others, np.bincount(number[which], minlength=len(kept)), gate

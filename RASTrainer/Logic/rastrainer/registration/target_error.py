@@ -39,10 +39,10 @@ from rastrainer.registration.registration import Registration
 
 CONFIDENCE = 0.95
 COMMON_BIAS_SD_MM = 0.25
-"""Of an offset that all touches share, on each axis; 0.43 mm RMS in space. Our own assumption, not
-measured: pivoting located the tip of an optically tracked tool with a mean precision of 0.25 mm
-(Yaniv 2015, "Which pivot calibration?", SPIE Medical Imaging). Aiming beside every point, or
-hovering above it, is a larger one."""
+"""Standard deviation on each axis of an offset that all touches share; 0.43 mm RMS in space. Our
+own assumption, not measured: pivoting located the tip of an optically tracked tool with a mean
+precision of 0.25 mm (Yaniv 2015, "Which pivot calibration?", SPIE Medical Imaging). Aiming beside
+every point, or hovering above it, is a larger offset."""
 INTERVAL_NOTE = (
     "The 95 % interval of the expected TRE holds only where the errors of the points are "
     "independent, unbiased and alike. Of an offset that all touches share it allows for a standard "
@@ -205,7 +205,7 @@ def _quantile(probability: float, variances: np.ndarray, dof: float, added: floa
 def _highest(
     lowest: float, confidence: float, variances: np.ndarray, dof: float, added: float
 ) -> float:
-    """Return up to which TRE², mm², from the lowest one, there is so much confidence."""
+    """Return the TRE², mm², that is not exceeded, from the lowest one, with this confidence."""
     if added == 0.0:
         return _quantile((1 + confidence) / 2, variances, dof, 0.0)
     below = widened_probability(lowest, variances, dof, added)

@@ -1,4 +1,4 @@
-"""Calibration of the expected target errors, which needs a simulator."""
+"""Calibration of the expected target errors, which only a simulator can provide."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ class _Group:
     """Procedures that are reported together.
 
     Attributes:
-        trials: That continued with one.
+        trials: Those that continued with a procedure.
         lines: The errors of all their trajectories, as `TrajectoryErrors.to_json`.
     """
 
@@ -108,7 +108,7 @@ class _Group:
 
     @property
     def least_kept_mm(self) -> float | None:
-        """Least distance from a no-go structure; None where there was none to keep away from."""
+        """Least distance from a no-go structure; None if there was no such structure."""
         return min(self._kept_mm, default=None)
 
     @property

@@ -1,4 +1,4 @@
-"""Trainees: what they answered, groups by performance, and where they stand in their curricula."""
+"""Trainees: their answers, groups by performance, and their progress in curricula."""
 
 from __future__ import annotations
 

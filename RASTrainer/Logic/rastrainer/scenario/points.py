@@ -274,7 +274,7 @@ def _off_skin(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
 
 
 def _on_other_side(mesh: HeadMesh, landmarks: Sequence[Landmark]) -> list[str]:
-    """Return which landmarks are on the other side than their names say; +R is the right."""
+    """Return the landmarks on the opposite side to the one they are named for; +R is right."""
     places = {landmark.name: landmark.position for landmark in landmarks}
     middle = float((mesh.vertices[:, 0].max() + mesh.vertices[:, 0].min()) / 2.0)
     swapped, wrong = [], []

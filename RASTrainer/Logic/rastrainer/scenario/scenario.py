@@ -126,7 +126,7 @@ class Scenario:
         volume: the images, or None.
         procedures: planned; a trial may carry one of them out.
         landmarks: by which a trial may be registered without fiducials, in order of touching.
-        skin: how the skin lies in trials that do not set it otherwise; each has a seed of its own.
+        skin: how the skin lies in trials that do not set it otherwise; each has its own seed.
     """
 
     folder: Path

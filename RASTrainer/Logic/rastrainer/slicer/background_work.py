@@ -35,11 +35,11 @@ SWITCH_INTERVAL_S = 0.0002
 CLOSING_S = 1.0
 """How long closing waits for running work."""
 LEAVING_S = 0.2
-"""How long it then waits until that has ended what it had started."""
+"""How long it then waits for the work to end what it had started."""
 
 
 class _Workers:
-    """Has Python treat the main thread well while any worker runs.
+    """Makes Python give the main thread priority while any worker runs.
 
     It looks for no cycles of garbage: that would happen in a worker's thread, where wrappers of
     VTK's and Qt's objects must not die, and among all that Slicer holds it takes tenths of a
@@ -64,7 +64,7 @@ class _Workers:
         self._count += 1
 
     def end(self) -> None:
-        """Note that a worker has ended, or that nobody waits for it any more."""
+        """Note that a worker has ended, or that its result is no longer needed."""
         self._count -= 1
         if self._count:
             return
@@ -77,7 +77,7 @@ _WORKERS = _Workers()
 
 
 class Job(Generic[T]):
-    """One piece of work in a thread, started at once and supervised by the main thread."""
+    """One job in a thread, started at once and supervised by the main thread."""
 
     def __init__(self, work: Callable[[], T]) -> None:
         self._work = work
@@ -100,7 +100,7 @@ class Job(Generic[T]):
         self._thread.join(seconds)
 
     def leave(self) -> None:
-        """Stop supervising the thread: it has ended, or nobody waits for it."""
+        """Stop supervising the thread: it has ended, or its result is no longer needed."""
         if self._isSupervised:
             self._isSupervised = False
             _WORKERS.end()
@@ -124,7 +124,7 @@ class _Waiting:
 
 
 class BackgroundWork:
-    """Runs one piece of work after the other; `process` delivers the results in this order.
+    """Runs one job after the other; `process` delivers the results in this order.
 
     Attributes:
         began: emits nothing when there is work after there was none.
@@ -197,7 +197,7 @@ class BackgroundWork:
             self._startNext()
 
     def checkWanted(self, _step: str = "", _share: float = 0.0) -> None:
-        """End running work, which calls this in its thread, once nobody waits for it any more."""
+        """End running work, which calls this in its thread, once its result is no longer needed."""
         if self._isLeft.is_set():
             raise AbandonedWorkError
 
@@ -262,7 +262,7 @@ def inBackground(work: Callable[[Progress], T], progress: Progress) -> T:
 
 
 class CancelableUntilBegun:
-    """Has the user's wish to cancel heeded until the work begins to change something."""
+    """Lets the user cancel until the work begins to change something."""
 
     def __init__(self, progress: Progress) -> None:
         """`progress` raises to cancel, as that of `inBackground`."""
@@ -270,7 +270,7 @@ class CancelableUntilBegun:
         self._decision = threading.Lock()
 
     def begin(self) -> None:
-        """Note, in the worker, that from now on nothing is canceled; raise where it has been."""
+        """Note, in the worker, that canceling is over; raise if the work was canceled."""
         if not self._decision.acquire(blocking=False):
             raise AbandonedWorkError
 
@@ -284,4 +284,4 @@ class CancelableUntilBegun:
 
 
 class AbandonedWorkError(Exception):
-    """Nobody waits for the work any more."""
+    """The result of the work is no longer needed."""

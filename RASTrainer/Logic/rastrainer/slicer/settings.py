@@ -17,7 +17,7 @@ Value = TypeVar("Value", str, int, bool)
 
 @dataclass(frozen=True)
 class Setting(Generic[Value]):
-    """One choice: the key under which it is kept, and what holds until the user chooses."""
+    """One choice: its key in the store, and its default."""
 
     key: str
     usual: Value
@@ -51,7 +51,7 @@ class Settings:
         self._store = _Memory() if store is None else store
 
     def get(self, setting: Setting[Value]) -> Value:
-        """Return what was chosen; what is usual where nothing was, or nothing that can be read."""
+        """Return what was chosen; the default if nothing was, or it cannot be read."""
         value = self._store.value(setting.key)
         if value is None:
             return setting.usual
@@ -64,12 +64,12 @@ class Settings:
             return setting.usual
 
     def set(self, setting: Setting[Value], value: Value) -> None:
-        """Keep a choice."""
+        """Store a choice."""
         self._store.setValue(setting.key, value)
 
 
 class _Memory:
-    """Forgets with the program."""
+    """A store that lasts only as long as the program."""
 
     def __init__(self) -> None:
         self._values: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""Signals in plain Python, who listens to them, and calls whose errors stop nothing else."""
+"""Signals in plain Python, their listeners, and calls whose errors stop nothing else."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Signal:
         self._listeners.append(listener)
 
     def disconnect(self, listener: Callable[..., Any]) -> None:
-        """Call `listener` no more; one that is not connected is no error."""
+        """Stop calling `listener`; one that is not connected is no error."""
         if listener in self._listeners:
             self._listeners.remove(listener)
 
@@ -53,13 +53,13 @@ class Listening:
 
 
 class ErrorGuard:
-    """Runs one piece of work after another; each different error is logged once."""
+    """Runs one job after another; each different error is logged once."""
 
     def __init__(self) -> None:
         self._logged: set[tuple[str, str]] = set()
 
     def run(self, what: str, work: Callable[..., Any], *arguments: Any) -> Any | None:
-        """Return what `work` returns, None where it raises; `what` names it in the log."""
+        """Return what `work` returns, or None if it raises; `what` names it in the log."""
         try:
             return work(*arguments)
         except Exception as error:

@@ -12,7 +12,7 @@ from rastrainer.statistics.intervals import (
 from rastrainer.statistics.paired import PairedComparison
 
 FEW_SUBJECTS = 20
-"""Below this many subjects the limits are said even where nobody asks."""
+"""Below this many subjects the limits are stated without being asked for."""
 
 
 def what_it_shows(

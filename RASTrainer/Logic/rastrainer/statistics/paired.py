@@ -115,7 +115,7 @@ def equivalence_margin(comparison: PairedComparison) -> float:
 
 
 def holm(p_values: np.ndarray) -> np.ndarray:
-    """Return p-values adjusted for being several (Holm 1979), in their order along the last axis.
+    """Return p-values adjusted for multiple testing (Holm 1979), in order along the last axis.
 
     Args:
         p_values: (…, k) float.

@@ -162,7 +162,7 @@ class CohortTrend:
 
 
 def cohort_trend(series: Sequence[Sequence[float]], better: int) -> CohortTrend | None:
-    """Return the trend of several trainees; None where nobody has four trials.
+    """Return the trend of several trainees; None if no trainee has four trials.
 
     Args:
         series: Of each trainee the values of all trials, in their order.

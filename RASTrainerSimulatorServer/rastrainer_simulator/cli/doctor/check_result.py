@@ -19,10 +19,10 @@ class CheckResult:
     """One line of the doctor.
 
     Attributes:
-        check: what was looked at, such as "ports".
+        check: what was checked, such as "ports".
         verdict: ok, warning or problem.
         sentence: what was found.
-        remedy: what to do; "" where nothing is.
+        remedy: what to do; "" if nothing.
     """
 
     check: str

@@ -111,7 +111,7 @@ def _port(port: int, what: str, verdict: CheckStatus, remedy: str) -> CheckResul
 
 
 def _refusal(port: int) -> str | None:
-    """Return why a port of this computer cannot be listened on, None where it can."""
+    """Return why a port of this computer cannot be used, or None if it can."""
     try:
         listening_socket(socket.AF_INET, (DEFAULT_HOST, port)).close()
     except OSError as error:
@@ -128,7 +128,7 @@ def _holder(port: int) -> str:
     if not inodes:
         return ""
     for process in Path("/proc").glob("[0-9]*"):
-        # Of other users' processes it is only known that they are there.
+        # Other users' processes are visible, but not their sockets.
         with contextlib.suppress(OSError):
             for descriptor in (process / "fd").iterdir():
                 if str(descriptor.readlink()) in inodes:

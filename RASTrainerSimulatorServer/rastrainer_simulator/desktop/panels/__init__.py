@@ -1,1 +1,1 @@
-"""The panels over the picture, painted from what the simulator's screen says."""
+"""The panels over the picture, painted from the simulator's screen."""

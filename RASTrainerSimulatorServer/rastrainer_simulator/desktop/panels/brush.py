@@ -1,4 +1,4 @@
-"""Set text in lines: how wide it is, where it breaks, where it stands, and its letters.
+"""Set text in lines: its width, line breaks, position, and letters.
 
 VTK's FreeType sets them, in its own font, the same on every system. That has no Chinese characters;
 these are set in a font of this computer.
@@ -58,7 +58,7 @@ class Brush:
         return letters.coverage.shape[1]
 
     def line(self, text: str, style: TextStyle) -> Letters:
-        """Return one line; what the font lacks stays empty."""
+        """Return one line; characters missing from the font stay empty."""
         return set_line(text, max(1, round(style.size * self.scale)), style.is_bold)
 
     def width(self, text: str, style: TextStyle) -> int:
@@ -87,7 +87,7 @@ class Brush:
         return lines
 
     def fit(self, text: str, style: TextStyle, width: float) -> str:
-        """Return a text that is at most `width` pixels wide, shortened in the end if need be."""
+        """Return a text that is at most `width` pixels wide, shortened at its end if needed."""
         if self.width(text, style) <= width:
             return text
         while text and self.width(f"{text}…", style) > width:
@@ -121,13 +121,13 @@ _MEASURE_HEIGHT = "x"
 _BOLD_SHARE = 1 / 24
 """How much thicker a bold stroke is, of the size: a font file has one weight."""
 _IN_THE_FONT = str.maketrans({"\u202f": "\u00a0"})
-"""What stands for what the font lacks: for the narrow no-break space, the wide one."""
+"""Replacements for characters missing from the font: the narrow no-break space by the wide one."""
 _RUNS = re.compile(f"([{_WIDE}]+)")
 
 
 @lru_cache(maxsize=2000)
 def set_line(text: str, pixels: int, is_bold: bool) -> Letters:
-    """Return a line of a size in pixels; what no font has stays empty."""
+    """Return a line of a size in pixels; characters of no font stay empty."""
     runs = filter(None, _RUNS.split(text.translate(_IN_THE_FONT)))
     return _beside([_set_run(run, pixels, is_bold) for run in runs])
 

@@ -32,11 +32,11 @@ class Box(NamedTuple):
     height: int
 
     def inset(self, by: int) -> Box:
-        """Return the box that is smaller by so much on each side."""
+        """Return the box made smaller by a margin on each side."""
         return Box(self.left + by, self.top + by, self.width - 2 * by, self.height - 2 * by)
 
     def contains(self, x: float, y: float) -> bool:
-        """Return whether a point is in it."""
+        """Return whether a point is inside."""
         return self.left <= x < self.left + self.width and self.top <= y < self.top + self.height
 
 
@@ -187,7 +187,7 @@ def fringe_picture(thickness: int, color: Color, side: Side) -> np.ndarray:
 
 
 class Thumbnail:
-    """A picture that can be had in any size; two are the same only if they are one."""
+    """A picture that can be made in any size; two are equal only if they are identical."""
 
     def __init__(self, surface: pygame.Surface):
         self._surface = surface
@@ -209,7 +209,7 @@ class Thumbnail:
         return cls(plain)
 
     def fitted(self, width: int, height: int) -> np.ndarray:
-        """Return it as large as fits, (height, width, 3) uint8, the top row first."""
+        """Return it scaled to fit, (height, width, 3) uint8, the top row first."""
         across, down = self._surface.get_size()
         factor = min(width / across, height / down)
         size = (max(1, round(factor * across)), max(1, round(factor * down)))
@@ -262,7 +262,7 @@ class Sprite:
         self._actor.VisibilityOn()
 
     def hide(self) -> None:
-        """Show it no longer."""
+        """Hide it."""
         self._actor.VisibilityOff()
 
 

@@ -27,7 +27,7 @@ FACES = (
     ((80, 20), "Y", rgba(0xFFB92E)),
 )
 LETTERS = ((0.0, "QWERTYUIOP"), (2.5, "ASDFGHJKL"), (7.0, "ZXCVBNM"))
-"""Of each row of keys, where it begins and what is on it."""
+"""For each row of keys, where it begins and what is on it."""
 KEY_STEP = 9.0
 SHOULDERS = (((12, 9), "LT"), ((74, 9), "RT"))
 

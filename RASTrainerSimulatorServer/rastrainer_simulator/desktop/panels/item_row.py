@@ -156,10 +156,10 @@ _DRAW_VALUE = {
 
 
 _PLOT_HEIGHT = 0.55
-"""Of a plot as large as its column is wide."""
+"""Height of a plot as a share of its column's width."""
 _BROADEST_BAR = 8 * theme.STEP
 _BAR_SHARE = 0.72
-"""Of the distance from one bar to the next."""
+"""Width of a bar as a share of the distance to the next one."""
 
 
 def trend_height(brush: Brush, width: int) -> int:

@@ -79,9 +79,9 @@ def menu_panel(
 
 
 class _Layout:
-    """Where everything of a menu comes, at one scale.
+    """The layout of a menu, at one scale.
 
-    A picture needs a width of its own; without one, the widest panel has its text in two columns.
+    A picture needs its own width; without one, the widest panel has its text in two columns.
     A trend has the text under it.
     """
 
@@ -160,7 +160,7 @@ class _Layout:
         return sum(len(lines) * height + gap for lines in self._lines)
 
     def _height_beside(self, content: int) -> int:
-        """Return how high it is for the sake of what stands beside the rows alone."""
+        """Return the height needed by what stands beside the rows alone."""
         title = len(self._title) * self._brush.line_height(theme.TITLE)
         return 2 * self._pad + title + self._brush.px(theme.PAD) + content
 

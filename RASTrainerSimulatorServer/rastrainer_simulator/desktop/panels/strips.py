@@ -23,7 +23,7 @@ def instruction(message: ScreenMessage, brush: Brush, room: int) -> np.ndarray:
 
 
 def warning(message: ScreenMessage, brush: Brush, room: int) -> np.ndarray:
-    """Return what is wrong, on a ground that cannot be overlooked."""
+    """Return the warnings, on a background that cannot be overlooked."""
     return _sentence(message, theme.STRONG, theme.BANNERS[message.tone], theme.TEXT, brush, room)
 
 
@@ -48,7 +48,7 @@ def status(facts: Sequence[str], brush: Brush, room: int) -> np.ndarray:
 
 
 def legend(text: str, brush: Brush, _room: int) -> np.ndarray:
-    """Return what the paint on the skin says, beside a sample of it."""
+    """Return the meaning of the paint on the skin, beside a sample of it."""
     pad, step = brush.px(theme.GAP), brush.px(theme.STEP)
     sample = brush.line_height(theme.SMALL_STRONG)
     width = sample + brush.width(text, theme.SMALL_STRONG) + 2 * pad + step
@@ -144,7 +144,7 @@ def _hints_width(row: Sequence[Hint], brush: Brush) -> int:
 def _write_hint(canvas: Canvas, hint: Hint, brush: Brush, box: Box, is_hovered: bool) -> None:
     """Draw a key cap and its action; what can be clicked is colored as buttons are.
 
-    What is written on the cap already is not said twice.
+    What is already written on the cap is not repeated.
     """
     left, top, height = box.left, box.top, box.height
     width = _cap_width(hint.control, brush)

@@ -159,7 +159,7 @@ RINGS_MM = (1.0, 5.0, 20.0)
 FARTHEST_MM, NEAR_MM = 60.0, 0.6
 """What the outer edge stands for, and where the scale turns from even to logarithmic."""
 GOOD_MM, GOOD_DEG = 0.5, 0.5
-"""So near, a hand is on the line."""
+"""Within this distance, a hand is on the line."""
 DOT, RING = 9, 15
 
 Place = tuple[float, float]
@@ -264,7 +264,7 @@ GAUGE_WIDTH, GAUGE_HEIGHT = 260, 520
 TRACK_LEFT, TRACK_WIDTH, TRACK_TOP, TRACK_BOTTOM = 96, 44, 76, 24
 TICK_MM = 10.0
 BEYOND_MM = 10.0
-"""So far past the target the scale goes."""
+"""How far the scale goes past the target."""
 
 
 @dataclass(frozen=True)

@@ -41,11 +41,11 @@ _LISTED = (
     ("menu", (ControlName.MENU,)),
 )
 REMEMBERED = 4
-"""So many inputs are shown on the page to try them."""
+"""Number of inputs shown on the page to try them."""
 
 
 class ControlsPage(SessionPage):
-    """Which input does what, on whatever the reader has in their hands."""
+    """Which input does what, on the device in the reader's hands."""
 
     name = "controls"
 
@@ -56,7 +56,7 @@ class ControlsPage(SessionPage):
     def menu(self) -> Menu:
         """Return the list of the controls."""
         session = self.session
-        # Two ways of a stick tell which one it is; a key has only one.
+        # Two directions of a stick identify it; a key has only one.
         most = len(ControlName) if session.operator.kind is InputDevice.KEYBOARD else 2
         facts = tuple(
             Fact(
@@ -207,7 +207,7 @@ class BindingsPage(SessionPage):
 
 
 class ListenPage(SessionPage):
-    """Waits for the new input of one control; the control for the menu calls it off."""
+    """Waits for the new input of one control; the control for the menu cancels it."""
 
     name = "listen"
 
@@ -218,7 +218,7 @@ class ListenPage(SessionPage):
         self._left = LISTEN_S
 
     def menu(self) -> Menu:
-        """Return what is asked for."""
+        """Return the request for an input."""
         control = self.say(f"control.{self._control.value}")
         key = f"listen.{self._device.value}"
         text = self.say(key, control=control, seconds=math.ceil(self._left))
@@ -226,11 +226,11 @@ class ListenPage(SessionPage):
         return Menu(self.name, title, (text,), items=(self.button("cancel"),))
 
     def accept(self, item: str) -> None:  # noqa: ARG002
-        """Call it off."""
+        """Cancel."""
         self.back()
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Take the input, or ask what shall become of the control that it works now."""
+        """Assign the input, or ask what to do about the control that has it now."""
         if device is not self._device:
             return False
         session = self.session
@@ -244,14 +244,14 @@ class ListenPage(SessionPage):
         return True
 
     def advance(self, dt: float) -> None:
-        """Give up after a while."""
+        """Give up after some time."""
         self._left -= dt
         if self._left <= 0.0:
             self.back()
 
 
 class ConflictPage(SessionPage):
-    """The input works another control already: the two are exchanged, or nothing changes."""
+    """The input already belongs to another control: the two are exchanged, or nothing changes."""
 
     name = "conflict"
 
@@ -274,7 +274,7 @@ class ConflictPage(SessionPage):
         return Menu(self.name, self.say("conflict.title"), (text,), items=items)
 
     def accept(self, item: str) -> None:
-        """Exchange, listen again, or leave it."""
+        """Exchange, listen again, or cancel."""
         pages = self.session.pages
         if item == "another":
             pages.replace(ListenPage(self.session, self._device, self._control))
@@ -285,7 +285,7 @@ class ConflictPage(SessionPage):
 
 
 def rebind(session: TrainingSession, device: InputDevice, control: ControlName, name: str) -> None:
-    """Give a control its new input and say so, or say why that cannot be."""
+    """Give a control its new input and say so, or say why that is impossible."""
     try:
         bindings = session.bindings.rebound(device, control, name)
     except InputError:

@@ -51,7 +51,7 @@ class ExperimentPage(SessionPage):
         self.first = first or self._next_task()
 
     def menu(self) -> Menu:
-        """Return who, how and what."""
+        """Return the menu: trainee, mode and tasks."""
         session = self.session
         trainee = MenuItem(
             "trainee",
@@ -126,12 +126,12 @@ class ExperimentPage(SessionPage):
             self.session.procedure = names[(names.index(present) + direction) % len(names)]
 
     def write(self, item: str, value: str) -> None:
-        """Take the trainee's ID."""
+        """Set the trainee's ID."""
         if item == "trainee":
             self.session.trainee = value.lstrip()[:LONGEST_ID]
 
     def _trend(self) -> ScoreTrend | None:
-        """Return the trainee's scores in the chosen mode; a study may have a mark of its own."""
+        """Return the trainee's scores in the chosen mode; a study may have its own pass mark."""
         session = self.session
         scores = session.history.trend(session.trainee.strip(), session.mode)
         if not scores:
@@ -163,7 +163,7 @@ class ExperimentPage(SessionPage):
         return (self.choice("procedure", value, is_enabled=step is None, help=help_),)
 
     def _assignments(self) -> tuple[MenuItem, ...]:
-        """Return the button of the curriculum; none for who has none."""
+        """Return the button of the curriculum; none for a trainee without one."""
         curriculum, words = self.session.curriculum, self.session.assignment_texts
         if curriculum is None:
             return ()
@@ -260,7 +260,7 @@ class ScenarioPage(SessionPage):
         self.session.setting_up.use_scenario(self._wanted)
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Go back when the head that was chosen is there; stay where it was refused."""
+        """Go back once the chosen head is loaded; stay if it was refused."""
         if not self._wanted or self.session.setting_up.is_under_way:
             return
         is_there = self.session.scenario.name == self._wanted
@@ -294,7 +294,7 @@ class AssignmentsPage(SessionPage):
         self.first = "" if curriculum is None else _ASSIGNMENT + curriculum.next
 
     def menu(self) -> Menu:
-        """Return the list as Slicer told it last."""
+        """Return the list that Slicer sent last."""
         curriculum = self.session.curriculum
         back = self.button("back")
         if curriculum is None:

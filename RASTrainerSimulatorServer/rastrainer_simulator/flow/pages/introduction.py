@@ -1,4 +1,4 @@
-"""What leads a trainee in: sheets of text, the menu over the tutorial, and what comes after it."""
+"""Introducing a trainee: sheets of text, the menu over the tutorial, and what comes after it."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ class IntroductionPage(SessionPage):
 
 
 class TutorialPage(SessionPage):
-    """Continues the tutorial, begins it anew or leaves it."""
+    """Continues the tutorial, restarts it or leaves it."""
 
     name = "tutorial"
 
     def menu(self) -> Menu:
-        """Return what one can do with the tutorial."""
+        """Return the choices for the tutorial."""
         tutorial = self.session.tutorial
         step, steps = (1, 1) if tutorial is None else tutorial.place
         may_skip = tutorial_rule(self.session) is not TutorialRule.REQUIRED

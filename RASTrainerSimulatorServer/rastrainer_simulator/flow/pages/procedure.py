@@ -78,7 +78,7 @@ class ProcedurePage(SessionPage):
         return Menu(self.name, title, text, items=(*items, self.button("work")))
 
     def accept(self, item: str) -> None:
-        """Do what was chosen; a refusal is said over the picture."""
+        """Do what was chosen; a refusal is shown over the picture."""
         self.session.pages.close()
         if item in _COMMANDS:
             arguments = {"standOffMm": STAND_OFF_MM} if item == "align" else {}

@@ -35,7 +35,7 @@ class FinishedPage(SessionPage):
     """What both pages after a trial offer."""
 
     def items(self) -> tuple[MenuItem, ...]:
-        """Return where one can go from here."""
+        """Return where the trainee can go from here."""
         best, words = self.session.next_assignment, self.session.assignment_texts
         following = self._following()
         title = self.session.task_title(following) if best is None else words.label(best)
@@ -79,7 +79,7 @@ class WaitingPage(FinishedPage):
     name = "waiting"
 
     def menu(self) -> Menu:
-        """Return who is waited for."""
+        """Return whom the trainee is waiting for."""
         session = self.session
         own, is_there = session.own_score, session.is_slicer_connected()
         key = "waiting.slicer" if is_there else "waiting.nobody"
@@ -93,7 +93,7 @@ class WaitingPage(FinishedPage):
 
 
 class ResultPage(FinishedPage):
-    """The score, what it is made of, and the trial once more."""
+    """The score, its parts, and the trial again."""
 
     name = "result"
 
@@ -127,7 +127,7 @@ class ResultPage(FinishedPage):
         )
 
     def items(self) -> tuple[MenuItem, ...]:
-        """Return where one can go, and what can be shown again."""
+        """Return where the trainee can go, and what can be shown again."""
         items = {item.name: item for item in super().items()}
         has_procedure = bool(procedure_details(self.session.training.result))
         shown = tuple(
@@ -165,7 +165,7 @@ class ResultPage(FinishedPage):
             session.pages.open(ReplayPage(session, self._loading, begins_at_worst))
 
     def _what_comes_next(self) -> tuple[str, ...]:
-        """Return what a study asks for after this trial."""
+        """Return what a study requires after this trial."""
         step = self._step()
         return () if step is None else (self.session.step_sentence(step),)
 
@@ -200,7 +200,7 @@ class ResultPage(FinishedPage):
         return facts
 
     def _score_label(self, result: TrialResult) -> str:
-        """Return what the score is of: a procedure has one of its own."""
+        """Return what the score is for: a procedure has its own."""
         has_procedure = bool(procedure_details(result))
         return self.say("procedure-errors.touches" if has_procedure else "result.score")
 
@@ -221,7 +221,7 @@ def _beyond_limits(result: TrialResult) -> list[str]:
 
 
 def _not_good(fact: Fact) -> Fact:
-    """Nothing about a trial looks good that would have missed the target or hurt the patient."""
+    """Nothing looks good about a trial that would have missed the target or hurt the patient."""
     return replace(fact, tone=Tone.PLAIN) if fact.tone is Tone.GOOD else fact
 
 
@@ -255,7 +255,7 @@ def _feedback(texts: Texts, result: TrialResult) -> list[str]:
 
 
 def _sentences(texts: Texts, result: TrialResult, name: str, most: int) -> list[str]:
-    """Return what Slicer says about the registration: what is no sentence is left out."""
+    """Return what Slicer says about the registration: anything but sentences is left out."""
     said = result.details.get(name)
     if not isinstance(said, list):
         return []
@@ -281,7 +281,7 @@ def _value(texts: Texts, value: Any) -> Any:
     if _is_number(value):
         return value
     if isinstance(value, dict):
-        # A part has no parts of its own, however deep what is said may be.
+        # A part has no parts itself, however deep the message may be.
         return _worded(texts, {**value, "values": _plain(value.get("values"))})
     return _worded(texts, value)
 

@@ -1,4 +1,4 @@
-"""What every page of the menus has: the session, its texts, and hints that press a control."""
+"""What all pages of the menus share: the session, its texts, and hints that press a control."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rastrainer_simulator.presentation.screen import PRESS, Hint, ItemKind, Menu
 
 
 class SessionPage(Page):
-    """A page that reads and changes the session; it keeps only what belongs to itself."""
+    """A page that reads and changes the session; it stores only its own state."""
 
     def __init__(self, session: TrainingSession) -> None:
         self.session = session

@@ -25,7 +25,7 @@ from rastrainer_simulator.texts.texts import LANGUAGES
 
 
 class StartPage(SessionPage):
-    """Where everything begins. Who has not read the introduction is led through it once."""
+    """The first menu. A trainee who has not read the introduction is led through it once."""
 
     name = "start"
 
@@ -54,11 +54,11 @@ class StartPage(SessionPage):
         self.session.pages.open(pages[item](self.session))
 
     def back(self) -> None:
-        """There is nothing before it."""
+        """Do nothing: there is no previous page."""
 
 
 class QuitPage(SessionPage):
-    """Asks once more before the simulator is shut down."""
+    """Asks for confirmation before the simulator is shut down."""
 
     name = "quit"
     first = "stay"
@@ -76,7 +76,7 @@ class QuitPage(SessionPage):
 
 
 class SettingsPage(SessionPage):
-    """One choice for each preference; what would change a running trial waits for its end."""
+    """One choice for each preference; any that would change a running trial wait for its end."""
 
     name = "settings"
 
@@ -98,7 +98,7 @@ class SettingsPage(SessionPage):
             self.session.lock.lock()
 
     def step(self, item: str, direction: int) -> None:
-        """Choose another option, which counts at once."""
+        """Choose another option, which takes effect at once."""
         wanted = self.session.preferences.stepped(item, direction)
         while wanted.language not in self.session.languages:
             wanted = wanted.stepped("language", direction)
@@ -136,7 +136,7 @@ _DELETE_KEY = "Backspace"
 
 
 class PinPage(SessionPage):
-    """Takes digits, shows a dot for each, and unlocks by the right ones.
+    """Accepts digits, shows a dot for each, and unlocks if they are right.
 
     Typed digits never are the value of an item: that would be sent to every view.
     """
@@ -149,18 +149,18 @@ class PinPage(SessionPage):
         self._pin = ""
 
     def menu(self) -> Menu:
-        """Return the digits, and what is done with them."""
+        """Return the digits, and the actions on them."""
         is_whole = len(self._pin) >= SHORTEST_PIN
         digits = tuple(self.button(digit, label=digit) for digit in DIGITS)
         help_ = "" if is_whole else self.say("pin.too short")
         dots = "•" * len(self._pin) + "_"
-        # First, so that the dots are seen wherever the digits need more room than there is.
+        # First, so that the dots are visible even if the digits need more room than there is.
         unlock = self.button("unlock", value=dots, is_enabled=is_whole, help=help_)
         items = (unlock, *digits, self.button("delete"), self.button("cancel"))
         return Menu(self.name, self.say("pin.title"), (self.say("pin.text"),), items=items)
 
     def accept(self, item: str) -> None:
-        """Take a digit or take it back, have the PIN looked at, or leave."""
+        """Add or remove a digit, have the PIN checked, or leave."""
         if item == "cancel":
             self.back()
         elif item == "unlock":
@@ -171,7 +171,7 @@ class PinPage(SessionPage):
             self._add(item)
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Take a digit that is typed; the focus goes to what unlocks, for the key Enter."""
+        """Add a typed digit; the focus goes to the button that unlocks, for the key Enter."""
         if device is not InputDevice.KEYBOARD or name not in {*_KEYS, _DELETE_KEY}:
             return False
         if name == _DELETE_KEY:
@@ -183,7 +183,7 @@ class PinPage(SessionPage):
         return True
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Unlock and go back, or say why not, once the PIN has been looked at."""
+        """Unlock and go back, or say why not, once the PIN has been checked."""
         session = self.session
         try:
             answer = session.lock.take_answer()

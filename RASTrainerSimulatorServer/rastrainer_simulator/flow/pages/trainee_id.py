@@ -13,7 +13,7 @@ from rastrainer_simulator.presentation.screen import Fact, Menu
 ROWS = ("ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-_.", "0123456789")
 MAX_KNOWN = 5
 _KNOWN, _ROW = "known ", "row "
-"""Before an ID or a row's number in the name of an item."""
+"""Prefix of an ID or a row's number in the name of an item."""
 
 
 class KeyboardPage(SessionPage):
@@ -41,7 +41,7 @@ class KeyboardPage(SessionPage):
         )
 
     def accept(self, item: str) -> None:
-        """Type a character, take one back, or finish."""
+        """Type a character, delete one, or finish."""
         trainee = self.session.trainee
         if item == "done":
             self.back()
@@ -65,7 +65,7 @@ class KeyboardPage(SessionPage):
 
 
 class ClickedIdPage(SessionPage):
-    """Offers the IDs that have trained here last, and rows of characters to make another of."""
+    """Offers the IDs that have trained here last, and rows of characters to enter another one."""
 
     name = "clicked-id"
 
@@ -91,7 +91,7 @@ class ClickedIdPage(SessionPage):
         )
 
     def accept(self, item: str) -> None:
-        """Take an ID, open a row, take a character back, or finish."""
+        """Use an ID, open a row, delete a character, or finish."""
         if item.startswith(_ROW):
             row = ROWS[int(item.removeprefix(_ROW))]
             self.session.pages.open(CharacterPage(self.session, self._write, row))
@@ -136,7 +136,7 @@ UNANSWERED = "–"
 
 
 class QuestionnairePage(SessionPage):
-    """Takes an answer to each item, and hands them over together for Slicer to keep."""
+    """Collects an answer to each item, and submits them together for Slicer to store."""
 
     name = "questionnaire"
 
@@ -179,7 +179,7 @@ class QuestionnairePage(SessionPage):
         return Menu(self.name, asked.title, (text,), items=(*items, keep, self.button("back")))
 
     def _line(self, item: QuestionnaireItem) -> str:
-        """Return what an item is about, with its ends where they are its own."""
+        """Return an item's question, with the ends of its scale if they are its own."""
         topic = self.say(item.name)
         if not item.anchors:
             return topic
@@ -202,13 +202,13 @@ class QuestionnairePage(SessionPage):
             self._answers[item] = marks[place % len(marks)]
 
     def accept(self, item: str) -> None:
-        """Hand the answers over, or leave without them."""
+        """Submit the answers, or leave without them."""
         if item == "keep":
             answers = [self._answers[asked.name] for asked in self._questionnaire.items]
             self.session.study.answer(self._step.trainee, answers)
         self.back()
 
     def advance(self, dt: float) -> None:  # noqa: ARG002
-        """Close when the study continues otherwise, such as with answers given in Slicer."""
+        """Close when the study has moved on, for example with answers given in Slicer."""
         if self.session.study.step_of(self._step.trainee) != self._step:
             self.back()

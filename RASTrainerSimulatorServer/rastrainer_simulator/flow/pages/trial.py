@@ -1,4 +1,4 @@
-"""The pages over a trial that is open: the menu, what is paused, giving up, registering.
+"""The pages over an open trial: the menu, pausing, aborting, registering.
 
 A trace is registered once its match has been looked at: a small residual does not mean a small
 error, so that both are shown, and what looks wrong with the match.
@@ -82,7 +82,7 @@ class MatchPage(SessionPage):
     """Tells what is known of a match; the trial is registered only when it is accepted."""
 
     name = "match"
-    # Nobody who presses twice accepts what they have not read.
+    # Someone who presses twice should not accept what they have not read.
     first = "draw"
 
     def __init__(self, session: TrainingSession, looked: Future[MatchReport]) -> None:
@@ -169,7 +169,7 @@ class TrialPage(SessionPage):
             self.session.pages.close()
 
     def _register(self) -> None:
-        """Register the trial; where there is a trace, its match is looked at first."""
+        """Register the trial; if there is a trace, its match is shown first."""
         session = self.session
         if session.training.trace is None:
             session.do(CommandName.REGISTER)
@@ -185,7 +185,7 @@ class TrialPage(SessionPage):
 
 
 class AbortPage(SessionPage):
-    """Asks once more before a trial is given up."""
+    """Asks for confirmation before a trial is aborted."""
 
     name = "abort"
     first = "keep"

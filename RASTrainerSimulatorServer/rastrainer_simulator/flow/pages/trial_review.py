@@ -185,7 +185,7 @@ class ReplayPage(SessionPage):
             self._do(self._player, PlayerAction.WORST)
 
     def _do(self, player: Player, action: PlayerAction) -> None:
-        """Carry out an action; the worst touch is looked at from where it is seen best."""
+        """Carry out an action; the worst touch is shown from where it is seen best."""
         player.do(action)
         if action is PlayerAction.WORST and player.playback.trial.worst is not None:
             self.session.view.want_best()

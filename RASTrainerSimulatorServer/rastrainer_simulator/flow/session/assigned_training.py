@@ -136,7 +136,7 @@ class Curricula:
 def newly_reached(
     before: CurriculumMessage | None, now: CurriculumMessage | None
 ) -> Iterator[AssignmentMessage]:
-    """Yield the assignments that a trainee has reached since Slicer told of them before."""
+    """Yield the assignments that a trainee has reached since Slicer's previous message."""
     if before is None or now is None or before is now or before.trainee != now.trainee:
         return
     for each in now.assignments:

@@ -334,7 +334,7 @@ class TrainingSession:
         return f"{whole // 60:02d}:{whole % 60:02d}"
 
     def _note_reached(self) -> None:
-        """Say which assignment the trainee has reached since Slicer told of it before."""
+        """Announce the assignment that the trainee has reached since Slicer's last message."""
         before, self._noted = self._noted, self.curriculum
         for each in newly_reached(before, self._noted):
             title = self.assignment_texts.title(each)

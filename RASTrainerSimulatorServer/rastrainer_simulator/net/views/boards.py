@@ -1,4 +1,4 @@
-"""Teachers' boards at this seat: what they are told of it, and what they may order with its PIN.
+"""Teachers' boards at this seat: what they receive, and what they may order with its PIN.
 
 A board sees who trains, how far they are and what is wrong; it may pause, say something, or show a
 replay.
@@ -37,7 +37,7 @@ _order_name = one_of(*(order.value for order in InstructorOrder))
 
 
 class Boards:
-    """The joined boards; all are told the same, and only when it has changed."""
+    """The joined boards; all receive the same, and only when it has changed."""
 
     def __init__(self) -> None:
         self._joined: dict[int, ViewSocket] = {}
@@ -49,8 +49,8 @@ class Boards:
         return bool(self._joined)
 
     async def serve(self, board: ViewSocket, now: SimulationState, seat: Seat) -> None:
-        """Tell a board everything, and have it told what changes until it leaves."""
-        # First the others: then all know the same, and the new one is told nothing twice.
+        """Send a board everything, and then each change until it leaves."""
+        # First the others: then all know the same, and the new one receives nothing twice.
         self.tell(now, seat)
         self._joined[board.number] = board
         try:
@@ -61,7 +61,7 @@ class Boards:
             del self._joined[board.number]
 
     def is_due(self, time_s: float) -> bool:
-        """Return whether anybody is to be told something now."""
+        """Return whether there is anything to send to a board now."""
         return bool(self._joined) and self._pacer.is_due(time_s)
 
     def tell(self, now: SimulationState, seat: Seat) -> None:
@@ -78,7 +78,7 @@ class Boards:
 
 
 def seat_text(now: SimulationState, seat: Seat) -> str:
-    """Return all that a board is told of a seat, with the trial's clock in whole seconds."""
+    """Return what a board receives of a seat, with the trial's clock in whole seconds."""
     training = now.training
     is_open = training.phase in OPEN_PHASES
     return outgoing.seat(

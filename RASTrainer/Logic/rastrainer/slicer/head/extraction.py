@@ -150,7 +150,7 @@ def findHead(volume: Volume, settings: HeadSettings, progress: Progress) -> Head
 
     Args:
         volume: T1-weighted MRI or CT of a head.
-        settings: what to choose otherwise than usual.
+        settings: deviations from the defaults.
         progress: called with each step's name and the share of the work done; may raise to cancel.
 
     Raises:
@@ -241,7 +241,7 @@ def _agreeing(level: np.ndarray, body: np.ndarray) -> np.ndarray:
 
 
 def _cut(skin: vtk.vtkPolyData, baseMm: float) -> HeadMesh:
-    """Return the skin cut flat, a hair higher where triangles in the very plane keep it open."""
+    """Return the skin cut flat, slightly higher if triangles in the plane itself keep it open."""
     for hair in HAIRS_MM:
         mesh = surface.meshOf(surface.cutFlat(skin, baseMm + hair))
         if _isSound(mesh):

@@ -42,7 +42,7 @@ def makeDraft(
 
     Args:
         volume: T1-weighted MRI or CT of a head.
-        settings: what to choose otherwise than usual.
+        settings: deviations from the defaults.
         hasSkull: whether the skull is wanted too.
         progress: called with each step's name and the share of the work done; may raise to cancel.
         segment: the head; None finds it in the volume.
@@ -170,7 +170,7 @@ def _checkSpacing(volume: Volume) -> list[str]:
 
 
 def checkHead(mesh: HeadMesh) -> None:
-    """Raise a sentence where a closed surface cannot be a head's.
+    """Raise an error if a closed surface cannot be a head's.
 
     Raises:
         InputError: its size or shape is no head's.

@@ -17,7 +17,7 @@ from rastrainer.errors import InputError
 
 
 def otsuThreshold(values: np.ndarray) -> float:
-    """Return the value that best parts air from tissue (Otsu 1979, maximal variance between)."""
+    """Return the value that best separates air from tissue (Otsu 1979)."""
     counts, edges = np.histogram(values, bins=256)
     centers = (edges[:-1] + edges[1:]) / 2
     weight = np.cumsum(counts) / counts.sum()
@@ -179,7 +179,7 @@ def carved(body: np.ndarray, wanted: np.ndarray) -> np.ndarray:
 
 
 def _squaredDistances(keep: np.ndarray, candidates: np.ndarray) -> np.ndarray:
-    """Return squared distances to what is kept, exact for all candidates but the very far."""
+    """Return squared distances to what is kept, exact for all but the most distant candidates."""
     for reach in _REACHES:
         squared = squaredDistances(keep, reach)
         if squared[candidates].max(initial=0) <= reach**2:

@@ -10,7 +10,7 @@ from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 
 SMOOTHING_PASS_BAND = 0.08
-"""Of the windowed-sinc filter (Taubin 1996): takes the grid's steps and keeps eyelids and ears."""
+"""Of the windowed-sinc filter (Taubin 1996): removes the grid's steps, keeps eyelids and ears."""
 
 SMOOTHING_ITERATIONS = 30
 

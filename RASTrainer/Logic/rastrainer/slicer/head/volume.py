@@ -1,4 +1,4 @@
-"""Volumes and segments of the scene as arrays, and the head that is found in them, as voxels."""
+"""Volumes and segments of the scene as arrays, and the head found in them, as voxels."""
 
 from __future__ import annotations
 
@@ -187,8 +187,8 @@ class HeadBody:
     def labels(self) -> tuple[np.ndarray, np.ndarray]:
         """The body as a segment has it, and where its first voxel is.
 
-        (k, j, i) uint8, 1 inside, down to 3 mm below the base; (3,) float, RAS mm. Made once, which
-        takes a moment.
+        (k, j, i) uint8, 1 inside, down to 3 mm below the base; (3,) float, RAS mm. Computed once,
+        which takes a moment.
         """
         below = max(0, round((self.baseMm - BELOW_BASE_MM - self.origin[2]) / SPACING_MM))
         voxels = np.ascontiguousarray(self.body[:, :, below:].transpose(2, 1, 0), np.uint8)

@@ -42,7 +42,7 @@ class ConnectorKit:
 
 
 def desktopKit() -> ConnectorKit | None:
-    """Return what SlicerOpenIGTLink brings, or None where that extension is not installed."""
+    """Return the kit of SlicerOpenIGTLink, or None if that extension is not installed."""
     if not hasattr(slicer, "vtkMRMLIGTLConnectorNode"):
         return None
     return ConnectorKit(slicer.vtkMRMLIGTLConnectorNode, slicer.vtkSlicerOpenIGTLinkCommand)
@@ -98,13 +98,13 @@ class SimulatorSearch:
 
 CONNECTOR_NAME = "RASTrainerLink"
 NOWHERE = 0
-"""The port that the connector is given once it is connected: nobody can listen there. Otherwise
+"""The port that the connector is given once it is connected: no program can listen there. Otherwise
 it would reconnect 0.1 s after a loss, to whatever has the simulator's port by then."""
 CONNECT_WITHIN_S = 1.0
 """How long the connector may connect to a simulator that has answered; then it is tested again."""
 LONGEST_LOOK_S = 0.5
 """At most so much of the time since the last look counts as silence: while Slicer itself is held
-up, such as by loading a volume, nobody is heard."""
+up, such as by loading a volume, it hears no one."""
 
 
 class SlicerConnection:
@@ -147,12 +147,12 @@ class SlicerConnection:
 
     @property
     def isInstalled(self) -> bool:
-        """Whether there is what makes a connector, whoever wants to connect."""
+        """Whether connectors can be made: the extension is installed."""
         return self._findKit() is not None
 
     @property
     def status(self) -> LinkStatus:
-        """How the connection is, in words."""
+        """The state of the connection, in words."""
         if self._address is not None and self.kit is None:
             return notInstalled()
         host, port = self._address or ("", 0)

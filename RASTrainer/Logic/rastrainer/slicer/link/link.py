@@ -63,7 +63,7 @@ class Link:
             scene: the scene.
             findKit: returns what makes the connector; None where it is not installed.
             client: name of this side, sent to the simulator.
-            clock: seconds that only rise.
+            clock: monotonic, in seconds.
             callSoon: calls a function in the host's next turn, so that answers and commands need
                 not wait for the next `process`; it is called from inside VTK.
         """
@@ -104,7 +104,7 @@ class Link:
 
     @property
     def isInstalled(self) -> bool:
-        """Whether the extension is installed that brings the connector."""
+        """Whether the extension with the connector is installed."""
         return self._connection.isInstalled
 
     @property
@@ -148,7 +148,7 @@ class Link:
         return self._test.begin(*checkedAddress(host, port), onFound)
 
     def disconnect(self) -> None:
-        """Close the connection and stay without one."""
+        """Close the connection and do not reconnect."""
         self._connection.end()
         self.process()
 
@@ -235,7 +235,7 @@ class Link:
             self._arrivals.emitCommands()
 
     def _sendHello(self, isFirst: bool) -> None:
-        """Greet the simulator and ask for poses; later again, to ask for others."""
+        """Greet the simulator and request poses; called again to change the request."""
 
         def welcome(reply: Reply) -> None:
             version = reply.data.get("protocolVersion")
@@ -256,7 +256,7 @@ class Link:
 
 
 class ConnectionCheck:
-    """The latest test; a new one takes the place of one that is still under way."""
+    """The latest test; a new one replaces one that is still running."""
 
     def __init__(self, guard: ErrorGuard, clock: Callable[[], float]) -> None:
         self._guard = guard
@@ -275,7 +275,7 @@ class ConnectionCheck:
         return lookingAt(self._address)
 
     def process(self) -> None:
-        """Report what answers when that is known."""
+        """Report what answers, once that is known."""
         finding = None if self._probe is None else self._probe.process()
         if finding is not None:
             self._probe = None
@@ -287,7 +287,7 @@ def checkedAddress(host: str, port: int) -> tuple[str, int]:
     """Return a valid address.
 
     Raises:
-        InputError: no host, or a port that is none.
+        InputError: no host, or an invalid port.
     """
     if not host.strip():
         raise InputError(_("Enter the host of the simulator, such as 127.0.0.1."))
@@ -296,6 +296,6 @@ def checkedAddress(host: str, port: int) -> tuple[str, int]:
 
 
 def checkPort(port: int) -> None:
-    """Raise `InputError` if the port is none."""
+    """Raise `InputError` if the port is invalid."""
     if not 0 < port < 65536:
         raise InputError(_("The port must be a number from 1 to 65535."))

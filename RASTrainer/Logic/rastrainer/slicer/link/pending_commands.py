@@ -1,4 +1,4 @@
-"""What is on its way: commands to the simulator, and what the simulator has sent.
+"""Commands on their way to the simulator, and messages that have arrived from it.
 
 Each command gets exactly one reply, whatever happens; what has arrived is emitted little by little.
 """
@@ -31,7 +31,7 @@ OnReply = Callable[[Reply], None]
 MAX_AT_ONCE = 16
 """Most commands without an answer; the simulator carries out as many at once."""
 SENDING_S = 0.01
-"""How long may be sent in one turn: to send blocks while the simulator does not read."""
+"""Time limit for sending in one turn: sending blocks while the simulator does not read."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class PendingCommands:
         self._refused.append((onReply, Reply(False, sentence)))
 
     def poll(self, isOpen: bool, transmit: Callable[[Request], Any]) -> None:
-        """Deliver replies that have come or will not come any more; send what waits."""
+        """Deliver replies that have come or will never come; send what is waiting."""
         self._sendingS = 0.0
         replies, self._refused = self._refused, []
         sent, self._sent = self._sent, []
@@ -158,10 +158,10 @@ def _answer(command: Any) -> Reply:
 
 
 MAX_KEPT = 256
-"""Most commands that wait. A sender of more has to repeat them, as the simulator does with trials
-and answers until they are acknowledged."""
+"""Most commands that may wait. The sender has to repeat further ones, as the simulator does with
+trials and answers until they are acknowledged."""
 COMMANDS_A_TURN, CHARACTERS_A_TURN = 16, 200_000
-"""What is processed before the application may do something else."""
+"""How much is processed before the application may do something else."""
 
 
 class Arrivals:
@@ -199,7 +199,7 @@ class Arrivals:
         self._guard.run("The simulator's state", self._emitState)
 
     def emitCommands(self) -> None:
-        """Emit the kept commands in their order; of many, the rest follows later."""
+        """Emit the stored commands in order; if there are many, the rest follows later."""
         characters = 0
         for _turn in range(min(len(self._commands), COMMANDS_A_TURN)):
             if characters > CHARACTERS_A_TURN:

@@ -1,4 +1,4 @@
-"""Looks an address up and tests once what answers there, without blocking.
+"""Looks up an address and tests once what answers there, without blocking.
 
 Slicer's connector must never meet anything but a simulator: OpenIGTLink's client takes whatever
 comes for a message, and ends Slicer over the sizes that it reads from, say, a web page.
@@ -90,7 +90,7 @@ class PeerRecognition:
 
 
 POLL_S = 0.005
-"""How long each look waits: in Slicer another thread runs only while the main thread does."""
+"""How long each poll waits: in Slicer other threads run only while the main thread waits."""
 
 _running: dict[str, AddressLookup] = {}
 
@@ -98,7 +98,7 @@ _running: dict[str, AddressLookup] = {}
 class AddressLookup:
     """One look-up; only names need one, and a thread for it.
 
-    OpenIGTLink's client speaks IPv4 alone, so other addresses are no use.
+    OpenIGTLink's client speaks IPv4 alone, so other addresses are useless.
     """
 
     def __init__(self, host: str) -> None:
@@ -124,7 +124,7 @@ class AddressLookup:
 
 
 def lookUp(host: str) -> AddressLookup:
-    """Start looking a host up, or join a running look-up of it."""
+    """Start looking up a host, or join a running look-up of it."""
     lookup = _running.get(host)
     if lookup is None or lookup.process() is not None:
         lookup = _running[host] = AddressLookup(host)
@@ -144,13 +144,13 @@ def _numericAddress(host: str) -> str | None:
 
 LOOKUP_S = 5.0
 ANSWER_S = 3.0
-"""How long a name is looked up, and how long an answer is waited for."""
+"""How long to look up a name, and how long to wait for an answer."""
 _PIECE_BYTES = 4096
 _MAX_PIECES = 8
 
 
 class _Connection:
-    """A socket that never blocks, with what is to be waited for on it."""
+    """A socket that never blocks, with the event to wait for on it."""
 
     def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
@@ -198,7 +198,7 @@ class Probe:
     """One question, on a socket that never blocks; `process` is called until it returns a finding.
 
     No thread: in Slicer another thread runs only while the main thread waits, and a socket that is
-    looked at now and then needs none. A call of `process` takes some milliseconds at most.
+    polled now and then needs none. A call of `process` takes some milliseconds at most.
     """
 
     def __init__(self, host: str, port: int, clock: Callable[[], float] = time.monotonic) -> None:
@@ -222,7 +222,7 @@ class Probe:
         return self._finding
 
     def close(self) -> None:
-        """Ask no more."""
+        """Stop asking."""
         if self._connection is not None:
             self._connection.close()
             self._connection = None

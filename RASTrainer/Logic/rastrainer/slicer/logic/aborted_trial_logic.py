@@ -21,8 +21,8 @@ class AbortedTrialLogic:
     before it, too: a repeat counts in a study only once a reason was given for it.
 
     Attributes:
-        kept: emits each received `AbortedTrial` when it is in the study.
-        problemFound: emits a sentence about one that could not be kept.
+        kept: emits each received `AbortedTrial` once it is in the study.
+        problemFound: emits a sentence about one that could not be stored.
     """
 
     def __init__(self, link: Link, openStudy: Callable[[], Study], work: BackgroundWork) -> None:
@@ -31,7 +31,7 @@ class AbortedTrialLogic:
         Args:
             link: to the simulator.
             openStudy: opens the study, in any thread; it may wait for a lock there.
-            work: in which trials are kept.
+            work: in which trials are stored.
         """
         self.kept = Signal()
         self._openStudy = openStudy

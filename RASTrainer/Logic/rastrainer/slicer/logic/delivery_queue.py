@@ -21,7 +21,7 @@ Delivery = Mapping[str, Any]
 """The record of a trial as it was delivered, not yet checked."""
 
 MAX_WAITING = 32
-"""Trials that wait to be stored; a simulator that has more offers them again."""
+"""Most trials waiting to be stored; a simulator that has more offers them again."""
 
 
 class DeliveryQueue(Generic[T]):
@@ -125,7 +125,7 @@ class DeliveryQueue(Generic[T]):
 
     def _refuse(self, delivery: Delivery, error: Exception) -> None:
         if isinstance(error, DeletedTrialError):
-            # Its trainee was deleted for good: it must not be offered for ever.
+            # Its trainee was deleted for good: it must not be offered forever.
             self._acknowledge(delivery)
         else:
             self.report(self._refusal.format(error=error))

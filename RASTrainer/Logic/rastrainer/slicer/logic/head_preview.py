@@ -29,7 +29,7 @@ def findSkin(
     Args:
         run: runs the function that looks for it.
         volumeNode: MRI or CT of a head.
-        settings: what to choose otherwise than usual.
+        settings: deviations from the defaults.
         progress: called with each step and the share of the work done, many times a second; it may
             let the application draw, and may raise to cancel.
 
@@ -85,7 +85,7 @@ class HeadPreview:
         return warnings
 
     def hide(self, volumeNode: Any) -> None:
-        """Hide the draft, and a rendering of its volume: what is made of them is shown instead."""
+        """Hide the draft, and a rendering of its volume: the result is shown instead."""
         self._setVisible(False)
         for index in range(volumeNode.GetNumberOfDisplayNodes()):
             display = volumeNode.GetNthDisplayNode(index)

@@ -36,7 +36,7 @@ COLOR = (0.1, 0.55, 0.9)
 
 @dataclass(frozen=True, eq=False)
 class _Placed:
-    """Names, and places (n, 3) float, RAS mm."""
+    """Names, and positions (n, 3) float, RAS mm."""
 
     names: tuple[str, ...]
     places: np.ndarray
@@ -54,7 +54,7 @@ class LandmarkPoints:
 
     @property
     def landmarks(self) -> tuple[Landmark, ...]:
-        """The placed ones, in the order of touching."""
+        """The placed landmarks, in touch order."""
         placed = self._placed()
         return tuple(map(Landmark, placed.names, placed.places))
 
@@ -172,7 +172,7 @@ class LandmarkLogic:
         return sentence
 
     def check(self, scenario: Scenario, progress: Progress = no_progress) -> str:
-        """Return what is wrong with the landmarks on the head of a scenario, or that nothing is.
+        """Return the faults of the landmarks on the head of a scenario, or that there are none.
 
         Args:
             scenario: whose head it is.

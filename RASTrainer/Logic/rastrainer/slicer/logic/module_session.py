@@ -1,4 +1,4 @@
-"""Everything that the module keeps while it is loaded: link, study, and the logic of each step."""
+"""Everything that the module holds while it is loaded: link, study, and the logic of each step."""
 
 from __future__ import annotations
 
@@ -80,22 +80,22 @@ class ModuleSession:
     """Wires the parts together; `process` is to be called about ten times a second.
 
     Attributes:
-        work: what is done in the background, one after the other.
+        work: background jobs, one after the other.
         link: to the simulator.
         simulator: its set-up and process.
         trainees: who trains.
         scenario: head, tasks and robot in the scene.
-        images: brings the images of the scenario that is shown.
+        images: loads the images of the displayed scenario.
         scenarioMaker: makes scenarios of volumes.
         scenarioFiles: takes and gives scenarios as files, and keeps plans in them.
-        training: trials under way.
+        training: running trials.
         slices: keeps the slice views at the next point, or at the tool.
         study: leads through the protocol.
         curriculum: what each trainee is to reach.
         trials: where finished trials arrive.
         aborted: where aborted trials arrive.
         replay: feedback on stored trials, and their replay.
-        registration: that is looked at.
+        registration: the displayed one.
         plan: of a target.
         procedure: that the trial continues with.
         traces: shows the trace of the trial on the head.
@@ -264,18 +264,18 @@ class ModuleSession:
         self.layout.process()
 
     def yieldTimeToWork(self) -> bool:
-        """Let work in the background run for a moment; return whether there still is any."""
+        """Let background work run for a moment; return whether any is left."""
         self.work.yieldTime()
         if not self._scene.IsBatchProcessing():
             self.work.process()
         return self.work.isBusy
 
     def sceneWillBeCleared(self) -> None:
-        """Keep what would take the scene too long to delete at once."""
+        """Hold on to what would take the scene too long to delete at once."""
         self.replay.keepStates()
 
     def sceneWasCleared(self) -> None:
-        """Forget what pointed into the old scene; a trial that runs is shown again."""
+        """Forget references into the old scene; a running trial is shown again."""
         self.layout.forgetScene()
         self.plan.points.forget()
         self.landmarks.points.forget()

@@ -54,8 +54,8 @@ class NextStep:
     Attributes:
         action: what the button does.
         title: what it says.
-        sentence: what there is to know about it.
-        section: where it belongs to.
+        sentence: what to know about it.
+        section: where it belongs.
     """
 
     action: NextAction
@@ -69,15 +69,15 @@ class WorkflowState:
     """State of a session.
 
     Attributes:
-        link: how the link is.
+        link: state of the link.
         program: state of the simulator's process, if Slicer has started it.
         programSentence: what happened to it last.
         needsSetup: the simulator has to be set up before it can be started here.
-        isBeingSetUp: that is under way.
+        isBeingSetUp: that is in progress.
         isElsewhere: the simulator is to be on another computer.
         runningSentence: that a simulator runs already which was not started from here; empty where
             none does.
-        trainee: pseudonym of who is chosen, empty where nobody is.
+        trainee: pseudonym of the chosen trainee; empty if none is.
         hasTrainees: the study has trainees to choose from.
         hasPracticed: the chosen trainee has played before, be it the trial run alone.
         isLearning: the chosen trainee does the tutorial before the trial run.
@@ -87,10 +87,10 @@ class WorkflowState:
         total: how many it has.
         isLoading: the simulator is loading a scenario, and starts no trial.
         isUnscored: the trial that was registered last could not be kept or scored.
-        hasNewResult: a trial of the chosen trainee was scored and has not been looked at.
-        isResultShown: the score is what was looked at last.
+        hasNewResult: a trial of the chosen trainee was scored and has not been viewed.
+        isResultShown: the score was viewed last.
         studyStep: what the study asks the chosen trainee for; None where it asks for nothing.
-        needsRepeatReason: whether that was aborted and nobody has said why it is played again.
+        needsRepeatReason: whether that was aborted and still needs a reason to be repeated.
         studySentence: the same for people.
     """
 

@@ -35,7 +35,7 @@ class PracticeWatch:
         link: Link,
         changed: Callable[[str], None],
     ) -> None:
-        """`changed` is called with the trainee whose trial run has ended or was left."""
+        """`changed` is called with the trainee whose trial run has ended or was abandoned."""
         self._trainees = trainees
         self._training = training
         self._link = link
@@ -47,21 +47,21 @@ class PracticeWatch:
         link.stateChanged.connect(self._follow)
 
     def close(self) -> None:
-        """Stop listening, and keep what was practiced last."""
+        """Stop listening, and store the last practice time."""
         self._link.stateChanged.disconnect(self._follow)
         self.keep()
 
     def leaveStudy(self) -> None:
-        """Keep what was practiced in the study that is left; only what follows is for the next."""
+        """Store the practice time in the study being left; only later practice is for the next."""
         self.keep()
         self._practicing, self._isFirstSight = None, True
 
     def unsavedS(self, trainee: str, mode: str) -> float:
-        """Return how long the trial run was practiced in a mode since it was kept last; s."""
+        """Return how long the trial run was practiced in a mode since it was last stored, s."""
         return self._seen - self._kept if self._practicing == (trainee, mode) else 0.0
 
     def keep(self) -> None:
-        """Put what was practiced into the study's file; the step is done when its time is over."""
+        """Store the practice time in the study's file; the step is done when its time is over."""
         if self._practicing is None:
             return
         (name, _mode), seconds = self._practicing, self._seen - self._kept
@@ -100,7 +100,7 @@ class PracticeWatch:
 
     def _begin(self, practicing: tuple[str, str] | None, elapsedS: float) -> None:
         self._practicing, self._seen = practicing, elapsedS
-        # What was played before our time may have been counted by the Slicer before this one.
+        # What was played before this Slicer started may have been counted by the previous one.
         self._kept = elapsedS if self._isFirstSight else 0.0
         requested = self._requestedStep()
         self._left = KEPT_EVERY_S if requested is None else requested[0].practice_left_s

@@ -32,7 +32,7 @@ class ProcedureStatus:
     Attributes:
         name: of the procedure; empty where the trial has none.
         phase: of the trial.
-        trajectory: number of the line at hand, from 0.
+        trajectory: number of the current line, from 0.
         trajectories: how many there are.
         isRegistered: whether a registration is in use.
         entryDistanceMm: of the planned entry from the guide's axis; None where there is no guide.
@@ -74,7 +74,7 @@ class ProcedureStatus:
 
     @property
     def isUnderWay(self) -> bool:
-        """Whether the touches are done, and the procedure goes on."""
+        """Whether the touches are done, and the procedure continues."""
         return bool(self.name) and self.phase in PROCEDURE_PHASES
 
 
@@ -131,7 +131,7 @@ class ProcedureLogic:
         self._listening.close()
 
     def command(self, name: str, arguments: Mapping[str, Any] | None = None) -> None:
-        """Send a command that goes on with the procedure."""
+        """Send a command that continues the procedure."""
         self._link.send(name, arguments, lambda reply: self.answered.emit(reply.error))
 
     def feed(self, forward: bool) -> None:
@@ -200,7 +200,7 @@ class ProcedureLogic:
             ask(CommandName.USE_REGISTRATION, registered.arguments(trialId), lambda _reply: None)
 
         def fail(reason: Exception | str) -> None:
-            # The procedure may have gone on meanwhile, by a registration of somebody else.
+            # The procedure may have continued meanwhile, with another client's registration.
             if self._registering == trialId:
                 self.isRegistrationFailed = True
                 text = _("The touches were not registered: {reason}")

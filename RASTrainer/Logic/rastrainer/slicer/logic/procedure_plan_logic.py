@@ -45,7 +45,7 @@ FILE = "procedure.json"
 
 @dataclass(frozen=True)
 class PlanDescription:
-    """What of a plan is no node of the scene.
+    """The parts of a plan that are not nodes of the scene.
 
     Attributes:
         title: for people.
@@ -64,7 +64,7 @@ class PlanDescription:
 
 @dataclass(frozen=True)
 class CheckedLine:
-    """What was measured of a line: as `LineMeasures`, and whether the robot reaches along it.
+    """What was measured of a line: like `LineMeasures`, and whether the robot reaches it.
 
     Attributes:
         name: of the line.
@@ -168,7 +168,7 @@ class ProcedurePlanLogic:
 
         Args:
             scenario: whose head it is.
-            plan: what of it is no node.
+            plan: the parts that are not nodes.
             progress: see `ScenarioFiles`.
 
         Raises:
@@ -199,7 +199,7 @@ class ProcedurePlanLogic:
         Args:
             scenario: which stays as it is.
             title: of the copy.
-            plan: what of it is no node.
+            plan: the parts that are not nodes.
             progress: see `ScenarioFiles`.
 
         Raises:

@@ -1,4 +1,4 @@
-"""The registration that the user looks at: followed, corrected, undone, and shown in the scene."""
+"""The registration that the user sees: updated, corrected, undone, and shown in the scene."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ class RegistrationLogic:
         self._colorHead()
 
     def change(self, choices: Choices) -> None:
-        """Register the pairs with these changes; `undo` takes them back."""
+        """Register the pairs with these changes; `undo` reverts them."""
         if choices != self.choices:
             self._history.append(choices)
             self._compute()
@@ -167,7 +167,7 @@ class RegistrationLogic:
         self.change(self.choices.localized(label, fleMm))
 
     def undo(self) -> None:
-        """Take the last change back."""
+        """Undo the last change."""
         if self.canUndo:
             self._history.pop()
             self._compute()
@@ -209,7 +209,7 @@ class RegistrationLogic:
         moving, fixed = self.moving(), self.fixed()
         if moving is None or moving.GetNumberOfControlPoints() == 0:
             self.reset()
-        # Of what is registered now, whatever the reason: lists that change back are news again.
+        # The key of the present registration, so that lists that change back count as changed.
         self._seen = self._snapshot()
         try:
             checkSameTask(moving, fixed)
@@ -254,7 +254,7 @@ class RegistrationLogic:
 
     def _errorOnSkin(self, fit: Registration) -> LocalizationError | None:
         if fit.weights is not None:
-            # What was stated of single points replaces what the skin says about all.
+            # Errors stated for single points replace those estimated from the skin.
             return None
         fixed = self.fixed()
         expected = None if fixed is None else worldPoints(fixed)

@@ -39,7 +39,7 @@ from rastrainer.trial.trial_feedback import TrialFeedback
 from rastrainer.work_progress import Progress, no_progress
 
 SLICES_A_TURN = 4
-"""Of the states of a closed scene's replay, which are let go little by little."""
+"""States of a closed scene's replay, which are released gradually."""
 
 
 class ReplayLogic:
@@ -118,7 +118,7 @@ class ReplayLogic:
         return None
 
     def takeFeedback(self, trialId: str, feedback: TrialFeedback | Exception) -> None:
-        """Take feedback on a trial that was prepared elsewhere."""
+        """Accept feedback on a trial that was prepared elsewhere."""
         self._known, self._requestedId, self._awaitedId = (trialId, feedback), "", ""
         self.feedbackFound.emit()
 
@@ -128,7 +128,7 @@ class ReplayLogic:
             self._known = None
 
     def keepStates(self) -> None:
-        """Keep the states of the replay for now: the scene is about to be cleared."""
+        """Hold on to the states of the replay: the scene is about to be cleared."""
         self._outdated = itertools.chain(self._outdated, emptyReplay(self._scene))
 
     def forgetScene(self) -> None:
@@ -173,7 +173,7 @@ class ReplayLogic:
         return _("{time:.1f} s, clearance {clearance}").format(time=now[0], clearance=now[1])
 
     def process(self) -> None:
-        """Stop where the worst touch was made; have feedback asked for that no score has given."""
+        """Stop where the worst touch was made; request feedback that no score has given."""
         for _slice in itertools.islice(self._outdated, SLICES_A_TURN):
             pass
         if self._awaitedId and not self._isBeingScored(self._awaitedId):
@@ -190,7 +190,7 @@ class ReplayLogic:
         scenario = self._findScenario(trial.record.scenario)
         analysis = self._run(EXPLAIN, progress, trial.record, scenario, self._records)
         with self._openStudy() as study:
-            # A score keeps its version, however it would be made today.
+            # A score keeps its version, however it would be computed today.
             scored = analysis.scored_as(trial.score, scenario, trial.truth)
             return with_progress(scored, study).feedback
 

@@ -1,4 +1,4 @@
-"""The scenarios at hand, found by the name that a trial's record gives."""
+"""The available scenarios, found by the name in a trial's record."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class ScenarioCache:
         return cache
 
     def listed(self) -> tuple[ListedScenario, ...]:
-        """Return the scenarios there are; one that cannot be used says why."""
+        """Return the available scenarios; an unusable one says why."""
         listed = self._listed
         if listed is None:
             self._listed = listed = tuple(self._list())
@@ -68,7 +68,7 @@ class ScenarioCache:
         self._scenarios.clear()
 
     def find(self, name: str) -> Scenario:
-        """Return the scenario of that name, which may have come since it was last looked.
+        """Return the scenario of that name, which may have been added since the last look.
 
         Raises:
             InputError: there is none, or it cannot be used.

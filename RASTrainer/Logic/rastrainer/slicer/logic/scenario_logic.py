@@ -73,7 +73,7 @@ class ScenarioLogic:
             showPlannedPlace(self._scene, scenario, capturedPointsNode(self._scene), fixed)
 
     def useHead(self, node: Any, progress: Progress = no_progress) -> tuple[Any, list[str]]:
-        """Let a model or a volume of the scene be the head that is looked at.
+        """Make a model or a volume of the scene the displayed head.
 
         The head that was one before is hidden, and is no longer ours to fill.
 
@@ -161,7 +161,7 @@ class ScenarioFiles:
         keepsNames: bool = False,
         progress: Progress = no_progress,
     ) -> str:
-        """Write a scenario as a zip file and return a sentence that says what was taken off.
+        """Write a scenario as a zip file and return a sentence that says what was removed.
 
         Args:
             name: of the scenario.
@@ -181,7 +181,7 @@ class ScenarioFiles:
     def savePlan(
         self, name: str, title: str, node: Any, progress: Progress = no_progress
     ) -> Scenario:
-        """Copy a scenario with a list in the place of its targets, or a line of its trajectory.
+        """Copy a scenario with a list in place of its targets, or a line of its trajectory.
 
         Args:
             name: of the scenario, which stays as it is.
@@ -199,7 +199,7 @@ class ScenarioFiles:
     def saveWith(
         self, plan: list[str], name: str, title: str, progress: Progress = no_progress
     ) -> Scenario:
-        """Copy a scenario with something in the place of its own.
+        """Copy a scenario with a part replaced.
 
         Args:
             plan: arguments of `rastrainer scenario plan`, such as `--procedure` with a file of one

@@ -70,7 +70,7 @@ class NewScenarioOptions:
 
 @dataclass(frozen=True)
 class _Planned:
-    """What the simulator is to make.
+    """What the simulator should make.
 
     Attributes:
         title: of the scenario.
@@ -147,7 +147,7 @@ class ScenarioMaker:
         return scenario, [*planned.warnings, *warnings]
 
     def check(self, volumeNode: Any, options: NewScenarioOptions, progress: Progress) -> list[str]:
-        """Find out whether set-up, plan and fiducials can be used, and make nothing of them.
+        """Check whether set-up, plan and fiducials can be used, without making anything.
 
         Arguments, warnings and errors are those of `make`.
         """
@@ -161,7 +161,7 @@ class ScenarioMaker:
 
     @contextmanager
     def _planned(self, volumeNode: Any, options: NewScenarioOptions) -> Iterator[_Planned]:
-        """Yield what the simulator is to make; its files exist within the context."""
+        """Yield what the simulator should make; its files exist within the context."""
         from rastrainer.slicer.head.volume import imageOfNode
 
         image, settings = imageOfNode(_chosen(volumeNode)), _settings(options)
@@ -268,7 +268,7 @@ def _checked(node: Any) -> Any:
 
 
 HEAD_SHARE = 0.5
-"""Of the work on a scenario, what is done to find and make its head."""
+"""Share of the work on a scenario that finding and making its head takes."""
 
 
 def planScenario(

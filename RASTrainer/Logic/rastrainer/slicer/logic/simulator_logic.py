@@ -1,7 +1,7 @@
-"""Start and stop the simulator from Slicer, connect to it, and find one that runs already.
+"""Start and stop the simulator from Slicer, connect to it, and find one that already runs.
 
-Such as one that a crash of Slicer has left behind, with the trial that was under way, and that
-keeps another from recording.
+A crash of Slicer may have left one behind, with the trial that was running; it keeps another
+simulator from recording.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _ANY_ADDRESS = ("0.0.0.0", "::", "localhost", "")
 
 
 class RunningSimulator:
-    """Looks who records in the folder; `process` is to be called about ten times a second.
+    """Finds who records in the folder; call `process` about ten times a second.
 
     Attributes:
         holder: the simulator that does; None where there is none.
@@ -52,7 +52,7 @@ class RunningSimulator:
 
     @property
     def sentence(self) -> str:
-        """What was found, for people; empty where nothing was."""
+        """The simulator found, in words; empty if none was."""
         if self.holder is None:
             return ""
         if self.isEnding:
@@ -64,16 +64,16 @@ class RunningSimulator:
 
     @property
     def canConnect(self) -> bool:
-        """Whether it says where it listens."""
+        """Whether its address is known."""
         return self.holder is not None and self.holder.port > 0 and not self.isEnding
 
     @property
     def canEnd(self) -> bool:
-        """Whether it says who it is."""
+        """Whether its process is known."""
         return self.holder is not None and self.holder.pid > 0 and not self.isEnding
 
     def look(self) -> bool:
-        """Look at once, and return whether there is one."""
+        """Check now, and return whether there is one."""
         self._lookAt = time.monotonic() + LOOK_EVERY_S
         found = read_holder(self._records)
         if found != self.holder:
@@ -97,14 +97,14 @@ class RunningSimulator:
         self._connected = holder
 
     def end(self) -> None:
-        """Ask it to end, with its window; `process` notices that, and kills it if need be.
+        """Ask it to end, with its window; `process` notices the end, and kills it if needed.
 
         Raises:
             InputError: another user of this computer has started it.
         """
         shown = self.holder
         self.look()
-        # Another that has begun since was not what was to be ended.
+        # Another that has started since is not the one to be ended.
         if self.holder is None or not self.canEnd or not _isSame(self.holder, shown):
             return
         _signal(self.holder, isAsked=True)
@@ -115,7 +115,7 @@ class RunningSimulator:
         self.changed.emit()
 
     def process(self) -> None:
-        """Look whether what was found is there still."""
+        """Check whether the simulator found is still there."""
         if self.holder is None or time.monotonic() < self._lookAt:
             return
         self.look()
@@ -127,7 +127,7 @@ class RunningSimulator:
 
 
 def _signal(holder: FolderHolder, isAsked: bool) -> None:
-    """Signal the process that holds the folder at this moment: its number is nobody else's."""
+    """Signal the process that holds the folder now: no other process can have its number."""
     try:
         endProcess(holder.pid, holder.started_by == SLICER, isAsked)
     except PermissionError:
@@ -137,14 +137,14 @@ def _signal(holder: FolderHolder, isAsked: bool) -> None:
 
 
 def _isSame(one: FolderHolder | None, other: FolderHolder | None) -> bool:
-    """Return whether they are the same process, wherever it listens by now."""
+    """Return whether they are the same process, wherever it listens now."""
     if one is None or other is None:
         return False
     return (one.pid, one.started) == (other.pid, other.started)
 
 
 def _since(started: str) -> str:
-    """Return since when, in local time."""
+    """Return when it started, in local time."""
     with contextlib.suppress(ValueError):
         moment = datetime.fromisoformat(started).astimezone()
         return _(" since {moment}").format(moment=moment.strftime("%Y-%m-%d %H:%M"))
@@ -152,7 +152,7 @@ def _since(started: str) -> str:
 
 
 class SimulatorLogic:
-    """Sets up, starts and stops; `process` is to be called about ten times a second.
+    """Sets up, starts and stops the simulator; call `process` about ten times a second.
 
     Attributes:
         program: the simulator's process.
@@ -281,7 +281,7 @@ class SimulatorLogic:
 
     def _followProgram(self) -> None:
         if self.program.state is ProgramState.FAILED:
-            # One that was started in the meantime may be why.
+            # A simulator started in the meantime may be the reason.
             self.running.look()
 
 
@@ -290,7 +290,7 @@ ANY = 0
 
 
 def freePort(preferred: int) -> int:
-    """Return the preferred port where nobody listens on it, `ANY` otherwise."""
+    """Return the preferred port if no program listens on it, `ANY` otherwise."""
     try:
         socket.create_server((DEFAULT_HOST, preferred)).close()
     except OSError:

@@ -1,4 +1,4 @@
-"""Leads each trainee through the study's protocol: what comes next, and what became of it."""
+"""Leads each trainee through the study's protocol: what comes next, and how it ended."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TRIALS = (StepKind.TRIAL, StepKind.TRIAL_RUN)
 
 
 class StudyLogic:
-    """What the Study panel does for the chosen trainee, and leading everybody who is enrolled.
+    """What the Study panel does for the chosen trainee, and for all enrolled trainees.
 
     Everything done is in the study's file before anyone is informed, so that the trainee resumes
     there when it is opened again. The simulator is sent what comes next for each trainee, also for
@@ -63,12 +63,12 @@ class StudyLogic:
         )
 
     def close(self) -> None:
-        """Stop listening, and keep what was practiced last."""
+        """Stop listening, and store the last practice time."""
         self._listening.close()
         self._watch.close()
 
     def leaveStudy(self) -> None:
-        """Save what belongs to the study that is left; the next may have the same pseudonyms."""
+        """Save what belongs to the study being left; the next may have the same pseudonyms."""
         self._watch.leaveStudy()
         self._breaks.clear()
 
@@ -91,7 +91,7 @@ class StudyLogic:
         return StudyProgress(self._trainees.study).protocol()
 
     def begin(self, path: Path) -> StudyProtocol:
-        """Make a file's protocol that of the study, for good.
+        """Make a file's protocol that of the study, permanently.
 
         Raises:
             InputError: the file is no protocol, or the study has another one.
@@ -102,10 +102,10 @@ class StudyLogic:
         return protocol
 
     def enroll(self) -> int:
-        """Give the chosen trainee the first free place in the study's order; the first is 0.
+        """Give the chosen trainee the first free number in the study's order, from 0.
 
         Raises:
-            InputError: nobody is chosen, or the study has no protocol.
+            InputError: no trainee is chosen, or the study has no protocol.
         """
         if not self._trainees.chosen:
             raise InputError(_("Choose a trainee in the section Trainees first."))
@@ -198,7 +198,7 @@ class StudyLogic:
         self.startTrial(step.task, step.mode)
 
     def answer(self, answers: Sequence[int]) -> None:
-        """Keep the answers of the questionnaire that comes next.
+        """Store the answers to the questionnaire that comes next.
 
         Raises:
             InputError: none comes next, or an answer is missing.
@@ -209,7 +209,7 @@ class StudyLogic:
         self._leadOn(self._trainees.chosen)
 
     def skipStep(self, stepName: str, reason: str) -> None:
-        """Leave the next step out, for a reason that goes into the report.
+        """Skip the next step, for a reason that goes into the report.
 
         Raises:
             InputError: the step of this name is not the next one (any more), or there is no reason
@@ -250,7 +250,7 @@ class StudyLogic:
         return step
 
     def _takeAnswers(self, value: Mapping[str, Any]) -> None:
-        """Keep what was answered at the simulator, which repeats it until another step is sent."""
+        """Store answers given at the simulator, which repeats them until another step is sent."""
         try:
             answers = StepAnswers.from_json(value)
             study = StudyProgress(self._trainees.study)
@@ -267,19 +267,19 @@ class StudyLogic:
             self._leadAgain(answers.trainee)
 
     def _leadOn(self, name: str) -> None:
-        """Lead one trainee, of whom something is new, and let all see it."""
+        """Update one trainee who has something new, and notify all listeners."""
         with contextlib.suppress(InputError):
             if name in StudyProgress(self._trainees.study).enrolled():
                 self._lead(name)
         self.changed.emit()
 
     def _leadAgain(self, name: str) -> None:
-        """Lead one trainee, and send the simulator even what it knows already."""
+        """Update one trainee, and send the simulator even what it already knows."""
         self._sentSteps.pop(name, None)
         self._leadOn(name)
 
     def _followTrainees(self) -> None:
-        """Lead the chosen trainee and who is new, or everybody where it is another study."""
+        """Update the chosen and any new trainee, or everybody if it is another study."""
         # The section Trainees shows what is wrong with the study.
         with contextlib.suppress(InputError):
             enrolled = StudyProgress(self._trainees.study).enrolled()

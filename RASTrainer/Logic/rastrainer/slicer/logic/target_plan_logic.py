@@ -47,7 +47,7 @@ class PlanOnImages:
     expected: TargetError | None
 
     def isAsGood(self, other: PlanOnImages) -> bool:
-        """Return whether both plans mean the same places, so that an answer applies to both."""
+        """Return whether both plans have the same points, so that an answer applies to both."""
         if (self.entry is None) != (other.entry is None):
             return False
         mine = (self.target, self.targetWorld, self.entry, self.entryWorld)
@@ -65,7 +65,7 @@ class PlanLogic:
         sentence: what was last said about the plan.
         trueErrorMm: how far the registration puts the target from where it is; None until
             the simulator has revealed it.
-        points: that are placed, removed and brought back.
+        points: placed, removed and restored.
     """
 
     def __init__(self, scene: Any, link: Link, registration: RegistrationLogic) -> None:
@@ -135,7 +135,7 @@ class PlanLogic:
         self.changed.emit()
 
     def follow(self, plan: PlanOnImages | None) -> None:
-        """Forget what was answered about another plan than this one, which is looked at now."""
+        """Forget the answer about any plan other than this one, which is shown now."""
         if self._sent is None or (plan is not None and self._sent.isAsGood(plan)):
             return
         self._sent = self.isReachable = self.trueErrorMm = None
@@ -144,7 +144,7 @@ class PlanLogic:
         self.changed.emit()
 
     def takeTruth(self, analysis: TrialAnalysis) -> None:
-        """Take the true pose of the trial's head, from which true errors follow."""
+        """Accept the true pose of the trial's head, from which true errors follow."""
         self._headToWorld = None if analysis.truth is None else analysis.truth.matrix
         self._updateTrueError()
 

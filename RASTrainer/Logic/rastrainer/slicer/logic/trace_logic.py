@@ -33,7 +33,7 @@ from rastrainer.slicer.translation import _
 from rastrainer.trial.touch_registration import FollowedTrace, GivenPoints, TraceFollower
 
 PERIOD_S = 1.0
-"""Each time, the whole trace is asked for, and the head is drawn anew."""
+"""Each time, the whole trace is requested, and the head is redrawn."""
 _TRACED_PHASES = (Phase.RUNNING.value, Phase.PAUSED.value, Phase.COMPLETE.value)
 
 
@@ -148,7 +148,7 @@ class TraceLogic:
             showTrace(self._scene, trace, wanted.isGuided)
 
     def _giveUp(self, wanted: _Wanted) -> None:
-        """Wait for another state: what cannot be shown is said where it is registered."""
+        """Wait for another state: what cannot be shown is reported at registration."""
         self._isAsking, self._shown = False, wanted
 
 
@@ -178,7 +178,7 @@ def showTrace(scene: Any, trace: FollowedTrace, isGuided: bool) -> None:
 
 
 def forgetTrace(scene: Any) -> None:
-    """Remove what is shown of a trace."""
+    """Remove everything shown of a trace."""
     removeNode(scene, MODEL, Role.TRACED_POINTS)
     removeNode(scene, MARKUPS, Role.NEXT_PLACE)
     head = findNode(scene, MODEL, Role.HEAD_MODEL)

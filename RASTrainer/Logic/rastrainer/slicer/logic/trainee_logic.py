@@ -90,7 +90,7 @@ class TraineeLogic:
     def hasChangedElsewhere(self) -> bool:
         """Check, about once a second, whether another program has changed the study.
 
-        Another Slicer may work with the same file; nobody waits for it here.
+        Another Slicer may work with the same file; this does not wait for it.
         """
         now = self._clock()
         if self._study is None or now - self._lastLook < LOOK_EVERY_S:
@@ -101,18 +101,18 @@ class TraineeLogic:
         return version is not None and version != before
 
     def trainees(self, archived: bool = False) -> tuple[Trainee, ...]:
-        """Return those who train, optionally with the archived ones, by pseudonym."""
+        """Return the trainees, optionally with the archived ones, by pseudonym."""
         listed = self.study.trainees()
         return (*listed, *self.study.trainees(archived=True)) if archived else listed
 
     def choose(self, pseudonym: str) -> None:
-        """Choose a trainee, or nobody by an empty pseudonym."""
+        """Choose a trainee, or none by an empty pseudonym."""
         if pseudonym != self.chosen:
             self.chosen = pseudonym
             self.changed.emit()
 
     def chosenTrainee(self) -> Trainee | None:
-        """Return who is chosen; None where nobody is, or no longer there.
+        """Return the chosen trainee; None if none is chosen, or no longer exists.
 
         Raises:
             StudyBusyError: another program has the study locked.
@@ -143,7 +143,7 @@ class TraineeLogic:
         self.changed.emit()
 
     def setArchived(self, archived: bool) -> None:
-        """Archive the chosen trainee, or bring them back."""
+        """Archive the chosen trainee, or restore them."""
         self.study.set_archived(self.chosen, archived)
         self.changed.emit()
 
@@ -197,7 +197,7 @@ class TraineeLogic:
             The number of trials, and of the trainees who are left out.
 
         Raises:
-            InputError: nobody consented, or the file cannot be written.
+            InputError: no trainee consented, or the file cannot be written.
         """
 
         def write(_report: Progress) -> tuple[int, int]:
@@ -207,7 +207,7 @@ class TraineeLogic:
         return inBackground(write, progress)
 
     def calibration(self, progress: Progress = no_progress) -> TreCalibration:
-        """Return true against expected TRE of all trials of the study, of whomever they are.
+        """Return true and expected TRE of all trials of the study, of all trainees.
 
         Args:
             progress: called many times a second meanwhile; it may let the application draw.
@@ -236,7 +236,7 @@ class TraineeLogic:
 class CurriculumLogic:
     """What the Curriculum panel does.
 
-    The simulator is told where each trainee stands, also those not chosen here, whenever that is
+    The simulator is sent each trainee's progress, also of those not chosen here, whenever that is
     new; everything is computed from the study, so that nothing is lost when either side ends.
 
     Attributes:
@@ -260,18 +260,18 @@ class CurriculumLogic:
         self._listening.close()
 
     def standing(self) -> CurriculumStanding | None:
-        """Return where the chosen trainee stands; None without a curriculum, or a trainee."""
+        """Return the standing of the chosen trainee; None without a curriculum or a trainee."""
         return self._standings.get(self._trainees.chosen)
 
     def standings(self) -> Mapping[str, CurriculumStanding]:
-        """Return where each active trainee with a curriculum stands, by pseudonym."""
+        """Return the standing of each active trainee with a curriculum, by pseudonym."""
         return dict(sorted(self._standings.items()))
 
     def choose(self, path: Path, isForEverybody: bool) -> Curriculum:
         """Have the chosen trainee, or everybody, follow a file's curriculum from now on.
 
         Raises:
-            InputError: the file is no curriculum, or nobody is chosen.
+            InputError: the file is no curriculum, or no trainee is chosen.
         """
         curriculum = read_curriculum(path)
         self._choose(curriculum, isForEverybody)
@@ -281,7 +281,7 @@ class CurriculumLogic:
         """Have the chosen trainee, or everybody, follow no curriculum from now on.
 
         Raises:
-            InputError: nobody is chosen.
+            InputError: no trainee is chosen.
         """
         self._choose(None, isForEverybody)
 
@@ -293,13 +293,13 @@ class CurriculumLogic:
         self._followTrainees()
 
     def _sendEverybody(self) -> None:
-        """Tell the simulator, which may know nothing yet, where everybody stands."""
+        """Send the simulator, which may know nothing yet, everybody's standing."""
         self._sent.clear()
         self._stamps.clear()
         self._followTrainees()
 
     def _followTrainees(self) -> None:
-        """Tell where those stand of whom something is new, or everybody in another study."""
+        """Send the standings that have changed, or everybody's in another study."""
         # The section Trainees shows what is wrong with the study.
         with contextlib.suppress(InputError):
             store = CurriculumStore(self._trainees.study)
@@ -324,5 +324,5 @@ class CurriculumLogic:
         self._sent[name] = message
         if standing is None:
             del self._sent[name]
-        # Without a connection nothing is sent; a new connection is told everything.
+        # Without a connection nothing is sent; a new connection gets everything.
         self._link.send(CommandName.CURRICULUM, message.arguments())

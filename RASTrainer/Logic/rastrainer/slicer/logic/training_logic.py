@@ -82,7 +82,7 @@ class TrainingLogic:
         changed: emits nothing, whenever `progress` has changed.
         answered: emits the sentence of a command that was refused, empty where it was accepted.
         sceneShown: emits the `Scenario` of an open trial whose head and fiducials are now shown.
-        learner: pseudonym of who does the tutorial before the trial run; empty where nobody does.
+        learner: pseudonym of the trainee doing the tutorial before the trial run; empty if none.
     """
 
     def __init__(
@@ -202,7 +202,7 @@ class TrainingLogic:
 
     @property
     def obstacle(self) -> str:
-        """Why no trial can be started now, whoever is to play it; empty where one can."""
+        """Why no trial can be started now, for any trainee; empty if one can."""
         if self._link.status.state is not LinkState.CONNECTED:
             return _("Connect to the simulator first.")
         if self.progress.isOpen:

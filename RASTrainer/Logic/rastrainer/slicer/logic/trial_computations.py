@@ -1,4 +1,4 @@
-"""What is computed of a trial in a separate process: registration, score, feedback, its replay.
+"""What is computed for a trial in a separate process: registration, score, feedback, its replay.
 
 A trial's journal holds thousands of lines, and a registration calls numpy hundreds of times. In a
 thread of Slicer's, both would keep its window from answering. The study stays with Slicer.

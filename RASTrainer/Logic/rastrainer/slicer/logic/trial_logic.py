@@ -1,4 +1,4 @@
-"""What happens when a finished trial arrives: registered, kept, acknowledged, scored, one by one.
+"""What happens when a finished trial arrives: registered, stored, acknowledged and scored.
 
 Checking, registering, scoring and storing is done in the background; the scene and the link are the
 main thread's.
@@ -36,7 +36,7 @@ from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
 
 RETRY_S = 5.0
-"""After a study was locked or away, until its trials are looked for again."""
+"""After a study was locked or unreachable, until its trials are looked for again."""
 
 
 class TrialLogic:
@@ -45,7 +45,7 @@ class TrialLogic:
     Attributes:
         trialKept: emits each received `TrialRecord` when it is in the study.
         trialScored: emits each `TrialAnalysis` with truth and score, when they are in the study.
-        problemFound: emits a sentence about a trial that could not be kept or scored.
+        problemFound: emits a sentence about a trial that could not be stored or scored.
         received: UUIDs of the received trials that are in the study, in their order.
     """
 
@@ -67,8 +67,8 @@ class TrialLogic:
             link: to the simulator.
             findScenario: gives the scenario of a name, in any thread.
             openStudy: opens the study, in any thread; it may wait for a lock there.
-            work: in which trials are scored and kept.
-            cohort: what CTPS compares with.
+            work: in which trials are scored and stored.
+            cohort: the trials that CTPS compares with.
             records: folder of the simulator's journals, if it is on this computer.
             run: runs the functions that register and score trials.
         """
@@ -206,7 +206,7 @@ class TrialLogic:
         self._beingScored.add(record.trial_id)
 
         def take(analysis: TrialAnalysis) -> None:
-            # A trial of another simulator is none of this one's business.
+            # A trial of another simulator does not concern this one.
             self._score(analysis, logging.info, self._resumeNext)
 
         def refuse(error: Exception) -> None:

@@ -1,4 +1,4 @@
-"""The score of a trial, in the order in which nobody can cheat.
+"""The score of a trial, computed in an order that rules out cheating.
 
 The registration is submitted, which makes it final; the simulator reveals the truth; the score is
 computed, sent and stored. If that is interrupted, the truth is not stored, and all of it is done
@@ -27,7 +27,7 @@ from rastrainer.trial.analysis import (
 from rastrainer.trial.record import TrialRecord
 
 ANSWER_TIMEOUT_S = 60.0
-"""Nobody waits for these answers, and what times out is requested again only over the next
+"""No user waits for these answers, and what times out is requested again only over the next
 connection: a busy simulator gets the time it needs."""
 
 Score = Callable[[TrialAnalysis, Study, RevealedTruth], TrialAnalysis]
@@ -44,7 +44,7 @@ class TrialScoring:
 
         Args:
             link: to the simulator.
-            work: in which trials are scored and kept.
+            work: in which trials are scored and stored.
             openStudy: opens the study, in any thread; it may wait for a lock there.
             score: scores a registered trial whose truth is known.
         """
@@ -60,8 +60,8 @@ class TrialScoring:
 
         Args:
             analysis: its registration.
-            take: is given the analysis with truth and score, once they are in the study.
-            end: is given why it came to nothing.
+            take: receives the analysis with truth and score, once they are in the study.
+            end: receives the reason for a failure.
         """
 
         def score(answer: Mapping[str, Any]) -> None:
@@ -73,7 +73,7 @@ class TrialScoring:
             )
 
         def refuse(error: Exception, truth: RevealedTruth) -> None:
-            """Keep the truth of what can never be scored; what can is asked for again."""
+            """Store the truth of a trial that can never be scored; others are requested again."""
             if isinstance(error, StudyBusyError):
                 end(error)
                 return

@@ -1,4 +1,4 @@
-"""Slicer's views: slices at the next point, the tool or an instrument, and a layout for a while."""
+"""Slicer's views: slices at the next point, the tool or an instrument, and a temporary layout."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WITH_PLOT = slicer.vtkMRMLLayoutNode.SlicerLayoutConventionalPlotView
 
 
 def jumpTo(scene: Any, position: Sequence[float]) -> None:
-    """Bring a place, (3,) float, RAS mm, into all slice views, which stay where they look."""
+    """Move all slice views to a point, (3,) float, RAS mm, without changing their orientation."""
     for view in nodesOfClass(scene, "vtkMRMLSliceNode"):
         view.JumpSliceByOffsetting(*position)
 
@@ -42,7 +42,7 @@ LEAST_ACROSS = 0.3
 
 
 class AlongInstrument:
-    """Slice views that lie along an instrument for a while, and are then as they were."""
+    """Slice views that are temporarily aligned with an instrument, and then restored."""
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
@@ -50,11 +50,11 @@ class AlongInstrument:
 
     @property
     def isShown(self) -> bool:
-        """Whether the views lie along an instrument."""
+        """Whether the views are aligned with an instrument."""
         return bool(self._former)
 
     def show(self, tip: np.ndarray, direction: np.ndarray) -> None:
-        """Lay the views through the tip of an instrument.
+        """Align the views with an instrument, through its tip.
 
         The probe's-eye view is across it, seen from outside, the other two are along it, with the
         instrument coming from above; as far as possible, the patient's right is on the left.
@@ -77,7 +77,7 @@ class AlongInstrument:
             view.UpdateMatrices()
 
     def giveBack(self) -> None:
-        """Let the views lie as they did before."""
+        """Restore the views."""
         for viewId, former in self._former.items():
             view = self._scene.GetNodeByID(viewId)
             if view is not None:
@@ -86,7 +86,7 @@ class AlongInstrument:
         self._former.clear()
 
     def forgetScene(self) -> None:
-        """Forget how the views lay: the scene was cleared."""
+        """Forget the previous orientation of the views: the scene was cleared."""
         self._former.clear()
 
 
@@ -115,7 +115,7 @@ def instrumentAxes(direction: np.ndarray) -> dict[str, np.ndarray]:
 
 
 class BorrowedLayout:
-    """Tables and plots are seen only in a layout that has a view for them."""
+    """Tables and plots are visible only in a layout that has a view for them."""
 
     def __init__(self, scene: Any) -> None:
         self._scene = scene
@@ -125,7 +125,7 @@ class BorrowedLayout:
 
     @property
     def purpose(self) -> str:
-        """What the layout is shown for; empty where the views are as the user has them."""
+        """What the layout is shown for; empty if the user's own layout is shown."""
         node = self._node()
         isShown = node is not None and node.GetViewArrangement() == self._shown
         return self._purpose if isShown else ""
@@ -152,14 +152,14 @@ class BorrowedLayout:
             self._purpose = ""
 
     def forgetScene(self) -> None:
-        """Have the next `process` give the layout back: the scene was cleared of what it showed.
+        """Have the next `process` restore the layout: what it showed was cleared with the scene.
 
         Not yet now, as Slicer shows its last layout again after a scene is closed.
         """
         self._isOutdated = True
 
     def process(self) -> None:
-        """Give the layout back that belongs to a scene which was cleared."""
+        """Restore the layout from before a scene that was cleared."""
         if self._isOutdated:
             self._isOutdated = False
             self.giveBack()
@@ -183,7 +183,7 @@ DEVICES = {
 
 
 class SliceFollower:
-    """Moves the slices as far as they must to go through a place; where they look stays.
+    """Moves the slices just enough to go through a point; their orientation stays.
 
     While the guide of a procedure is aligned, and drill and instrument are in it, they may lie
     along it instead: one across the instrument (probe's-eye view), two along it.
@@ -210,13 +210,13 @@ class SliceFollower:
         self._lastJump = -PERIOD_S
 
     def show(self, place: ArrayLike) -> None:
-        """Show a place, (3,) float, RAS mm."""
+        """Show a point, (3,) float, RAS mm."""
         self._place = np.array(place, dtype=float)
         self._lastJump = self._clock()
         jumpTo(self._scene, self._place.tolist())
 
     def showAgain(self) -> None:
-        """Show the place that was shown last, after the views were moved."""
+        """Show the last point again, after the views were moved."""
         if self._place is not None:
             self.show(self._place)
 

@@ -61,7 +61,7 @@ else:
                 os.kill(pid, number)
 
     class PosixProcessGroup:
-        """What `OPTIONS` have started, and all that it starts."""
+        """A process started with `OPTIONS`, and all that it starts."""
 
         def __init__(self, process: subprocess.Popen[str]) -> None:
             self._id = process.pid
@@ -88,7 +88,7 @@ KILL_AFTER_S = 5.0
 LAST_OUTPUT_S = 1.0
 """How long to wait for the output of what was killed."""
 CLOSING_S = 0.5
-"""How long `close` lets it end in order: Slicer's user waits for that."""
+"""How long `close` waits for an orderly end: Slicer's user waits for that."""
 PERIOD_S = 0.02
 SLICER = "Slicer"
 
@@ -155,7 +155,7 @@ class ChildProcess:
         if self._killAt is None or time.monotonic() < self._killAt:
             return False
         self._group.kill()
-        # What has left the group may keep the output open for ever.
+        # A process that has left the group may keep the output open forever.
         return hasEnded and time.monotonic() > self._killAt + LAST_OUTPUT_S
 
     def takeLines(self) -> list[str]:
@@ -206,7 +206,7 @@ def childEnvironment() -> dict[str, str]:
 
 @dataclass(frozen=True)
 class ChildResult:
-    """What became of a program that was run to its end.
+    """The outcome of a program that was run to its end.
 
     Attributes:
         exitStatus: its exit status; None where it could not be ended.

@@ -1,4 +1,4 @@
-"""What the simulator is set up from: its wheel, the lock of all other packages, and pip.
+"""The sources of a set-up: the simulator's wheel, the lock of all other packages, and pip.
 
 Nothing of our own comes from an index: anyone who registered our name there would run code in
 hospitals. An installed module has the wheel, known by its SHA-256. In a checkout the sources are
@@ -60,7 +60,7 @@ class SimulatorPackage:
         return cls(moduleFolder / RESOURCES, checkout if isCheckout else None)
 
     def requirements(self) -> str:
-        """Return all that pip is to install, with hashes.
+        """Return everything that pip should install, with hashes.
 
         Raises:
             InputError: the lock or the wheel is missing, or the wheel is damaged.
@@ -217,7 +217,7 @@ class SetupProgress:
         self.isInstalling = False
 
     def follow(self, line: str) -> None:
-        """Take a line of pip's into account."""
+        """Process a line of pip's output."""
         if BEGUN.match(line):
             self.done = min(self.done + 1, self.count)
         elif line.startswith(LEFT_OUT):

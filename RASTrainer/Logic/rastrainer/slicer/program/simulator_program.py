@@ -32,7 +32,7 @@ class ProgramState(str, Enum):
 
 
 class SimulatorProgram:
-    """Starts and stops `rastrainer simulator`; `process` is to be called now and then.
+    """Starts and stops `rastrainer simulator`; call `process` now and then.
 
     Attributes:
         state: state of the process.
@@ -150,7 +150,7 @@ class SimulatorProgram:
         if self._isAskedToEnd:
             self._change(ProgramState.STOPPED, _("The simulator was stopped."))
         elif status == 0:
-            # As when the trainee's window is closed.
+            # For example because the trainee's window was closed.
             self._change(ProgramState.STOPPED, _("The simulator has ended."))
         else:
             reason = self._lastLine or _("it wrote nothing")
@@ -175,7 +175,7 @@ class SimulatorProgram:
         for line in child.takeLines():
             self._lastLine = line or self._lastLine
             self.wroteLine.emit(line)
-            # What is ending may say for a moment that it is ready.
+            # A program that is ending may still report that it is ready.
             if self.state is not ProgramState.STOPPING:
                 self._read(line)
                 self._readPairing(line)

@@ -40,7 +40,7 @@ PROGRAM, TRIMMER = "rastrainer_simulator.cli.main", "rastrainer.slicer.program.t
 
 
 class SimulatorSetup:
-    """The private folder and the pip that fills it; `process` is to be called now and then.
+    """The private folder and the pip that fills it; call `process` now and then.
 
     Attributes:
         folder: of the installed simulator.
@@ -66,12 +66,12 @@ class SimulatorSetup:
 
     @property
     def isRunning(self) -> bool:
-        """Whether a set-up is under way."""
+        """Whether a set-up is running."""
         return self._child is not None
 
     @property
     def isEnding(self) -> bool:
-        """Whether a set-up is under way still, and was canceled."""
+        """Whether a set-up is still running, but was canceled."""
         return self.isRunning and self._isCanceled
 
     @property
@@ -130,7 +130,7 @@ class SimulatorSetup:
         """Remove the private folder with all that was set up.
 
         Raises:
-            InputError: a set-up is under way, or the folder cannot be removed.
+            InputError: a set-up is running, or the folder cannot be removed.
         """
         if self.isRunning:
             raise InputError(_("Cancel the set-up first."))
@@ -159,7 +159,7 @@ class SimulatorSetup:
         self.finished.emit(error)
 
     def close(self) -> None:
-        """End the set-up that is under way: Slicer quits."""
+        """End the running set-up: Slicer quits."""
         if self._child is not None:
             self._child.close()
             self._child = None
@@ -200,7 +200,7 @@ class SimulatorSetup:
             discard(self._partial)
 
     def _finish(self, status: int | None) -> str:
-        """Put the new folder in place, and return an error's sentence, empty where all is well."""
+        """Put the new folder in place, and return an error message, empty on success."""
         if self._isCanceled or status != 0:
             self._dropPartial()
         if self._isCanceled:

@@ -1,6 +1,6 @@
 """Windows: a program and all that it starts in one job object, from its first moment on.
 
-The program is started suspended and goes on once it is in the job: what it starts is in it, too.
+The program is started suspended and resumed once it is in the job: what it starts is in it, too.
 `subprocess` closes the handle of its first thread, which is therefore found by the process.
 The calls are those of Microsoft's documentation of kernel32.
 """
@@ -19,7 +19,7 @@ _HANDLE, _POINTER, _TEXT = ctypes.c_void_p, ctypes.c_void_p, ctypes.c_wchar_p
 _CREATE_NO_WINDOW, _CREATE_SUSPENDED = 0x08000000, 0x00000004
 """Without the former, Windows opens a console window."""
 WINDOWS_OPTIONS: dict[str, Any] = {"creationflags": _CREATE_NO_WINDOW | _CREATE_SUSPENDED}
-"""Of `subprocess.Popen`; the program goes on when it is given to a `WindowsJob`."""
+"""For `subprocess.Popen`; a `WindowsJob` resumes the program."""
 _SNAP_THREADS = 0x00000004
 _SUSPEND_RESUME = 0x0002
 _INVALID_HANDLE = ctypes.c_void_p(-1).value
@@ -68,17 +68,17 @@ def _kernel32() -> Any:
 
 
 class WindowsJob:
-    """What `WINDOWS_OPTIONS` have started, and all that it starts."""
+    """A process started with `WINDOWS_OPTIONS`, and all that it starts."""
 
     def __init__(self, process: subprocess.Popen[str], kernel: Any | None = None) -> None:
-        """Take the process into a job, and let it go on.
+        """Put the process into a job, and resume it.
 
         Args:
             process: started with `WINDOWS_OPTIONS`.
             kernel: kernel32; loaded where it is left out.
 
         Raises:
-            OSError: it does not go on; it has been ended.
+            OSError: it could not be resumed; it has been ended.
         """
         self._kernel = _withSignatures(kernel or _kernel32())
         self._pid = process.pid
@@ -104,7 +104,7 @@ class WindowsJob:
             endTree(self._pid)
 
     def _resume(self) -> bool:
-        """Let each thread of the process go on; return whether one has."""
+        """Resume each thread of the process; return whether one was resumed."""
         snapshot = self._kernel.CreateToolhelp32Snapshot(_SNAP_THREADS, 0)
         if snapshot in (None, _INVALID_HANDLE):
             return False

@@ -61,7 +61,7 @@ def showLegend(node: Any, title: str, rank: int) -> Any | None:
 
 
 def hideLegend(node: Any) -> None:
-    """Hide the legend of a node, if it has one; another that is wanted takes its place."""
+    """Hide the legend of a node, if it has one; another requested one takes its place."""
     legend = slicer.vtkSlicerColorLogic.GetColorLegendDisplayNode(node)
     if legend is not None:
         legend.SetAttribute(RANK_ATTRIBUTE, "0")
@@ -91,7 +91,7 @@ def colorHead(
     Args:
         model: the head.
         registration: whose error is shown.
-        localization: of the touches; alike in all directions where left out.
+        localization: of the touches; equal in all directions if omitted.
 
     Raises:
         InputError: the registration has too few points.

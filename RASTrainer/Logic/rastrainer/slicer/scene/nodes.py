@@ -1,4 +1,4 @@
-"""Our nodes in the scene: found or made, what they show, their points, and what the link fills."""
+"""Our nodes in the scene: found or made, what they show, their points, and the link's nodes."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def startPlacing(scene: Any, node: Any) -> None:
 
 
 def stopPlacing(scene: Any) -> None:
-    """Let clicks in the views place nothing more; a point that only follows the mouse goes."""
+    """Stop placing points by clicks; a point that only follows the mouse is removed."""
     interaction = scene.GetNodeByID(INTERACTION)
     if interaction.GetCurrentInteractionMode() == interaction.Place:
         interaction.SetCurrentInteractionMode(interaction.ViewTransform)

@@ -77,7 +77,7 @@ class RemovedLine:
         name: of the line.
         ends: (n, 3) float, RAS mm; n is 2 unless it was not placed completely.
         instrument: diameter and safety distance, mm.
-        place: among the lines of the plan, from 0.
+        place: position among the lines of the plan, from 0.
     """
 
     name: str
@@ -87,7 +87,7 @@ class RemovedLine:
 
 
 def removeLine(scene: Any, line: Any) -> RemovedLine:
-    """Remove a line from the plan; return what `restoreLine` needs to bring it back."""
+    """Remove a line from the plan; return what `restoreLine` needs to restore it."""
     place = planLines(scene).index(line)
     removed = RemovedLine(line.GetName(), worldPoints(line), instrumentOf(line), place)
     scene.RemoveNode(line)
@@ -95,7 +95,7 @@ def removeLine(scene: Any, line: Any) -> RemovedLine:
 
 
 def restoreLine(scene: Any, removed: RemovedLine) -> None:
-    """Bring a removed line back to its place among the others."""
+    """Restore a removed line at its position among the others."""
     lines = planLines(scene)
     line = _addLine(scene, removed.name)
     setInstrument(line, *removed.instrument)

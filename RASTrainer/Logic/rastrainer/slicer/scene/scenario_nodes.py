@@ -152,7 +152,7 @@ def _fill(
         return False
     mesh = read_head_mesh(path)
     surface, display = trianglesPolyData(mesh.vertices, mesh.triangles), node.GetDisplayNode()
-    # All at once: at each change every view would cut or draw the surface anew.
+    # All at once: at each change every view would cut or redraw the surface.
     wasNodeModifying, wasDisplayModifying = node.StartModify(), display.StartModify()
     display.SetColor(color)
     display.SetOpacity(opacity)
@@ -196,7 +196,7 @@ FILE_ATTRIBUTE = "RASTrainer.volumeFile"
 
 
 def requestVolume(scene: Any, scenario: Scenario) -> None:
-    """Let the scene have a node for the images of a scenario, or none where it has none.
+    """Add a node for the images of a scenario, or remove it if the scenario has none.
 
     Called again, nothing is read twice: window, level and what the views show stay as they are.
     """

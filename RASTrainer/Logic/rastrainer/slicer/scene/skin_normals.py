@@ -27,7 +27,7 @@ class SkinNormals:
     """
 
     def __init__(self, work: BackgroundWork | None = None) -> None:
-        """`work` looks for the normals on a head that is new; here and now where it is left out."""
+        """`work` looks for the normals on a head that is new; at once if omitted."""
         self.found = Signal()
         self._work = work
         self._surface: tuple = ()
@@ -80,7 +80,7 @@ class SkinNormals:
     def _look(self, points: list[np.ndarray]) -> bool:
         """Look for the normals at points, and return whether they are known at once."""
         mesh, surface = self._mesh, self._surface
-        # A head on which nothing was looked for takes a while, a further point a moment.
+        # The first search on a head takes some seconds, a further point a moment.
         if self._work is None or self._known or mesh is None:
             self._known |= _normalsOn(mesh, points)
             return True

@@ -39,7 +39,7 @@ TOOL_LENGTH_MM, TOOL_RADIUS_MM = 120.0, 2.0
 _PLACE, _TOOL, _TIP = "place", "tool", "tool model"
 _TOUCHES, _TRACE, _CLEARANCE = "touches", "trace", "clearance"
 POINTS_A_STATE = 10
-"""Of a trace: so many more of its points are shown each time."""
+"""Points of a trace that are added each time."""
 
 
 def showReplay(
@@ -50,7 +50,7 @@ def showReplay(
     worldToHead: np.ndarray,
     rest: Callable[[float], None] = lambda _share: None,
 ) -> Any:
-    """Put a trial into the scene as a Sequence in place of the one before.
+    """Put a trial into the scene as a Sequence, replacing the previous one.
 
     It uses separate nodes, so that a running simulator does not disturb it.
 
@@ -158,7 +158,7 @@ def goTo(scene: Any, timeS: float) -> None:
         return
     sequence = browser.GetMasterSequenceNode()
     times = [float(sequence.GetNthIndexValue(n)) for n in range(sequence.GetNumberOfDataNodes())]
-    # Never after the moment, so that the touch that is looked at has not been made yet.
+    # Never after that moment, so that the touch being shown has not been made yet.
     browser.SetSelectedItemNumber(max(0, int(np.searchsorted(times, timeS, side="right")) - 1))
 
 
@@ -206,7 +206,7 @@ def stopReplay(scene: Any) -> None:
 
 
 def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None) -> None:
-    """Take the replay and all its nodes out of the scene; `rest` is as of `showReplay`."""
+    """Remove the replay and all its nodes from the scene; `rest` is as of `showReplay`."""
     nodes = scene.GetNodes()
     ours = [nodes.GetItemAsObject(n) for n in range(nodes.GetNumberOfItems())]
     ours = [n for n in ours if (n.GetAttribute(ROLE_ATTRIBUTE) or "").startswith(_role(""))]
@@ -224,7 +224,7 @@ def removeReplay(scene: Any, rest: Callable[[float], None] = lambda _share: None
 
 
 def emptyReplay(scene: Any) -> Iterator[None]:
-    """Keep the states of the replay that is in the scene, and let them go in slices, one a step.
+    """Keep the states of the replay that is in the scene, and release them slice by slice.
 
     To be called before the scene is closed, which would delete thousands of them at once.
     """
@@ -234,7 +234,7 @@ def emptyReplay(scene: Any) -> Iterator[None]:
 
 
 def _slicesOf(sequence: Any) -> Iterator[None]:
-    """Take the states out of a sequence in slices: thousands at once would take too long."""
+    """Remove the states of a sequence in slices: thousands at once would take too long."""
     count = sequence.GetNumberOfDataNodes()
     for index in reversed(range(count)):
         sequence.RemoveDataNodeAtValue(sequence.GetNthIndexValue(index))
