@@ -171,7 +171,7 @@ def test_files_answer_ten_questions_of_a_newcomer():
         assert paths, row
 
 
-def test_the_architecture_page_describes_every_room():
+def test_the_architecture_page_describes_every_folder():
     described = set(CODE.findall(text_of("docs/architecture.md")))
     packages = [place for source in SOURCES for place in (ROOT / source).glob("rastrainer*")]
     folders = [

@@ -119,7 +119,7 @@ def test_the_result_without_slicer_is_that_of_slicers_study_on_100_seeded_trials
     assert alone.history.trend(TRAINEE, "desktop") == tuple(scores[-20:])
 
 
-def test_a_trial_is_not_scored_on_another_head_that_was_loaded_since(tmp_path, scenario):
+def test_a_trial_is_not_scored_on_another_head_that_was_loaded_afterward(tmp_path, scenario):
     alone = Alone(tmp_path / "alone", 0, scenario)
     (trial,) = write_finished_trials(alone.folder, range(1))
     with pytest.raises(InputError, match=r"was played in the scenario colin27, but other is"):

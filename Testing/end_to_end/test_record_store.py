@@ -150,7 +150,7 @@ def test_ralph_answers_200_to_every_statement_and_204_to_repeats(ralph, study):
         assert ralph.post([statement]) == 204
 
 
-def test_trials_are_pushed_as_they_are_stored_and_wait_while_ralph_is_away(ralph, tmp_path):
+def test_trials_are_pushed_as_they_are_stored_and_wait_while_ralph_is_down(ralph, tmp_path):
     path = tmp_path / "small.db"
     with Study.open(path) as study:
         study.create_trainee("T001", consent=True)

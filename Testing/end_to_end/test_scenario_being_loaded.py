@@ -162,7 +162,7 @@ def menu(simulator, loop_thread):
         yield Menu(view)
 
 
-def test_a_trial_waits_until_the_head_is_there_whoever_wants_to_start_it(
+def test_a_trial_waits_until_the_head_is_loaded_no_matter_who_starts_it(
     simulator, instructor, other, menu, ball
 ):
     menu.go_to_experiment()
@@ -190,7 +190,7 @@ def test_a_trial_waits_until_the_head_is_there_whoever_wants_to_start_it(
     assert replay(read_journal(journal), load_setup(ball)).difference is None
 
 
-def test_trials_start_on_the_head_before_once_another_one_could_not_be_loaded(
+def test_trials_start_on_the_previous_head_after_another_one_failed_to_load(
     simulator, instructor, other, ball
 ):
     (ball / "head.ply").write_bytes(b"no mesh")
@@ -203,7 +203,7 @@ def test_trials_start_on_the_head_before_once_another_one_could_not_be_loaded(
     assert other.start("task-1").ok
 
 
-def test_a_client_that_leaves_while_its_scenario_is_loaded_holds_up_nobody(simulator, other, ball):
+def test_a_client_that_leaves_while_its_scenario_is_loading_blocks_nobody(simulator, other, ball):
     with Peer(simulator.port) as leaving:
         leaving.begin("LoadScenario", folder=str(ball))
         loading = simulator.being_loaded()

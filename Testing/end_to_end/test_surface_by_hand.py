@@ -62,7 +62,7 @@ def drawn(tmp_path_factory, request) -> dict:
     return seen | {"device": device, "result": trainee.menu}
 
 
-def test_landmarks_and_trace_are_given_with_that_device_alone(drawn):
+def test_landmarks_and_trace_are_recorded_with_that_device_alone(drawn):
     assert drawn["operators"] == {drawn["device"]}
     assert drawn["touched"] == [landmark.name for landmark in COARSE]
     assert len(drawn["traced"]) >= POINTS > MIN_TRACE_POINTS

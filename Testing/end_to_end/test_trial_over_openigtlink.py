@@ -176,7 +176,7 @@ def test_the_head_pose_stays_secret_until_a_registration_is_submitted(trial, sce
     assert trial["after"]["headToWorld"] == trial["truth"]["headToWorld"]
 
 
-def test_views_show_that_the_trial_is_scored(trial):
+def test_views_show_that_the_trial_was_scored(trial):
     assert trial["phase"] == "scored"
 
 

@@ -56,14 +56,14 @@ def test_unused_files_are_removed_and_the_rest_fits_in_700_mb(trimmed):
     assert not list(folder.rglob("*.a"))
 
 
-def test_the_doctor_finds_all_packages_in_what_is_kept(trimmed):
+def test_the_doctor_finds_all_trimmed_packages(trimmed):
     done = run(trimmed[0], "doctor")
     assert "All packages can be loaded" in done.stdout
     assert "cannot be loaded" not in done.stdout
     assert f"page for browsers and headsets is in {trimmed[0]}" in done.stdout
 
 
-def test_a_trial_is_played_on_what_is_kept(simulator):
+def test_a_trial_is_played_with_the_trimmed_packages(simulator):
     scenario = load_scenario(asset_path("scenarios", "colin27"))
     with Client(DEFAULT_HOST, simulator.port) as client:
         send_hello(client, "scripted trainee")
@@ -75,7 +75,7 @@ def has_drawn(log):
     return log.exists() and log.read_text() != ""
 
 
-def test_the_window_draws_on_what_is_kept(trimmed, simulator, tmp_path):
+def test_the_window_draws_with_the_trimmed_packages(trimmed, simulator, tmp_path):
     log = tmp_path / "frames.jsonl"
     words = ["--connect", simulator.url, "--frame-log", str(log), "--pictures", str(tmp_path)]
     command = private_command(Path(sys.executable), trimmed[0], SIMULATOR, "window", *words)
@@ -95,6 +95,6 @@ def test_the_window_draws_on_what_is_kept(trimmed, simulator, tmp_path):
             window.wait()
 
 
-def test_a_scenario_is_checked_on_what_is_kept(trimmed):
+def test_a_scenario_is_checked_with_the_trimmed_packages(trimmed):
     done = run(trimmed[0], "scenario", "check", str(asset_path("scenarios", "colin27")))
     assert done.returncode == 0, done.stdout + done.stderr

@@ -67,7 +67,7 @@ def test_the_demo_of_a_bare_wheel_says_in_one_sentence_what_to_install_and_does_
     assert list((tmp_path / "empty").iterdir()) == []
 
 
-def test_installing_what_the_demo_asks_for_brings_slicers_part(installed):
+def test_installing_what_the_demo_asks_for_provides_slicers_part(installed):
     (metadata,) = installed.glob("rastrainer-*.dist-info/METADATA")
     needs = HeaderParser().parsestr(metadata.read_text(encoding="utf-8")).get_all("Requires-Dist")
     assert {"slicer-core; extra == 'slicer'", "scipy; extra == 'slicer'"} <= set(needs)

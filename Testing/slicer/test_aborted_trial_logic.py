@@ -63,7 +63,7 @@ def lab(scene, tmp_path):
     lab.close()
 
 
-def test_it_is_stored_in_the_study_before_it_is_acknowledged(lab):
+def test_an_aborted_trial_is_stored_before_it_is_acknowledged(lab):
     lab.offer(make_aborted())
     lab.run_until(lambda: lab.acknowledged() == [TRIAL])
     with Study.open(lab.path) as study:
@@ -91,7 +91,7 @@ def test_an_unstorable_aborted_trial_is_reported_once_and_not_acknowledged(lab):
     assert lab.acknowledged() == [TRIAL]
 
 
-def test_all_are_stored_before_anything_that_arrives_after_them(lab):
+def test_aborted_trials_are_stored_before_anything_that_arrives_later(lab):
     """A repeat that was stored earlier would count without a reason."""
     for number in (1, 2, 3):
         lab.link.trialAborted.emit(make_aborted(number))
@@ -123,7 +123,7 @@ def test_a_hostile_record_is_reported_and_later_ones_are_stored(lab, hostile):
     assert len(lab.problems) == 1
 
 
-def test_one_of_a_deleted_trainee_is_acknowledged_and_not_stored(lab):
+def test_an_aborted_trial_of_a_deleted_trainee_is_acknowledged_and_not_stored(lab):
     lab.offer(make_aborted())
     lab.run_until(lambda: lab.acknowledged() == [TRIAL])
     with Study.open(lab.path) as study:
@@ -134,7 +134,7 @@ def test_one_of_a_deleted_trainee_is_acknowledged_and_not_stored(lab):
         assert study.trainees() == ()
 
 
-def test_more_than_fit_are_left_for_the_next_offer(lab):
+def test_aborted_trials_beyond_the_queue_limit_wait_for_the_next_offer(lab):
     offered = [make_aborted(number) for number in range(1, MAX_WAITING + 10)]
     for _ in range(2):
         for record in offered:

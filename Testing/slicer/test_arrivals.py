@@ -25,7 +25,7 @@ def arrivals(scene, received):
     return Arrivals(scene, ErrorGuard(), Signal(), Signal(), {"Known": known})
 
 
-def test_commands_are_handed_over_a_few_per_turn_in_order(arrivals, received):
+def test_commands_are_delivered_a_few_per_turn_in_order(arrivals, received):
     for number in range(3 * COMMANDS_A_TURN):
         arrivals.keepCommand("Known", json.dumps({"number": number}))
     for turn in range(1, 4):
@@ -34,7 +34,7 @@ def test_commands_are_handed_over_a_few_per_turn_in_order(arrivals, received):
     assert [command["number"] for command in received] == list(range(3 * COMMANDS_A_TURN))
 
 
-def test_fewer_long_commands_are_handed_over_per_turn(arrivals, received):
+def test_fewer_long_commands_are_delivered_per_turn(arrivals, received):
     for _ in range(4):
         arrivals.keepCommand("Known", json.dumps({"text": CHARACTERS_A_TURN * "x"}))
     for turn in range(1, 5):

@@ -28,7 +28,7 @@ def run(work):
         work.process()
 
 
-def test_results_arrive_on_the_main_thread_in_the_order_of_the_work(work):
+def test_results_arrive_on_the_main_thread_in_the_order_of_the_jobs(work):
     seen, begun = [], []
     work.began.connect(lambda: begun.append(True))
     for number in range(3):
@@ -43,7 +43,7 @@ def test_results_arrive_on_the_main_thread_in_the_order_of_the_work(work):
     assert begun == [True]
 
 
-def test_an_error_in_the_work_is_reported_and_the_next_work_runs(work):
+def test_an_error_in_a_job_is_reported_and_the_next_job_runs(work):
     received = []
 
     def refuse():
@@ -55,7 +55,7 @@ def test_an_error_in_the_work_is_reported_and_the_next_work_runs(work):
     assert received == ["The disk is full.", "done"]
 
 
-def test_a_programming_error_is_raised_and_the_next_work_is_done(work):
+def test_a_programming_error_is_raised_and_the_next_job_runs(work):
     received = []
     work.do(lambda: 1 // 0, received.append, lambda error: received.append(type(error)))
     work.do(lambda: "done", received.append)
@@ -73,7 +73,7 @@ def test_a_result_handler_may_queue_more_work(work):
     assert received == ["second", "third"]
 
 
-def test_closing_hands_over_what_ends_soon_and_begins_nothing_more(work, monkeypatch):
+def test_closing_delivers_results_that_come_soon_and_starts_no_further_job(work, monkeypatch):
     # Soon is a second, in which a busy machine may do nothing.
     monkeypatch.setattr(background_work, "CLOSING_S", 120.0)
     may_end, received = threading.Event(), []
@@ -116,7 +116,7 @@ def test_the_main_thread_waits_only_briefly_for_a_worker(monkeypatch):
 
 
 @pytest.mark.usefixtures("host")
-def test_work_gets_done_although_slicer_keeps_pythons_lock_while_waiting_for_events():
+def test_jobs_proceed_although_slicer_holds_the_gil_while_waiting_for_events():
     has_turned = threading.Event()
 
     def count():
@@ -148,7 +148,7 @@ def test_no_garbage_is_collected_in_a_worker_thread(work):
         gc.disable()
 
 
-def test_work_canceled_by_its_user_is_aborted():
+def test_a_job_canceled_by_its_user_is_aborted():
     ended = threading.Event()
 
     def work(tell):
@@ -177,7 +177,7 @@ def _usual_switches():
 
 
 @pytest.mark.usefixtures("_usual_switches")
-def test_a_worker_soon_releases_the_lock_and_afterward_everything_is_restored():
+def test_a_worker_soon_releases_the_gil_and_everything_is_restored_afterward():
     may_end = threading.Event()
     job = Job(may_end.wait)
     assert sys.getswitchinterval() < USUAL_SWITCH_INTERVAL_S / 10
@@ -187,7 +187,7 @@ def test_a_worker_soon_releases_the_lock_and_afterward_everything_is_restored():
     assert sys.getswitchinterval() == USUAL_SWITCH_INTERVAL_S
 
 
-def test_work_begins_only_after_deferred_calls():
+def test_jobs_start_only_after_deferred_calls():
     seen = []
     work = BackgroundWork()
     work.later(lambda: seen.append("later"))
@@ -199,7 +199,7 @@ def test_work_begins_only_after_deferred_calls():
     assert seen == ["later", "work", "taken"]
 
 
-def test_queued_work_keeps_it_busy_while_a_result_is_handed_over():
+def test_queued_jobs_keep_the_worker_busy_while_a_result_is_delivered():
     busy = []
     work = BackgroundWork()
     work.do(lambda: None, lambda _none: busy.append(work.isBusy))

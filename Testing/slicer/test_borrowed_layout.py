@@ -44,7 +44,7 @@ def test_the_learning_curve_is_shown_until_the_button_is_pressed_again(looking):
     assert views() == (OWN, 0, 0)
 
 
-def test_the_last_of_the_two_is_shown_and_after_them_the_users_layout(looking):
+def test_the_later_of_the_two_is_shown_and_then_the_users_layout(looking):
     looking.press("learningCurveButton")
     looking.press("showTablesButton")
     looking.wait_until(

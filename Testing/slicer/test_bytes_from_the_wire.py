@@ -135,7 +135,7 @@ def test_a_failing_reply_does_not_stop_the_others(link, contained_failures):
     assert "ZeroDivisionError" in contained_failures.pop()
 
 
-def test_the_same_failure_is_logged_once_and_a_different_one_too(contained_failures):
+def test_each_different_failure_is_logged_once(contained_failures):
     contained, heard, signal = ErrorGuard(), [], Signal()
     for sentence in ("one", "one", "another", "one"):
         contained.run("The work", fail_with, sentence)

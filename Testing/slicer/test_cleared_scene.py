@@ -62,7 +62,7 @@ def test_a_plan_placed_at_once_in_the_next_scene_is_not_mapped_by_the_old_regist
         session.plan.read(target)
 
 
-def test_a_replay_in_the_next_scene_does_not_stop_where_the_previous_one_was_to(
+def test_a_replay_in_the_next_scene_does_not_stop_where_the_previous_one_would_have(
     host, session, make_record, tmp_path
 ):
     record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")

@@ -15,7 +15,7 @@ def add_list(scene, name, count=15, labels=None):
     return node
 
 
-def test_lists_of_another_length_and_a_seventh_are_left_out_and_named(scene):
+def test_lists_of_the_wrong_length_and_a_seventh_list_are_left_out_and_named(scene):
     add_list(scene, "Short", 14)
     good = [add_list(scene, f"Task {letter}") for letter in "ABCDEFG"]
     add_list(scene, "Long", 16)

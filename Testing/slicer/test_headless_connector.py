@@ -264,7 +264,7 @@ def test_as_a_server_it_accepts_many_clients(scene):
     assert connector.GetState() == connector.StateOff
 
 
-def test_anything_that_would_crash_slicer_is_an_error_here(connector, simulator):
+def test_any_call_that_would_crash_slicer_is_an_error_here(connector, simulator):
     data = bytearray(pack(Message("SimServer", Status(1))))
     data[2:14] = b"GET_STATUS\0\0"
     simulator.send_bytes(bytes(data))
@@ -282,7 +282,7 @@ def test_anything_that_would_crash_slicer_is_an_error_here(connector, simulator)
     ],
     ids=["a web page", "SSH", "a body of 2 GiB"],
 )
-def test_anything_that_is_not_openigtlink_would_have_ended_slicer(connector, simulator, said):
+def test_bytes_that_are_not_openigtlink_would_have_crashed_slicer(connector, simulator, said):
     simulator.send_bytes(said)
     crashes = []
     wait_for(connector, lambda: crashes.extend(takeCrashes()) or crashes)

@@ -199,7 +199,7 @@ def test_an_unreadable_message_is_logged_and_changes_nothing(link, simulator, ca
     run_link_until(link, lambda: states)
 
 
-def test_every_finished_trial_is_handed_over_in_order(link, simulator):
+def test_every_finished_trial_is_delivered_in_order(link, simulator):
     records = []
     connect(link, simulator)
     link.trialCompleted.connect(records.append)
@@ -262,7 +262,7 @@ def test_an_invalid_address_is_refused_with_a_message(link, host, port, words):
         link.connectTo(host, port)
 
 
-def test_a_slicer_without_the_extension_is_told_what_to_install(scene):
+def test_without_the_extension_a_message_says_what_to_install(scene):
     link = Link(scene, lambda: None)
     link.connectTo()
     assert link.status.state is LinkState.NOT_INSTALLED

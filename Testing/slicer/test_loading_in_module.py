@@ -51,7 +51,7 @@ def test_the_buttons_that_start_trials_are_disabled_while_slicers_head_is_loaded
     assert module.text("nextStepText") == LOADING
 
 
-def test_the_simulators_refusal_is_shown_where_somebody_else_has_a_head_loaded(module, simulator):
+def test_the_simulators_refusal_is_shown_while_another_client_is_loading_a_head(module, simulator):
     simulator.is_loading = True
     module.unfold("startTaskButton")
     module.press("startTaskButton")

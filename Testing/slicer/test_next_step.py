@@ -34,7 +34,7 @@ def step_of(situation, **changes):
     [CHOSEN, PRACTICED, replace(CHOSEN, studyStep=StepKind.TRIAL)],
     ids=["trial run", "task", "step of a study"],
 )
-def test_what_would_start_a_trial_waits_while_a_scenario_is_being_loaded(situation):
+def test_steps_that_start_a_trial_wait_while_a_scenario_is_loading(situation):
     before, step = nextStep(situation), step_of(situation, isLoading=True)
     assert (step.action, step.title, step.section) == (
         NextAction.WAIT,
@@ -44,7 +44,7 @@ def test_what_would_start_a_trial_waits_while_a_scenario_is_being_loaded(situati
     assert "still loading a scenario" in step.sentence
 
 
-def test_what_starts_no_trial_does_not_wait_for_a_scenario_that_is_being_loaded():
+def test_steps_that_start_no_trial_do_not_wait_for_a_scenario_to_load():
     for situation in (OFF, CONNECTED, replace(CHOSEN, studyStep=StepKind.QUESTIONNAIRE)):
         assert step_of(situation, isLoading=True) == nextStep(situation)
 
@@ -130,7 +130,7 @@ def test_a_simulator_on_another_computer_is_only_connected_to():
     )
 
 
-def test_after_disconnecting_from_a_local_simulator_one_can_connect_again():
+def test_after_disconnecting_from_a_local_simulator_the_user_can_connect_again():
     assert step_of(OFF, program=ProgramState.READY).action is NextAction.CONNECT
 
 
@@ -157,7 +157,7 @@ def test_each_phase_of_a_trial_has_a_title_a_sentence_and_an_action(phase):
         assert found.action is NextAction.PAUSE
 
 
-def test_a_study_with_trainees_offers_choosing_one():
+def test_a_study_with_trainees_offers_to_choose_one():
     assert step_of(CONNECTED, hasTrainees=True).action is NextAction.CHOOSE_TRAINEE
 
 

@@ -91,7 +91,7 @@ def silent(make_room):
     may_answer.set()
 
 
-def test_an_answer_is_handed_over_in_the_next_turn_without_waiting_for_the_poll(make_room):
+def test_an_answer_is_delivered_in_the_next_turn_without_waiting_for_the_poll(make_room):
     room = make_room()
     room.ask()
     room.wait_for_turn()
@@ -100,7 +100,7 @@ def test_an_answer_is_handed_over_in_the_next_turn_without_waiting_for_the_poll(
     assert [reply.ok for reply in room.replies] == [True]
 
 
-def test_a_finished_trial_is_handed_over_in_the_next_turn(make_room):
+def test_a_finished_trial_is_delivered_in_the_next_turn(make_room):
     room, records = make_room(), []
     room.link.trialCompleted.connect(records.append)
     room.simulator.send_command("TrialCompleted", {"number": 1})

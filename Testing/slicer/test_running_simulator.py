@@ -76,7 +76,7 @@ def running(tmp_path):
     return RunningSimulator(tmp_path, Connections())
 
 
-def test_none_is_found_where_none_is_recording(running):
+def test_no_simulator_is_found_where_none_is_recording(running):
     assert not running.look()
     assert (running.sentence, running.canConnect, running.canEnd) == ("", False, False)
     with pytest.raises(InputError, match="no longer a simulator"):
@@ -120,7 +120,7 @@ def test_a_simulator_started_after_the_displayed_one_is_not_ended(left_behind, r
     assert running.holder.pid == second.pid
 
 
-def test_one_started_by_a_person_is_ended_without_its_shell(running, tmp_path):
+def test_a_simulator_started_by_a_person_is_ended_without_its_shell(running, tmp_path):
     shell = f"{sys.executable} -c '{SIMULATOR}' {tmp_path} & wait; echo the shell lives"
     process = subprocess.Popen(["sh", "-c", shell], stdout=subprocess.PIPE, **OPTIONS)
     assert process.stdout.readline() == b"ready\n"

@@ -21,7 +21,7 @@ def logic(study_place, tmp_path):
     logic.close()
 
 
-def test_a_trainee_of_another_slicer_is_noticed_once(logic, study_place):
+def test_a_trainee_added_by_another_slicer_is_noticed_once(logic, study_place):
     with Study.open(study_place) as other:
         other.create_trainee("Blue")
     assert not logic.hasChangedElsewhere()
@@ -50,7 +50,7 @@ def test_a_locked_study_is_checked_later(logic, study_place):
     assert logic.hasChangedElsewhere()
 
 
-def test_the_list_shows_a_trainee_of_another_slicer(host):
+def test_the_list_shows_a_trainee_added_by_another_slicer(host):
     host.open()
     path = host.find("studyPathLineEdit").currentPath
     host.press("createTraineeButton")

@@ -50,7 +50,7 @@ def test_a_study_at_an_address_is_used_remembered_and_left_again(start_slicer, s
         assert [trainee.pseudonym for trainee in study.trainees()] == ["Blue", "T002"]
 
 
-def test_the_list_shows_a_trainee_of_another_seat(start_slicer, server):
+def test_the_list_shows_a_trainee_added_at_another_seat(start_slicer, server):
     place = server.new_study()
     host = start_slicer("trainees")
     host.type("studyAddressLineEdit", str(place))
@@ -59,7 +59,7 @@ def test_the_list_shows_a_trainee_of_another_seat(start_slicer, server):
     host.wait_until(lambda: names(host) == ["Blue"], "the list shows it")
 
 
-def test_a_server_that_is_away_is_reported_and_used_again_when_it_is_back(start_slicer, server):
+def test_an_unreachable_server_is_reported_and_used_again_when_it_is_back(start_slicer, server):
     place = server.new_study()
     host = start_slicer("trainees")
     host.type("studyAddressLineEdit", str(place))

@@ -159,7 +159,7 @@ def test_practice_of_another_trainee_or_task_does_not_count(enrolled):
     assert enrolled.logic.minutesElapsed(enrolled.logic.progress()) == pytest.approx(0.1)
 
 
-def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_away(
+def test_a_stored_trial_is_counted_even_if_it_arrived_while_slicer_was_closed(
     enrolled, make_record, tmp_path
 ):
     enrolled.logic.answer([0] * 16)

@@ -110,7 +110,7 @@ def test_one_trainee_is_exported_as_json_and_as_a_table(logic, add_trial, tmp_pa
     assert logic.exportHistory(tmp_path / "a.csv") == 1
 
 
-def test_a_table_of_everyone_has_those_only_who_consented_to_research(logic, add_trial, tmp_path):
+def test_a_table_of_everyone_has_only_those_who_consented_to_research(logic, add_trial, tmp_path):
     add_trial(1, trainee="a")
     add_trial(2, trainee="b")
     with pytest.raises(InputError, match=r"No trainee of this study consented .* \(2 did not\)"):

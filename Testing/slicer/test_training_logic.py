@@ -23,7 +23,7 @@ def test_a_trial_is_started_for_a_trainee_a_task_and_a_mode(room):
         room.logic.start("T001", "", "hmd")
 
 
-def test_a_scenario_that_is_being_loaded_is_an_obstacle_until_it_is_there_or_refused(room):
+def test_a_loading_scenario_prevents_trials_until_it_is_loaded_or_refused(room):
     done = []
     room.run_until(lambda: not room.logic.obstacle)
     room.logic.loadScenario("mine", lambda: done.append(True))
@@ -37,7 +37,7 @@ def test_a_scenario_that_is_being_loaded_is_an_obstacle_until_it_is_there_or_ref
     assert (len(done), room.logic.obstacle) == (1, "")
 
 
-def test_a_trial_refused_while_somebody_else_has_a_head_loaded_is_reported_and_starts_later(room):
+def test_a_trial_refused_while_another_client_loads_a_head_is_reported_and_starts_later(room):
     room.isLoading = True
     room.logic.start("T001", "task-2", "hmd")
     room.run_until(lambda: room.answers)
@@ -47,7 +47,7 @@ def test_a_trial_refused_while_somebody_else_has_a_head_loaded_is_reported_and_s
     assert room.answers == [LOADING_REFUSAL, ""]
 
 
-def test_what_is_in_the_way_of_a_trial_is_the_link_first_then_another_trial(room):
+def test_a_missing_link_is_reported_as_an_obstacle_before_another_running_trial(room):
     room.tell(phase="running")
     room.run_until(lambda: "trial is open" in room.logic.obstacle)
     room.link.disconnect()

@@ -224,7 +224,7 @@ def test_an_unacknowledged_score_is_sent_over_the_next_connection(lab, make_reco
 
 
 @pytest.mark.parametrize("by_reconnecting", [True, False], ids=["reconnected", "connected"])
-def test_a_trial_whose_study_was_away_is_scored_when_it_is_back(
+def test_a_trial_is_scored_once_its_unreachable_study_is_back(
     by_reconnecting, lab, make_record, monkeypatch
 ):
     monkeypatch.setattr(trial_logic, "RETRY_S", 1e6 if by_reconnecting else 0.0)

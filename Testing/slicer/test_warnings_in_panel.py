@@ -74,7 +74,7 @@ MENDED = {
 }
 
 
-def test_one_click_fixes_it_at_once_and_undo_reverts_it(panel, touches):
+def test_one_click_fixes_a_fault_at_once_and_undo_reverts_it(panel, touches):
     for case, (change, named, button) in MENDED.items():
         touch(panel, change(touches))
         assert named in " ".join(warnings(panel)), case

@@ -212,7 +212,7 @@ def test_no_handle_is_leaked_and_closing_the_last_one_ends_nothing(windows):
 
 
 @pytest.mark.parametrize("call", ["CreateJobObjectW", "AssignProcessToJobObject"])
-def test_without_a_job_it_still_runs_and_is_ended_as_a_tree(windows, monkeypatch, call):
+def test_without_a_job_a_program_still_runs_and_is_ended_as_a_tree(windows, monkeypatch, call):
     windows.refused.add(call)
     ended = []
     monkeypatch.setattr(windows_job, "endTree", ended.append)

@@ -76,7 +76,7 @@ def test_a_teacher_sorts_the_class_by_keyboard_and_a_change_in_the_study_is_show
 
 
 @pytest.mark.soak
-def test_while_the_study_is_away_the_page_says_so_once_and_keeps_the_table(
+def test_while_the_study_is_unreachable_the_page_says_so_once_and_keeps_the_table(
     browser, tmp_path, study
 ):
     with open_class(browser, tmp_path, "--study", str(study)) as page:

@@ -152,7 +152,7 @@ def test_the_headsets_own_button_recenters_too(worn):
     np.testing.assert_allclose(eye_place(worn), EYES_HOME, atol=0.01)
 
 
-def test_the_table_can_be_raised_and_lowered_and_stays_so(place, worn):
+def test_the_table_can_be_raised_and_lowered_and_stays_there(place, worn):
     place.carried_trainee(Controllers(worn)).go_home()
     hands = Controllers(worn)
     hands.point_at("local recenter")
@@ -225,7 +225,7 @@ def test_proximity_pulses_both_controllers(worn, trainee):
     assert all(0 < value <= 1 and ms > 0 for _hand, value, ms in pulses)
 
 
-def test_who_has_control_is_shown_while_driving_and_in_menus(worn, trainee):
+def test_the_holder_of_control_is_shown_while_driving_and_in_menus(worn, trainee):
     holder = "You drive: headset's controllers"
     trainee.press("camera", lambda: trainee.view.state["camera"] == "far", "the far camera")
     wait_for(worn, f"page.headset.panels.work.shown.includes(`{holder}`)")

@@ -380,7 +380,7 @@ def test_disabled_items_are_legible_over_any_picture():
     assert contrast(pale, row) >= 4.5
 
 
-def test_a_selection_is_visible_where_the_system_chooses_the_colors(place, page):
+def test_a_selection_is_visible_with_forced_colors(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_home()
     shown(page, trainee)

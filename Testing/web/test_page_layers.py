@@ -38,13 +38,13 @@ def folder_of(path: Path) -> str:
     return str(path.relative_to(SOURCES).parent)
 
 
-def test_every_folder_of_the_page_is_on_a_floor_and_every_import_is_a_file():
+def test_every_folder_of_the_page_is_in_a_layer_and_every_import_is_a_file():
     assert {folder_of(path) for path in FILES} == set(FLOOR_OF)
     assert [other for path in FILES for other in imported(path) if not other.is_file()] == []
 
 
 @pytest.mark.parametrize("folder", FLOOR_OF)
-def test_a_folder_of_the_page_imports_only_from_folders_above_its_line(folder):
+def test_a_folder_of_the_page_imports_only_from_layers_above_its_own(folder):
     upward = [
         f"{path.relative_to(SOURCES)} → {other.relative_to(SOURCES)}"
         for path in FILES
@@ -55,7 +55,7 @@ def test_a_folder_of_the_page_imports_only_from_folders_above_its_line(folder):
     assert not upward
 
 
-def test_no_file_of_the_page_imports_itself_through_others():
+def test_the_page_has_no_import_cycles():
     try:
         TopologicalSorter({path: imported(path) for path in FILES}).prepare()
     except CycleError as error:

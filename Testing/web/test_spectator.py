@@ -116,7 +116,7 @@ def test_a_spectators_keys_clicks_gamepad_and_pointer_have_no_effect(served, pag
     assert served.presenter.calls == []
 
 
-def test_the_pairing_form_offers_watching_only(browser, served):
+def test_the_pairing_form_offers_to_watch_only(browser, served):
     context = browser.new_context()
     page = context.new_page()
     draw_nothing(page)
@@ -204,7 +204,9 @@ def _joined(served) -> int:
 
 
 @pytest.mark.soak
-def test_a_headset_is_mirrored_and_its_leaving_pauses_even_if_somebody_watches(tmp_path, browser):
+def test_a_headset_is_mirrored_and_the_trial_pauses_when_it_leaves_despite_a_spectator(
+    tmp_path, browser
+):
     with Place(tmp_path, limits=WITHOUT_GRAPHICS) as place:
         url, code = place.simulator.url, place.simulator.code
         headset = open_page(browser, url, code, "metaQuest2", draws=False)

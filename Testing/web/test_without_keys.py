@@ -143,7 +143,7 @@ def test_a_finger_touches_undoes_pauses_and_resumes(place, thumbs):
     steering.resume()
 
 
-def test_two_thumbs_steer_at_once_stop_the_arm_and_read_on_the_buttons_what_to_press(place, thumbs):
+def test_two_thumbs_steer_together_and_stop_the_arm_and_the_buttons_show_the_hints(place, thumbs):
     steering, page = thumbs
     steering.until_still()
     start = steering.tip.copy()

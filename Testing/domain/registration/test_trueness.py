@@ -60,7 +60,7 @@ def test_p_values_of_unbiased_errors_are_uniform_and_a_bias_of_a_millimeter_is_d
     assert np.mean([common_bias(errors, normals).is_shown for errors in biased]) > 0.95
 
 
-def test_its_variance_is_that_of_least_squares():
+def test_the_variance_of_the_bias_is_that_of_least_squares():
     rng = np.random.default_rng(4)
     normals = skin(rng)
     noise = along_skin(rng.normal(0.0, 1.0, (4000, 15, 3)), normals)
@@ -100,5 +100,5 @@ def test_an_invalid_pose_is_refused_with_a_message():
         true_touch_errors(np.zeros((3, 3)), np.zeros((4, 4)), np.zeros((3, 3)))
 
 
-def test_the_length_is_that_of_the_vector():
+def test_the_length_of_the_bias_is_that_of_its_vector():
     assert CommonBias((0.0, 3.0, 4.0), 0.5).length_mm == 5.0

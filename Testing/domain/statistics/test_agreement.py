@@ -41,7 +41,7 @@ def test_the_coefficients_are_the_published_ones_of_shrout_and_fleiss():
     assert found.average.value == pytest.approx(0.62, abs=0.005)
 
 
-def test_their_intervals_are_those_of_the_r_package_psych():
+def test_the_intervals_are_those_of_the_r_package_psych():
     found = intraclass_correlations(SHROUT_FLEISS)
     assert found.single.interval == pytest.approx((0.019, 0.76), abs=0.005)
     assert found.average.interval == pytest.approx((0.071, 0.93), abs=0.005)

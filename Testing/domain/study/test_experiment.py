@@ -337,7 +337,7 @@ def test_the_protocol_of_a_running_study_cannot_change(study):
         progress.progress("T002")
 
 
-def test_the_place_of_a_deleted_trainee_is_reused(study):
+def test_the_sequence_number_of_a_deleted_trainee_is_reused(study):
     progress = StudyProgress(study)
     progress.set_protocol(protocol())
     assert (progress.enroll("T001"), progress.enroll("T002")) == (0, 1)

@@ -17,7 +17,7 @@ def test_sus_scores_brookes_own_example_with_55():
     assert SUS.score([5, 4, 2, 1, 2, 3, 2, 4, 5, 2]) == {"sus": 55.0}
 
 
-def test_sus_goes_from_0_to_100_and_the_middle_is_50():
+def test_sus_ranges_from_0_to_100_with_50_in_the_middle():
     assert SUS.score([5, 1] * 5) == {"sus": 100.0}
     assert SUS.score([1, 5] * 5) == {"sus": 0.0}
     assert SUS.score([3] * 10) == {"sus": 50.0}

@@ -42,7 +42,7 @@ def test_all_raters_get_the_same_trials_each_in_their_own_order(store):
     assert list(orders[0]) != sorted(orders[0])
 
 
-def test_replays_already_assigned_keep_their_places_and_further_ones_are_appended(store):
+def test_replays_already_assigned_keep_their_order_and_further_ones_are_appended(store):
     first = store.assign("R1", TRIALS, 3, random.Random(1))
     assert store.assign("R1", TRIALS, 3, random.Random(2)) == first
     more = store.assign("R1", TRIALS, 5, random.Random(3))

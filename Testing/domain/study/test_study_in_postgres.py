@@ -140,7 +140,7 @@ def counts_of(connection):
     ]
 
 
-def test_a_connection_is_reestablished_after_the_server_was_away(own_server):
+def test_a_connection_is_reestablished_after_an_outage_of_the_server(own_server):
     place = own_server.new_study()
     with Study.open(place) as study:
         study.create_trainee("a")

@@ -65,7 +65,7 @@ def test_the_first_task_is_the_easiest_of_many_on_request(proposer):
     assert easy.complexity.index < usual.complexity.index
 
 
-def test_places_that_turn_out_useless_are_replaced(mesh, places, proposer):
+def test_positions_that_prove_unusable_are_replaced(mesh, places, proposer):
     plan = PLANS[2]
     useless = proposer.propose(plan, 5).fiducials[:4]
     counts = []

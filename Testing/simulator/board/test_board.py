@@ -67,7 +67,7 @@ def restarted(simulator, serve, certificates):
     return restart
 
 
-def test_seats_are_back_after_board_and_simulator_have_restarted(open_board, simulator, restarted):
+def test_seats_reappear_after_board_and_simulator_have_restarted(open_board, simulator, restarted):
     first = open_board()
     first.add(simulator)
     first.tiles_until(is_watching)

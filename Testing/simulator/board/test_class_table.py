@@ -191,7 +191,7 @@ def until(board, is_wanted):
         assert time.monotonic() < give_up, found
 
 
-def test_while_the_study_is_away_the_last_table_stays_and_the_page_is_informed(
+def test_while_the_study_is_unreachable_the_last_table_stays_and_the_page_is_informed(
     open_board, study, monkeypatch
 ):
     monkeypatch.setattr("rastrainer_simulator.board.class_table.ROUND_S", 0.05)

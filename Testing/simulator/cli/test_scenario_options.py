@@ -69,7 +69,9 @@ def test_every_given_option_is_used(tmp_path):
         (["--setup", "{}/wrong.json"], "yawDeg"),
     ],
 )
-def test_an_unusable_option_gets_one_sentence_and_makes_nothing(tmp_path, capsys, words, sentence):
+def test_an_unusable_option_is_reported_in_one_sentence_and_nothing_is_made(
+    tmp_path, capsys, words, sentence
+):
     (tmp_path / "bad.json").write_text('{"haed": {}}')
     (tmp_path / "wrong.json").write_text('{"head": {"yawDeg": "much"}}')
     words = [word.replace("{}", str(tmp_path)) for word in words]

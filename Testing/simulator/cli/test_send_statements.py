@@ -67,7 +67,7 @@ def test_each_statement_is_sent_once_and_a_new_one_later(store, sender, tmp_path
     assert len(store.statements) == COUNT + 1
 
 
-def test_nothing_is_lost_or_duplicated_while_the_store_is_away(store, tmp_path, capsys):
+def test_nothing_is_lost_or_duplicated_while_the_store_is_unreachable(store, tmp_path, capsys):
     store.planned = [503, 429, 500]
     store.crashes = 2
     pauses = []

@@ -112,7 +112,7 @@ def _wait_for_join(served):
     return found
 
 
-def test_the_window_joins_as_a_desktop_and_rejoins_after_its_server_was_away(session):
+def test_the_window_joins_as_a_desktop_and_rejoins_after_its_server_was_down(session):
     assert len(session["joined"]) == 2
     for _name, _view, hello in session["joined"]:
         assert isinstance(hello, Hello)

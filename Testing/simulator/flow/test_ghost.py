@@ -154,7 +154,7 @@ def test_the_expert_is_the_trainee_named_in_the_settings(place):
 @pytest.mark.parametrize(
     ("task", "choice"), [("task-2", "own best"), ("task-1", "expert")], ids=("task", "expert")
 )
-def test_the_trainee_is_told_if_no_acceptable_trial_can_be_found(place, task, choice):
+def test_the_trainee_sees_a_message_if_there_is_no_acceptable_trial(place, task, choice):
     place.prefer(ghost=choice)
     place.start_and_load(task)
     place.until(

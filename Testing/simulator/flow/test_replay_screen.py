@@ -233,7 +233,7 @@ def test_a_teacher_starts_and_pauses_a_replay(result):
     assert result.replay.tick == stands
 
 
-def test_sticks_and_touches_do_not_affect_the_arm_meanwhile(result):
+def test_sticks_and_touches_do_not_affect_the_arm_during_a_replay(result):
     result.show_again()
     arm = result.state.q
     result.hands.push(1, 1, -1, False)
@@ -267,7 +267,7 @@ def test_only_the_holder_of_control_steers_the_replay_until_another_takes_over(r
     presenter.view_left(PAGE)
 
 
-def test_a_headset_steps_through_it_by_stick_and_leaves_with_the_back_button(result):
+def test_a_headset_steps_through_a_replay_by_stick_and_leaves_with_the_back_button(result):
     presenter = result.presenter
     presenter.view_left(1)
     presenter.view_joined(PAGE, Hello("headset"))
@@ -327,7 +327,7 @@ def test_a_trial_started_by_slicer_ends_the_replay_and_is_what_the_views_show(pl
     place.until_menu("experiment")
 
 
-def test_until_the_trial_is_loaded_the_views_say_so_and_one_can_go_back(place, monkeypatch):
+def test_until_the_trial_is_loaded_the_views_say_so_and_the_trainee_can_go_back(place, monkeypatch):
     may_load = threading.Event()
 
     def read(path, rest):

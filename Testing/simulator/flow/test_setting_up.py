@@ -54,7 +54,7 @@ def test_settings_wait_for_the_end_of_a_trial(process):
     assert not process.setting_up.is_under_way
 
 
-def test_settings_wait_until_a_client_has_loaded_its_scenario(process):
+def test_settings_wait_until_a_clients_scenario_is_loaded(process):
     process.loop.is_being_replaced = True
     assert process.setting_up.is_under_way
     process.setting_up.want(PRESENT, NEW)
@@ -66,7 +66,7 @@ def test_settings_wait_until_a_client_has_loaded_its_scenario(process):
 
 
 @pytest.mark.parametrize("reason", [TRIAL_IS_OPEN, BEING_SET_UP], ids=["trial", "loading"])
-def test_settings_are_not_lost_where_a_client_was_faster(process, reason):
+def test_settings_are_not_lost_if_a_client_was_faster(process, reason):
     process.setting_up.want(PRESENT, NEW)
     process.advance()
     process.has_open_trial = True
@@ -79,7 +79,7 @@ def test_settings_are_not_lost_where_a_client_was_faster(process, reason):
     assert not process.setting_up.is_under_way
 
 
-def test_the_newest_settings_count_where_a_client_was_faster(process):
+def test_the_newest_settings_apply_if_a_client_was_faster(process):
     process.setting_up.want(PRESENT, NEW)
     process.advance()
     process.setting_up.want(PRESENT, NEWER)
@@ -97,7 +97,7 @@ def test_settings_that_cannot_be_used_are_not_tried_again(process):
 
 
 @pytest.mark.parametrize("reason", [TRIAL_IS_OPEN, BEING_SET_UP], ids=["trial", "loading"])
-def test_a_chosen_head_is_not_loaded_later_where_a_client_was_faster(process, reason):
+def test_a_chosen_head_is_not_loaded_later_if_a_client_was_faster(process, reason):
     process.setting_up.use_scenario("mine")
     process.answer(reason)
     process.advance()

@@ -64,7 +64,7 @@ def test_only_what_comes_next_can_be_started_and_the_menu_says_what_that_is(menu
     assert (menu.state.training.task, menu.state.training.mode) == ("task-2", "desktop")
 
 
-def test_in_another_mode_nothing_can_be_started(menu, guide):
+def test_nothing_can_be_started_in_another_mode(menu, guide):
     tell(menu, guide, TASK_2)
     menu.focus("mode")
     menu.tap("right")

@@ -268,7 +268,7 @@ def test_the_direction_to_the_target_is_shown_in_words_in_the_trial_run(trainee)
     assert {word.strip(",") for word in words[4:]} <= {"left", "right", "back", "forward", "down"}
 
 
-def test_the_trainee_is_told_that_slicer_is_gone_and_who_will_score(trainee, outside):
+def test_the_trainee_sees_that_slicer_has_disconnected_and_who_will_score(trainee, outside):
     trainee.start("task-1")
     assert trainee.presenter.screen.warnings == ()
     outside.has_slicer = True

@@ -225,7 +225,7 @@ def test_the_tutorials_menu_lets_it_wait_restart_or_be_left(learner):
 
 
 @pytest.mark.parametrize(("rule", "is_listed"), [("optional", True), ("skipped", False)])
-def test_where_so_configured_the_trial_run_does_not_wait_for_the_tutorial(trainee, rule, is_listed):
+def test_if_so_configured_the_trial_run_does_not_wait_for_the_tutorial(trainee, rule, is_listed):
     go_to_experiment(trainee, rule)
     names = [item.name for item in trainee.menu.items]
     assert ("tutorial" in names) is is_listed

@@ -117,7 +117,7 @@ def test_a_file_with_other_content_is_refused_with_a_message(tmp_path, content, 
         read_bindings(path)
 
 
-def test_anything_a_file_leaves_out_keeps_its_default(tmp_path):
+def test_bindings_missing_from_a_file_keep_their_defaults(tmp_path):
     path = tmp_path / "controls.json"
     path.write_text(json.dumps({"formatVersion": 1, "keyboard": {"touch": ["KeyT"]}}))
     bindings = read_bindings(path)

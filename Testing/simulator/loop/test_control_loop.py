@@ -323,7 +323,7 @@ def test_stopping_in_the_middle_of_a_trial_marks_it_and_refuses_late_commands(ru
     assert "shutting down" in running.do(CommandName.CAPTURE).message
 
 
-def test_another_simulation_takes_over_only_between_two_trials(running, anywhere):
+def test_the_simulation_is_replaced_only_between_trials(running, anywhere):
     running.start()
     refused = running.loop.begin_replacement().result(TIMEOUT_S)
     assert (refused.ok, refused.message) == (False, control_loop.TRIAL_IS_OPEN)
@@ -338,7 +338,7 @@ def test_another_simulation_takes_over_only_between_two_trials(running, anywhere
     running.start()
 
 
-def test_a_trial_asked_for_before_another_simulation_is_begun_and_none_after_it(running):
+def test_a_trial_requested_before_the_replacement_starts_and_none_requested_after_it_does(running):
     commands = (CommandName.START_TASK, {"task": "task-1", "trainee": "P01", "mode": "desktop"})
     answers = [
         running.loop.submit(*commands),
@@ -354,7 +354,7 @@ def test_a_trial_asked_for_before_another_simulation_is_begun_and_none_after_it(
     running.start()
 
 
-def test_a_start_refused_while_another_simulation_is_made_leaves_no_trace(
+def test_a_start_refused_while_the_simulation_is_being_replaced_leaves_no_trace(
     running, anywhere, tmp_path
 ):
     assert running.loop.begin_replacement().result(TIMEOUT_S).ok
@@ -376,7 +376,7 @@ def test_a_start_refused_while_another_simulation_is_made_leaves_no_trace(
     assert report.compared["sample"] > 5
 
 
-def test_another_simulation_waits_until_the_score_of_the_last_trial_is_on_the_disk(
+def test_the_simulation_is_replaced_only_once_the_last_trials_score_is_on_disk(
     running, anywhere, monkeypatch
 ):
     trial_id = running.start()
@@ -395,7 +395,7 @@ def test_another_simulation_waits_until_the_score_of_the_last_trial_is_on_the_di
     assert handover.result(TIMEOUT_S).ok
 
 
-def test_replacing_is_refused_once_the_loop_has_ended(running, anywhere):
+def test_replacing_the_simulation_is_refused_once_the_loop_has_ended(running, anywhere):
     assert running.loop.begin_replacement().result(TIMEOUT_S).ok
     running.loop.stop()
     late = (
@@ -420,7 +420,7 @@ def test_trials_started_too_often_are_refused_and_create_no_journal(anywhere, tm
     assert len(journals(tmp_path)) == 2
 
 
-def test_a_trial_may_be_started_again_after_a_while(anywhere, tmp_path):
+def test_a_trial_may_be_started_again_after_some_time(anywhere, tmp_path):
     limits = TrialLimits(1.0, 1)
     with ControlLoop(Simulation(anywhere, 1), tmp_path, speed=None, trial_limits=limits) as loop:
         client = Client(loop)

@@ -93,7 +93,7 @@ def test_a_loop_that_never_sleeps_gets_no_priority():
     assert in_a_thread(inside) == os.SCHED_OTHER
 
 
-def test_everything_is_restored_when_it_ends():
+def test_everything_is_restored_when_the_loop_ends():
     interval = sys.getswitchinterval()
 
     def around() -> tuple[float, int]:

@@ -30,7 +30,7 @@ def test_without_a_file_the_limits_are_the_defaults(tmp_path):
     assert read_limits(tmp_path) == ServerLimits(LinkLimits(), ViewLimits(), TrialLimits())
 
 
-def test_anything_the_file_leaves_out_keeps_its_default(tmp_path):
+def test_limits_missing_from_the_file_keep_their_defaults(tmp_path):
     write(tmp_path, {"clients": {"clients": 3, "slow_client_s": 2}, "views": {"views": 5}})
     assert read_limits(tmp_path) == ServerLimits(
         LinkLimits(clients=3, slow_client_s=2), ViewLimits(views=5)

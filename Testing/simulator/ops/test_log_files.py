@@ -113,7 +113,7 @@ def test_a_message_from_outside_can_create_neither_a_second_line_nor_a_huge_one(
     assert len(line["message"]) == 8000
 
 
-def test_logging_is_restored_afterward(tmp_path):
+def test_logging_is_restored_when_the_program_ends(tmp_path):
     before = list(logging.getLogger().handlers)
     with keep_logs(tmp_path, "simulator"):
         assert logging.getLogger().handlers != before

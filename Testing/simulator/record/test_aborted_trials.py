@@ -103,7 +103,7 @@ def test_a_trial_aborted_during_a_pause_is_recorded_as_such(simulation, tmp_path
     assert (record.phase, record.elapsed_s) == ("paused", elapsed)
 
 
-def test_a_trial_run_is_kept_too_and_marked(simulation, tmp_path):
+def test_a_trial_run_is_stored_too_and_marked(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.do(CommandName.START_TASK, task="trial-run", trainee="P01")
         touch(server, 1)
@@ -114,7 +114,7 @@ def test_a_trial_run_is_kept_too_and_marked(simulation, tmp_path):
     assert record.reason == "practice over"
 
 
-def test_a_trial_that_was_only_looked_at_is_not_kept(simulation, tmp_path):
+def test_a_trial_that_was_only_viewed_is_not_stored(simulation, tmp_path):
     # So slow that its ten seconds are not over while the disk keeps the start.
     with Server(simulation, tmp_path, speed=0.1) as server:
         server.start()
@@ -125,7 +125,7 @@ def test_a_trial_that_was_only_looked_at_is_not_kept(simulation, tmp_path):
     assert find_unacknowledged(tmp_path) == []
 
 
-def test_a_trial_without_a_touch_is_kept_after_ten_seconds(simulation, tmp_path):
+def test_a_trial_without_a_touch_is_stored_after_ten_seconds(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         while server.loop.latest.elapsed <= MIN_ABORTED_S:
@@ -136,7 +136,7 @@ def test_a_trial_without_a_touch_is_kept_after_ten_seconds(simulation, tmp_path)
     assert record.elapsed_s > MIN_ABORTED_S
 
 
-def test_a_refused_touch_is_enough_to_keep_a_trial(setup, tmp_path):
+def test_a_refused_touch_is_enough_for_a_trial_to_be_stored(setup, tmp_path):
     with Server(Simulation(setup, 3), tmp_path) as server:
         server.start()
         assert not server.do(CommandName.CAPTURE).ok
@@ -214,7 +214,7 @@ def test_of_two_simultaneous_commands_that_end_a_trial_only_one_takes_effect(sim
     assert kinds == [TrialRecord, AbortedTrial]
 
 
-def test_the_truth_about_it_is_revealed_to_nobody(simulation, tmp_path):
+def test_the_truth_of_an_aborted_trial_is_never_revealed(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         trial_id = server.start()
         touch(server, 15)
@@ -308,7 +308,7 @@ def test_a_journal_cut_at_any_byte_reports_every_complete_touch(simulation, tmp_
             assert TrialArchive(folder).unacknowledged() == archive.unacknowledged()
 
 
-def test_trials_aborted_before_this_was_recorded_are_not_offered(simulation, tmp_path):
+def test_trials_aborted_before_such_records_existed_are_not_offered(simulation, tmp_path):
     with Server(simulation, tmp_path) as server:
         server.start()
         touch(server, 2)

@@ -152,7 +152,7 @@ def test_a_scale_is_a_round_number_of_millimeters_at_most_a_quarter_of_the_heigh
     assert bar_mm(height_mm) == pytest.approx(bar)
 
 
-def test_the_bar_is_as_long_as_it_says():
+def test_the_scale_bar_is_as_long_as_its_label_says():
     pixels = np.full((400, 640, 3), 255, dtype=np.uint8)
     paint_scale(pixels, 80.0)
     is_ink = (pixels == INK).all(axis=2)

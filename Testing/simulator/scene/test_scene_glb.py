@@ -29,7 +29,7 @@ def glb(content) -> Glb:
     return Glb(content)
 
 
-def test_it_is_small_enough_for_a_headset(content, glb):
+def test_the_scene_is_small_enough_for_a_headset(content, glb):
     primitives = glb.primitives("world")
     assert len(content) <= 5_000_000
     assert sum(len(triangles) for _, _, triangles, _ in primitives) <= 150_000
@@ -166,7 +166,7 @@ def test_colors_are_linear_as_gltf_requires():
     assert linear == pytest.approx((0.21404, 0.0, 1.0), abs=1e-5)
 
 
-def test_trimesh_reads_it(content, glb):
+def test_trimesh_reads_the_scene(content, glb):
     scene = trimesh.load(io.BytesIO(content), file_type="glb")
     triangles = sum(len(mesh.faces) for mesh in scene.geometry.values())
     assert triangles == sum(len(part[2]) for part in glb.primitives("world"))
@@ -174,7 +174,7 @@ def test_trimesh_reads_it(content, glb):
     assert np.all(room < 8.0), "meters"
 
 
-def test_vtk_reads_it(content, glb, tmp_path):
+def test_vtk_reads_the_scene(content, glb, tmp_path):
     path = tmp_path / "scene.glb"
     path.write_bytes(content)
     importer = vtkGLTFImporter()

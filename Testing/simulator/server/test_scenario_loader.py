@@ -149,7 +149,7 @@ def test_no_scenario_is_read_during_a_trial(make):
     assert loader.load("colin27").result(60).ok
 
 
-def test_trials_are_held_back_from_the_moment_that_a_scenario_is_asked_for(make):
+def test_trials_are_held_back_as_soon_as_a_scenario_is_requested(make):
     loop = Loop()
     loader = make(loop, may_be_anywhere=True)
     is_listed = Event()
@@ -162,7 +162,9 @@ def test_trials_are_held_back_from_the_moment_that_a_scenario_is_asked_for(make)
 
 
 @pytest.mark.parametrize("error", [InputError("It is empty."), MemoryError()], ids=repr)
-def test_trials_begin_again_after_any_failure_which_is_answered(make, monkeypatch, error):
+def test_trials_may_start_again_after_any_failure_and_the_answer_reports_it(
+    make, monkeypatch, error
+):
     loop = Loop()
     loader = make(loop, may_be_anywhere=True)
 

@@ -124,7 +124,7 @@ def test_undoing_and_repeating_a_touch_costs_its_time(scenario, hands):
     assert undone.score < honest.score
 
 
-def test_waiting_in_a_pause_neither_costs_nor_gains(scenario, hands):
+def test_waiting_in_a_pause_changes_no_score(scenario, hands):
     def wait(trial):
         trial.do(CommandName.PAUSE)
         trial.now += 300.0

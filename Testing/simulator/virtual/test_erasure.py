@@ -20,7 +20,7 @@ def bytes_below(folder):
     return b"".join(path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file())
 
 
-def test_no_byte_of_the_trainee_is_left(copied, tmp_path, capsys):
+def test_no_byte_of_the_trainees_data_is_left(copied, tmp_path, capsys):
     with Study.open(copied / DATABASE) as study:
         ids = [trial.record.trial_id.encode() for trial in study.history("V0002")]
     for name in ("V0001", "V0002"):

@@ -242,7 +242,7 @@ def test_canceled_loading_ends(journal, setup, monkeypatch):
         loading.loaded.result(60)
 
 
-def test_the_program_serves_it_to_views_until_escape(journal, tmp_path, loop_thread):
+def test_the_program_serves_the_replay_to_views_until_escape(journal, tmp_path, loop_thread):
     key = secrets.token_hex(32)
     command = ["replay", str(journal), "--no-window", "--view-port", "0"]
     process = subprocess.Popen(

@@ -76,13 +76,15 @@ def test_across_the_heads_surface_the_mri_goes_from_dark_to_bright(volume, skin)
     assert len(places) > 0.8 * len(skin)
 
 
-def test_the_wheel_includes_it(built_wheel):
+def test_the_wheel_includes_the_default_volume(built_wheel):
     with zipfile.ZipFile(built_wheel) as wheel:
         packed = wheel.read("rastrainer_simulator/assets/scenarios/colin27/volume.nrrd")
     assert packed == SCENARIO.volume.path.read_bytes()
 
 
-def test_it_is_small_has_1_mm_voxels_and_a_window_from_air_to_the_brightest_tissue(volume):
+def test_the_default_volume_is_small_with_1_mm_voxels_and_a_window_from_air_to_bright_tissue(
+    volume,
+):
     assert SCENARIO.volume.path.stat().st_size < 6_000_000
     assert np.array_equal(volume.ijkToRas[:3, :3], np.eye(3))
     white = SCENARIO.volume.level + SCENARIO.volume.window / 2

@@ -189,7 +189,7 @@ def test_client_beyond_the_limit_is_turned_away(start):
         server.handler.wait_for_messages(3)
 
 
-def test_the_oldest_silent_client_yields_when_its_place_is_needed(start):
+def test_the_oldest_silent_client_is_dropped_when_its_slot_is_needed(start):
     server = start(PlainServer, clients=3)
     with connect(server.port) as talking, contextlib.ExitStack() as stack:
         talking.sendall(pack(PROBE))

@@ -115,7 +115,7 @@ def test_a_flood_of_pings_closes_only_that_view(serve, connect):
     assert good.next("state")["type"] == "state"
 
 
-def test_a_ping_is_answered_but_does_not_count_as_somebody_holding_on(serve, connect):
+def test_a_ping_is_answered_but_does_not_keep_inputs_held(serve, connect):
     served = serve(silent_s=0.2)
     view = connect(served)
     number = view.join()["view"]

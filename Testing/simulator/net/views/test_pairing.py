@@ -69,7 +69,7 @@ def test_five_wrong_codes_create_a_new_one_and_start_a_pause(served):
     assert (status, int(headers["Retry-After"])) == (429, 1)
 
 
-def test_a_view_on_this_computer_is_told_how_to_pair_others(served, connect):
+def test_a_view_on_this_computer_shows_how_to_pair_others(served, connect):
     view = connect(served)
     view.join()
     message = {"type": "pairing", "code": served.code, "addresses": [served.url]}

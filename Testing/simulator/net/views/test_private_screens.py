@@ -96,7 +96,9 @@ def test_a_view_that_joins_meanwhile_is_sent_nothing_of_it(served, seat, connect
     assert is_bare(late.next("screen")["screen"]["menu"])
 
 
-def test_whoever_takes_control_is_sent_the_whole_menu_and_whoever_lost_it_none(served, seat):
+def test_the_view_that_takes_control_is_sent_the_whole_menu_and_the_one_that_lost_it_none(
+    served, seat
+):
     (first, number), (second, other) = seat["page"], seat["other page"]
     tell(served, Control("page", number))
     assert not is_bare(first.next("screen")["screen"]["menu"])

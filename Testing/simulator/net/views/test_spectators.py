@@ -153,7 +153,7 @@ def test_the_newest_headset_is_followed_and_after_it_the_previous_one():
     assert json.loads(mirror.text) == TOLD
 
 
-def test_spectators_do_not_take_the_place_of_a_view(serve, connect):
+def test_spectators_do_not_use_up_the_slots_of_views(serve, connect):
     served = serve(views=1, spectators=1)
     watch(served, connect)
     with pytest.raises(aiohttp.WSServerHandshakeError, match="503"):
@@ -162,7 +162,7 @@ def test_spectators_do_not_take_the_place_of_a_view(serve, connect):
     assert view.join()["type"] == "welcome"
 
 
-def test_a_spectators_connection_yields_to_a_view_when_there_are_too_many(serve, connect):
+def test_a_spectators_connection_is_dropped_for_a_view_when_there_are_too_many(serve, connect):
     served = serve(connections=2)
     view, spectator = connect(served), watch(served, connect)
     view.join()

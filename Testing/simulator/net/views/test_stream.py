@@ -211,7 +211,7 @@ def test_each_view_is_told_whether_it_has_control(served, connect):
     ]
 
 
-def test_no_more_views_than_allowed_can_join_and_a_place_is_freed_when_one_leaves(serve, connect):
+def test_no_more_views_than_allowed_can_join_until_one_leaves(serve, connect):
     served = serve(views=1)
     first = connect(served)
     number = first.join()["view"]
