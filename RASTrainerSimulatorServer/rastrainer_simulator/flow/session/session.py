@@ -40,11 +40,7 @@ from rastrainer_simulator.flow.session.trainee_history import (
 )
 from rastrainer_simulator.flow.session.trial_view import TrialView
 from rastrainer_simulator.flow.tutorial.tutorial import Tutorial
-from rastrainer_simulator.input.bindings import (
-    BINDINGS_FILE,
-    Bindings,
-    write_bindings,
-)
+from rastrainer_simulator.input.bindings import BINDINGS_FILE, Bindings, write_bindings
 from rastrainer_simulator.input.controls import Controls
 from rastrainer_simulator.loop.control_loop import ControlLoop
 from rastrainer_simulator.presentation.feedback_event import FeedbackEvent
@@ -113,10 +109,7 @@ class TrainingSession:
         self.history = ScoreHistory(services.records, self.progress.journals)
         self.own_score = (
             OwnScore(
-                control_loop.submit,
-                services.records,
-                services.is_slicer_connected,
-                self.history.of,
+                control_loop.submit, services.records, services.is_slicer_connected, self.history.of
             )
             if services.scores_alone
             else None
@@ -266,8 +259,7 @@ class TrainingSession:
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
         self.setting_up.want(before, preferences.applied_to(before))
-        path = self._services.config / PREFERENCES_FILE
-        self._save(lambda: write_preferences(path, preferences))
+        self._save(lambda: write_preferences(self._services.config / PREFERENCES_FILE, preferences))
 
     def fiducial(self, label: str) -> Vector:
         """Return where a fiducial of the present trial is, World, m: only after the score."""
@@ -302,8 +294,7 @@ class TrainingSession:
     def rebind(self, bindings: Bindings) -> None:
         """Take on other bindings and save them."""
         self._controls.bindings = bindings
-        path = self._services.config / BINDINGS_FILE
-        self._save(lambda: write_bindings(path, bindings))
+        self._save(lambda: write_bindings(self._services.config / BINDINGS_FILE, bindings))
 
     def complain(self, text: str) -> None:
         """Say what went wrong."""
