@@ -134,7 +134,7 @@ class OperatedView:
         session, tutorial = self._session, self._session.tutorial
         practiced = session.training if tutorial is None else tutorial
         if practiced.mode == Mode.HMD.value:
-            # In a headset one looks around with the head.
+            # In a headset the trainee looks around by turning the head.
             return False
         if tutorial is not None and not tutorial.has_learned_view:
             return False

@@ -31,7 +31,7 @@ _FELT: Mapping[str, Tone] = {
     FeedLayer.THROUGH.value: Tone.WARNING,
     FeedLayer.BLOCKED.value: Tone.ERROR,
 }
-"""What a hand feels of the drill or the instrument, and how it is said."""
+"""What a hand feels of the drill or the instrument, and the words for it."""
 
 
 class ProcedureScreen(ArmScreen):
@@ -54,7 +54,7 @@ class ProcedureScreen(ArmScreen):
         )
 
     def take(self, event: Event) -> None:
-        """Take note of what happened."""
+        """Process an event."""
         super().take(event)
         if event.kind in (EventKind.CHECKPOINT, EventKind.REJECTED, EventKind.PHASE):
             self._was_refused = event.kind is EventKind.REJECTED
@@ -64,7 +64,7 @@ class ProcedureScreen(ArmScreen):
             self._layer = ""
 
     def pressed(self, control: ControlName) -> None:
-        """Do what a control is for: Undo opens the phase's menu, and so does Touch but at first."""
+        """Carry out a control: Undo opens the phase's menu, and so does Touch except at first."""
         session = self._session
         is_verifying = session.training.phase is Phase.VERIFYING
         if control is ControlName.CAMERA:
@@ -87,7 +87,7 @@ class ProcedureScreen(ArmScreen):
         return ScreenMessage(text, Tone.WARNING if self._was_refused else Tone.GOOD)
 
     def warnings(self) -> tuple[ScreenMessage, ...]:
-        """Return what is wrong, and what is felt of the drill or the instrument."""
+        """Return the warnings, and what is felt of the drill or the instrument."""
         session, say = self._session, self._session.texts.say
         training = session.training
         if training.phase is Phase.VERIFYING and self._procedure.registration is None:
@@ -114,7 +114,7 @@ class ProcedureScreen(ArmScreen):
         return (*facts, *self._figures())
 
     def hints(self) -> tuple[Hint, ...]:
-        """Return the controls that matter."""
+        """Return the relevant controls."""
         session = self._session
         phase = session.training.phase
         names = {
@@ -159,7 +159,7 @@ class ProcedureScreen(ArmScreen):
         return procedure
 
     def _figures(self) -> tuple[str, ...]:
-        """Return where the guide or what is in it stands, by the registration."""
+        """Return the position of the guide or of what is in it, by the registration."""
         state, say = self._session.state, self._session.texts.say
         alignment, ruler = state.alignment, self.ruler()
         if ruler is not None:

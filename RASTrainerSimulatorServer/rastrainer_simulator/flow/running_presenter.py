@@ -24,11 +24,11 @@ from rastrainer_simulator.input.inputs import SIMULATOR_STATION, Source, SourceK
 from rastrainer_simulator.loop.control_loop import ControlLoop
 
 PERIOD_S = 0.005
-"""Time between two looks at the gamepad."""
+"""Time between two polls of the gamepad."""
 QUIET_S = 0.01
-"""The same where none is plugged in; what views send is taken as it comes."""
+"""The same if none is plugged in; messages of views are processed as they arrive."""
 LONGEST_STEP_S = 0.1
-"""A machine that was asleep does not make up for it."""
+"""A machine that was asleep does not catch up."""
 
 _log = logging.getLogger(__name__)
 
@@ -36,13 +36,13 @@ T = TypeVar("T")
 
 
 class RunningPresenter:
-    """A presenter, its gamepads, and what keeps both going.
+    """A presenter and its gamepads, and the loop that drives both.
 
     When the gamepad in use is unplugged, the robot stops at once, the trial is paused and a warning
     says so; the trial can be resumed with the keyboard.
 
     Attributes:
-        presenter: what the views look at.
+        presenter: what the views show.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class RunningPresenter:
             self._gamepads = self._started()
 
     async def run(self) -> None:
-        """Keep the presenter going; never returns."""
+        """Run the presenter; never returns."""
         before = time.monotonic()
         while True:
             await asyncio.sleep(PERIOD_S if self._sources else QUIET_S)
@@ -87,7 +87,7 @@ class RunningPresenter:
             self._gamepads.close()
 
     def gamepad_added(self, number: int, name: str) -> None:  # noqa: ARG002
-        """A gamepad was plugged in: the first belongs to the simulator's own station."""
+        """Accept a gamepad that was plugged in, for the simulator's own station."""
         taken = {source.station for source in self._sources.values()}
         station = SIMULATOR_STATION if SIMULATOR_STATION not in taken else f"gamepad {number}"
         self._sources[number] = Source(SourceKind.GAMEPAD, station, number=number)
@@ -95,16 +95,16 @@ class RunningPresenter:
         self.presenter.warn("gamepad")
 
     def gamepad_moved(self, number: int, inputs: Mapping[str, float]) -> None:
-        """A gamepad has moved."""
+        """Process the input of a gamepad."""
         self.presenter.controls.set_inputs(self._sources[number], inputs)
 
     def gamepad_removed(self, number: int, name: str) -> None:
-        """A gamepad was unplugged: release what it held."""
+        """Release what an unplugged gamepad held."""
         self.presenter.unplugged(self._sources.pop(number))
         self.presenter.warn("gamepad", "warning.unplugged", name=name)
 
     def gamepad_unknown(self, name: str) -> None:
-        """A gamepad cannot be used."""
+        """Report a gamepad that cannot be used."""
         self.presenter.warn("gamepad", "warning.unmapped", name=name)
 
     def _started(self) -> Gamepads | None:

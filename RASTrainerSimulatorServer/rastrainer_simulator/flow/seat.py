@@ -12,7 +12,7 @@ from rastrainer_simulator.presentation.screen import Screen, Tone
 
 _WRONG = (Tone.WARNING, Tone.ERROR)
 SENTENCE_S = 20.0
-"""How long the trainee sees a teacher's sentence: longer than a notice, since nobody expects it."""
+"""How long the trainee sees a teacher's message: longer than a notice, as it is unexpected."""
 
 
 def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -> Seat:
@@ -37,7 +37,7 @@ def seat_of(session: TrainingSession, screen: Screen, holder: str, count: int) -
 
 
 def instruct(session: TrainingSession, flow: Flow, order: InstructorOrder, text: str) -> str:
-    """Do what a teacher wants; return why it cannot be done, "" if it is."""
+    """Carry out a teacher's order; return why it is impossible, or ""."""
     if order is InstructorOrder.SAY:
         said = session.texts.say("instructor.says", text=text)
         session.notices.add(said, seconds=SENTENCE_S)

@@ -33,7 +33,7 @@ TRIAL_RUN_S = 300.0
 """How long the trial run is free (the paper's flow, figure 4)."""
 
 ELSEWHERE_M = 0.003
-"""As far from a refused touch as this, the tip on the skin is about to touch anew."""
+"""This far from a refused touch, the tip on the skin is about to touch again."""
 
 
 class TrialScreen(ArmScreen):
@@ -63,7 +63,7 @@ class TrialScreen(ArmScreen):
         return self.guidance is not Guidance.NONE
 
     def take(self, event: Event) -> None:
-        """Take note of what happened."""
+        """Process an event."""
         super().take(event)
         if event.kind in (EventKind.TOUCH, EventKind.UNDO, EventKind.REJECTED, EventKind.PHASE):
             self._was_refused = event.kind is EventKind.REJECTED
@@ -99,7 +99,7 @@ class TrialScreen(ArmScreen):
     def begin(self, points: dict[str, Vector], center: Vector) -> None:
         """Forget the trial before; points and the head's center are in World, m.
 
-        Nobody is led to points that are not marked.
+        The trainee is not led to points that are not marked.
         """
         self._points = points if self._session.training.is_marked else {}
         self._count = len(points)
@@ -110,7 +110,7 @@ class TrialScreen(ArmScreen):
         self.guidance = guidance_of(self._session)
 
     def pressed(self, control: ControlName) -> None:
-        """Do what a control is for while the arm is driven."""
+        """Carry out a control while the arm is driven."""
         session = self._session
         phase = session.training.phase
         if control is ControlName.CAMERA:
@@ -202,13 +202,13 @@ class TrialScreen(ArmScreen):
         return tuple(facts)
 
     def coverage(self) -> str:
-        """Return what the paint on the skin says; "" where none is painted."""
+        """Return the legend of the paint on the skin; "" if there is none."""
         session = self._session
         distance = session.places.guidance(session.state).covered_mm
         return session.texts.say("coverage", distance=f"{distance:.0f}") if distance else ""
 
     def hints(self) -> tuple[Hint, ...]:
-        """Return the controls that matter."""
+        """Return the relevant controls."""
         session = self._session
         training = session.training
         is_complete = training.phase is Phase.COMPLETE and not training.is_tracing
@@ -223,7 +223,7 @@ class TrialScreen(ArmScreen):
         }
         movement: tuple[Hint, ...] = ()
         if session.operator.is_one_of((SourceKind.XR,)):
-            # In a headset one looks around with the head, and its sticks are drawn in its hands.
+            # In a headset the head turns the view, and the sticks are drawn in the hands.
             del names[ControlName.BEST_VIEW]
         elif not is_complete:
             movement = self._movement_hints()
@@ -247,7 +247,7 @@ class TrialScreen(ArmScreen):
         return session.texts.say("status.left", time=session.duration(left))
 
     def _is_off_the_path(self) -> bool:
-        """Return whether the tip is beside the way between the last point and the next."""
+        """Return whether the tip is off the path between the last point and the next."""
         training = self._session.training
         target = self._points.get(training.next_point or "")
         if not training.touches or target is None:

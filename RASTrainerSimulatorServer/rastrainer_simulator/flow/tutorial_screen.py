@@ -23,7 +23,7 @@ from rastrainer_simulator.training.training import TrainingReply
 from rastrainer_simulator.vectors import Vector, distance, in_meters
 
 STEP_MM, STEP_DEG = 5, 5
-"""How much of a step is done is shown in such steps: a running figure cannot be read."""
+"""Progress is shown in these steps: a constantly changing figure is unreadable."""
 _CONTROLS: Mapping[TutorialStep, tuple[ControlName, ...]] = {
     TutorialStep.RIGHT: (ControlName.MOVE_RIGHT,),
     TutorialStep.LEFT: (ControlName.MOVE_LEFT,),
@@ -50,7 +50,7 @@ _CONTROLS: Mapping[TutorialStep, tuple[ControlName, ...]] = {
 _FREE = (TutorialStep.SLOW, TutorialStep.LOWER, TutorialStep.GUIDED)
 """Steps in which the tip may go anywhere: all that moves it is among the hints."""
 MOVES = tuple(TutorialStep)[:6]
-"""Steps that move the tip one way."""
+"""Steps that move the tip in one direction."""
 _MM, _DEG = "tutorial.done mm", "tutorial.done degrees"
 _AMOUNTS: Mapping[TutorialStep, str] = {
     **dict.fromkeys((*MOVES, TutorialStep.SLOW), _MM),
@@ -61,11 +61,11 @@ _AMOUNTS: Mapping[TutorialStep, str] = {
 """Key of the text that says how much of a step is done."""
 _HEARD_ANYWAY = (TutorialStep.TOUCH, TutorialStep.UNDO, TutorialStep.GUIDED)
 NEAR_M = 0.02
-"""From here on the arm counts as being there."""
+"""Within this distance the arm counts as arrived."""
 SPEED_MM_S = 250.0
 LONGEST_S = 6.0
 TAKEN_OVER = 0.2
-"""A stick that is pushed farther is meant."""
+"""A stick that is pushed farther counts as intended."""
 
 
 class TutorialScreen(ArmScreen):
@@ -99,7 +99,7 @@ class TutorialScreen(ArmScreen):
         return self._tutorial.practice.has_points
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds: bring the arm to its place, then look what is done."""
+        """Advance by `dt` seconds: bring the arm to its start, then check the progress."""
         session, tutorial = self._session, self._tutorial
         if tutorial is not self._seen:
             self._begin(tutorial)
@@ -114,7 +114,7 @@ class TutorialScreen(ArmScreen):
                 session.happened(FeedbackEvent.STEP)
 
     def pressed(self, control: ControlName) -> None:
-        """Do what a control is for; what has not been learned yet does nothing."""
+        """Carry out a control; those not learned yet do nothing."""
         session, tutorial = self._session, self._tutorial
         if control is ControlName.CAMERA:
             self._change_camera()
@@ -219,7 +219,7 @@ class TutorialScreen(ArmScreen):
         )
 
     def _take(self, reply: TrainingReply) -> None:
-        """Let what came of a touch be heard, and read if it was refused."""
+        """Play the sound of a touch's outcome, and show why it was refused."""
         session = self._session
         self._was_refused = not reply.ok
         for event in reply.events:
@@ -260,12 +260,12 @@ class TutorialScreen(ArmScreen):
 
 
 def _banner(error_mm: float) -> Tone:
-    """Return the tone of a sentence about a touch: one that could be better is no alarm."""
+    """Return the tone of a sentence about a touch: a mediocre one is no alarm."""
     return Tone.GOOD if error_tone(error_mm) is Tone.GOOD else Tone.WARNING
 
 
 class Homing:
-    """Moves the tip up, then across, and down to the start; who takes the sticks ends it."""
+    """Moves the tip up, then across, and down to the start; using the sticks ends it."""
 
     def __init__(self, session: TrainingSession) -> None:
         self._session = session
@@ -280,11 +280,11 @@ class Homing:
 
     @property
     def is_done(self) -> bool:
-        """Whether the arm is there, or was taken over."""
+        """Whether the arm has arrived, or was taken over."""
         return not self._way
 
     def advance(self, dt: float) -> None:
-        """Command the next part of the way once the one before is done."""
+        """Command the next part of the path once the previous one is done."""
         session = self._session
         self._left_s -= dt
         is_taken_over = max(map(abs, session.held.translation)) > TAKEN_OVER

@@ -1,4 +1,4 @@
-"""Which input does what, and the settings file of that."""
+"""Which input does what, and the settings file for it."""
 
 from __future__ import annotations
 
@@ -183,7 +183,7 @@ DEFAULT_BINDINGS = Bindings(_table(_GAMEPAD), _table(_KEYBOARD))
 
 
 def read_bindings(path: Path) -> Bindings:
-    """Return the bindings of a settings file; what it leaves out is as by default.
+    """Return the bindings of a settings file; missing ones have their defaults.
 
     Raises:
         InputError: the file cannot be read, or holds something else; the sentence names the field.

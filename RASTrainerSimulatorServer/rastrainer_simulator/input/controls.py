@@ -20,7 +20,7 @@ from rastrainer_simulator.input.inputs import (
 from rastrainer_simulator.state import HANDS_OFF, OperatorInput
 
 IDLE_S = 30.0
-"""How long the holder has to rest before another operator may take the control.
+"""How long the holder has to be idle before another operator may take control.
 
 A trainee who looks closely or listens to the instructor rests for some seconds, and is not asked.
 """
@@ -34,16 +34,16 @@ class ControlsListener(Protocol):
     """Receives what the operator presses."""
 
     def pressed(self, control: ControlName) -> None:
-        """A control was pressed by the operator."""
+        """Handle a control that the operator has pressed."""
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """An input was pressed; return whether that was all, as while a control is rebound."""
+        """Handle a pressed input; return whether it was consumed, as while a control is rebound."""
 
     def taken_over(self, source: Source) -> None:
-        """Another operator has taken the control."""
+        """Handle that another operator has taken control."""
 
     def refused(self, source: Source) -> None:
-        """Someone who is not in control wants to operate."""
+        """Handle that someone without control wants to operate."""
 
 
 class Controls:
@@ -58,7 +58,7 @@ class Controls:
 
     Attributes:
         bindings: which input does what; may be exchanged at any time.
-        holder: what drives the arm; None while nobody has acted.
+        holder: what drives the arm; None until someone acts.
         situation: whether the arm can be driven or a menu is open.
     """
 
@@ -80,7 +80,7 @@ class Controls:
 
     @property
     def sticks(self) -> OperatorInput:
-        """What the arm shall do; nothing while a menu is open."""
+        """What the arm should do; nothing while a menu is open."""
         if self.holder is None or self.situation is ControlContext.MENU:
             return HANDS_OFF
         sticks = self.held
@@ -88,25 +88,25 @@ class Controls:
 
     @property
     def held(self) -> OperatorInput:
-        """How the holder's sticks stand, whether or not they move the arm."""
+        """The deflection of the holder's sticks, whether or not they move the arm."""
         state = self._held_state
         return HANDS_OFF if state is None else state.sticks(self.bindings)
 
     @property
     def view(self) -> tuple[float, float, float]:
-        """What the holder asks of the view: around to the right, higher, nearer; −1…1 each."""
+        """The holder's commands to the view: around to the right, higher, nearer; −1…1 each."""
         state = self._held_state
         if state is None or self.situation is ControlContext.MENU:
             return 0.0, 0.0, 0.0
         return state.view(self.bindings)
 
     def is_operator(self, source: Source) -> bool:
-        """Return whether a source is at the station of who holds the control, or nobody does."""
+        """Return whether a source is at the station of the holder of control, or no one has it."""
         return self.holder is None or self.holder.station == source.station
 
     @property
     def _held_state(self) -> InputState | None:
-        """The inputs of the holder; None where nobody holds the control or they are not known."""
+        """The inputs of the holder; None if no one has control or they are unknown."""
         return None if self.holder is None else self._states.get(self.holder)
 
     @property
@@ -118,7 +118,7 @@ class Controls:
         )
 
     def add(self, source: Source) -> None:
-        """Take a source that is plugged in, before anything is pressed on it."""
+        """Accept a source that is plugged in, before anything is pressed on it."""
         self._state(source)
 
     def enter(self, situation: ControlContext) -> None:
@@ -130,31 +130,31 @@ class Controls:
                 state.block()
 
     def set_inputs(self, source: Source, values: Mapping[str, float]) -> None:
-        """Take all inputs (0…1) of a gamepad."""
+        """Process all inputs (0…1) of a gamepad."""
         state = self._state(source)
         pressed = state.set_inputs(values)
         self._noticed(source, state)
         self._press_all(source, state, pressed)
 
     def set_key(self, source: Source, code: str, is_down: bool) -> None:
-        """Take a key of a keyboard; that it comes again while it is held does not matter."""
+        """Process a key of a keyboard; its repeats while it is held do not matter."""
         state = self._state(source)
         pressed = state.set_key(code, is_down)
         self._press_all(source, state, pressed)
 
     def set_sticks(self, source: Source, sticks: OperatorInput) -> None:
-        """Take the sticks of a headset's controllers."""
+        """Process the sticks of a headset's controllers."""
         state = self._state(source)
         state.set_sticks(sticks)
         self._noticed(source, state)
 
     def press(self, source: Source, control: ControlName) -> None:
-        """Take one press of a control that needs no bindings."""
+        """Process one press of a control that needs no bindings."""
         if self.allows(source, control):
             self._listener.pressed(control)
 
     def allows(self, source: Source, control: ControlName | None = None) -> bool:
-        """Return whether a source may act, and let it hold the control if so."""
+        """Return whether a source may act, and give it control if so."""
         if self.is_operator(source):
             self._hold(source)
             return True
@@ -174,7 +174,7 @@ class Controls:
             self.holder = None
 
     def advance(self, dt: float) -> None:
-        """Advance by `dt` seconds: ramps, repeated steps in menus, and how long nobody acted."""
+        """Advance by `dt` seconds: ramps, repeated steps in menus, and idle time."""
         for state in self._states.values():
             state.advance(dt)
         held = self._held_state
@@ -188,7 +188,7 @@ class Controls:
         return self._states[source]
 
     def _noticed(self, source: Source, state: InputState) -> None:
-        """Let pushed sticks pass the control on within a station, or to a first operator."""
+        """Let pushed sticks pass on control within a station, or to a first operator."""
         if source == self.holder or state.is_at_rest:
             return
         holding = self._held_state
@@ -319,7 +319,7 @@ class InputState:
                 self._inputs[code] = min(1.0, value + (1.0 - RAMP_START) * dt / RAMP_S)
 
     def sticks(self, bindings: Bindings) -> OperatorInput:
-        """Return what the sticks and keys ask of the arm."""
+        """Return what the sticks and keys command the arm to do."""
         table = bindings.table(self.device)
 
         def deflection(below: ControlName, above: ControlName, direct: float) -> float:

@@ -1,7 +1,7 @@
-"""Gamepads: what their inputs are called, and those of the simulator, read by SDL.
+"""Gamepads: the names of their inputs, and those of the simulator, read by SDL.
 
 A button is named as in SDL's GameController mappings ("a", "dpup"); an axis is two inputs, one for
-each way it can be pushed ("-leftx", "+leftx").
+each direction in which it can be pushed ("-leftx", "+leftx").
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ class Gamepads:
         self._has_looked = False
 
     def poll(self) -> None:
-        """Tell what has changed since the last poll."""
+        """Report what has changed since the last poll."""
         # `get` pumps SDL's events; what came or went is looked for by asking.
         if self._pygame.event.get() or not self._has_looked:
             self._has_looked = True
@@ -134,7 +134,7 @@ class Gamepads:
                 self._listener.gamepad_moved(number, gamepad_inputs(axes, buttons))
 
     def rumble(self, strength: float, seconds: float) -> None:
-        """Let all gamepads vibrate, those that can."""
+        """Let all gamepads that can do so vibrate."""
         milliseconds = int(1000.0 * min(seconds, LONGEST_RUMBLE_S))
         for pad in self._open.values():
             pad.rumble(strength, strength, milliseconds)
@@ -146,7 +146,7 @@ class Gamepads:
         self._pygame.display.quit()
 
     def _look(self) -> None:
-        """Open what has come and forget what has gone."""
+        """Open newly plugged gamepads and forget unplugged ones."""
         for number, pad in tuple(self._open.items()):
             if not pad.attached():
                 del self._open[number]
@@ -198,7 +198,7 @@ def start_sdl() -> tuple[ModuleType, ModuleType]:
 
 @contextmanager
 def _environment(values: dict[str, str]) -> Iterator[None]:
-    """Set variables for a while: the windows that the server starts shall not inherit them."""
+    """Set variables temporarily: the windows that the server starts must not inherit them."""
     before = {name: os.environ.get(name) for name in values}
     os.environ.update(values)
     try:

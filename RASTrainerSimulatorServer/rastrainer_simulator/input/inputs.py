@@ -1,4 +1,4 @@
-"""What people operate with, which controls there are, and in which situation each counts."""
+"""The sources of input, the controls, and the situation in which each counts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class InputDevice(str, Enum):
 
 
 class SourceKind(str, Enum):
-    """What people read about who holds the control."""
+    """What people read about who has control."""
 
     GAMEPAD = "gamepad"
     KEYBOARD = "keyboard"
@@ -45,7 +45,7 @@ class Source:
 
 
 class ControlName(str, Enum):
-    """What the trainee can do. A stick is two controls, one for each way it can be pushed."""
+    """What the trainee can do. A stick is two controls, one for each direction."""
 
     TOUCH = "touch"
     UNDO = "undo"

@@ -1,9 +1,9 @@
 """Ready-made layouts of the controls: for two hands, for the left-handed, and for one hand alone.
 
 With one hand, everything that a trial by touches needs is within that hand's reach. Up and down are
-buttons for the thumb that otherwise pushes the stick, so the tip is moved one way after the other.
-Turning the tool, which only procedures need, and turning the view by hand stay with the other side:
-*Best view* turns it by one press.
+buttons for the thumb that otherwise pushes the stick, so the tip is moved in one direction after
+the other. Turning the tool, which only procedures need, and turning the view by hand stay with the
+other side: *Best view* turns it by one press.
 """
 
 from __future__ import annotations
@@ -171,5 +171,5 @@ def presets_of(device: InputDevice) -> Mapping[str, Table]:
 
 
 def preset_name(device: InputDevice, table: Table) -> str | None:
-    """Return which preset a table is; None where the user has made it."""
+    """Return which preset a table is; None if the user has made it."""
     return next((name for name, preset in _TABLES[device].items() if preset == table), None)

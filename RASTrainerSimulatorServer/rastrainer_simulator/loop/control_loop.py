@@ -108,7 +108,7 @@ class ControlLoop:
         self._period = 0.0 if speed is None else self._dt / speed
         self._archive = TrialArchive(records)
         self.is_first_in_line = self._period >= self._dt
-        """Whether it runs before all others; one that never sleeps would leave them nothing."""
+        """Whether it runs before all other threads; if it never slept, they would never run."""
         self._writer = ThreadPoolExecutor(
             max_workers=1,
             thread_name_prefix="journal",
@@ -155,12 +155,12 @@ class ControlLoop:
 
     @property
     def is_running(self) -> bool:
-        """Whether it is ticking."""
+        """Whether the loop is ticking."""
         return self._thread.is_alive()
 
     @property
     def statistics(self) -> LoopStatistics:
-        """How punctual it has been."""
+        """How punctual the loop has been."""
         return self._punctuality.statistics()
 
     @property
@@ -318,7 +318,7 @@ class ControlLoop:
         self._answers.give(Answer(ticket, not reason, reason))
 
     def _why_none_starts(self) -> str:
-        """Return why the loop lets no trial begin; an open one is the simulation's own reason."""
+        """Return why the loop lets no trial start; the simulation itself reports an open one."""
         if self._is_trial_open:
             return ""
         if self._is_being_replaced:

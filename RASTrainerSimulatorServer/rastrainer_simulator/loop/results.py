@@ -1,4 +1,4 @@
-"""How results leave the control loop: what is on the disk, to callbacks and to who waits for it.
+"""How results leave the control loop: once on disk, to callbacks and to waiting callers.
 
 Clients and views belong to the event loop's thread: a feed hands the newest state over to it.
 """
@@ -180,7 +180,7 @@ class TrialLog:
         self._loop = loop
 
     def __call__(self, result: StepResult) -> None:
-        """Take a tick; called in the control loop's thread."""
+        """Process a tick; called in the control loop's thread."""
         if any(event.kind is EventKind.PHASE for event in result.events):
             self._loop.call_soon_threadsafe(_note, result.state.training)
 

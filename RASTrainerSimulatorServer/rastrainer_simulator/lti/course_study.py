@@ -1,4 +1,4 @@
-"""The study as courses use it: who launches becomes a trainee, and trials become grades.
+"""The study as courses use it: learners who launch become trainees, and trials grades.
 
 Grades are returned to the learning platforms (Assignment and Grade Services), each until it is
 confirmed.
@@ -32,7 +32,7 @@ from rastrainer_simulator.lti.settings import LearningPlatform, LtiSettings, Too
 from rastrainer_simulator.ops.study_thread import StudyThread
 
 FOLLOWED_DAYS = 180
-"""After a link was opened last, for which its course is sent new grades."""
+"""How long after a link was last opened its course is sent new grades."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -96,7 +96,7 @@ class CourseStudy:
             try:
                 self._links.link(issuer, subject, pseudonym)
             except InputError:
-                # Otherwise each further click would add a trainee whom nobody is.
+                # Otherwise each further click would add a trainee without a person.
                 self._study.delete_trainee(pseudonym)
                 raise
         if launch.line_item:
@@ -140,8 +140,8 @@ class CourseStudy:
         self._links.note_sent(grade.assignment, grade.score, utc)
 
     def forget_deleted(self) -> None:
-        """Forget the users whose trainees were deleted from the study, on whatever computer."""
-        # First: whoever is linked meanwhile is already a trainee, and is not forgotten.
+        """Forget the users whose trainees were deleted from the study, on any computer."""
+        # First: a user linked meanwhile is already a trainee, and is not forgotten.
         linked = self._links.pseudonyms()
         with self._study.database.reading() as connection:
             both = [study_trainees.listed(connection, archived) for archived in (False, True)]
@@ -212,7 +212,7 @@ class GradeReturn:
             except InputError as error:
                 _log.warning("Grades wait: %s", error)
             except Exception:
-                # Launches go on, and nobody would notice that no grade is sent any more.
+                # Launches continue, and no one would notice that no more grades are sent.
                 _log.exception("Grades wait because of an unexpected error")
             await asyncio.sleep(ROUND_S)
 
@@ -224,7 +224,7 @@ class GradeReturn:
         """
         confirmed = 0
         due = await self._study.do(CourseStudy.due)
-        # A grade that a platform always fails at comes last, and so holds up no other.
+        # A grade at which a platform always fails comes last, and so delays no other.
         for grade in sorted(due, key=lambda each: self._failures[_key(each)]):
             platform = self._settings.platform(grade.assignment.issuer, grade.assignment.client_id)
             if platform is None or not self._may_send(platform, grade):
@@ -255,7 +255,7 @@ class GradeReturn:
         )
 
     async def _send(self, platform: LearningPlatform, grade: DueGrade) -> bool:
-        """Send a grade and return whether it was taken; one that is refused holds up no other."""
+        """Send a grade and return whether it was accepted; a refused one delays no other."""
         token = await self._token(platform)
         utc = _after(grade.assignment.sent_utc)
         body = json.dumps(_score(grade, utc)).encode()

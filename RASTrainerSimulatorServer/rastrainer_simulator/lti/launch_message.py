@@ -129,7 +129,7 @@ class OpenLogins:
         return state, nonce
 
     def end(self, state: str, browser: str) -> OpenLogin:
-        """Return the login of a state, which is valid no more.
+        """Return the login of a state, which can be used only once.
 
         Raises:
             RefusedLaunchError: there is none, it has expired, or it was begun in another browser.
@@ -222,7 +222,7 @@ def _key_id(token: str) -> str:
 
 
 def _check_recipient(claims: Mapping[str, Any], platform: LearningPlatform) -> None:
-    """Refuse what is also, or in truth, for another tool, and what is old."""
+    """Refuse a token that is also, or actually, for another tool, and one that is old."""
     if claims["aud"] not in (platform.client_id, [platform.client_id]):
         raise RefusedLaunchError("The token is also addressed to other tools.")
     if claims.get("azp", platform.client_id) != platform.client_id:
@@ -270,7 +270,7 @@ def _is_learner(role: object) -> bool:
 
 
 def _terms(custom: Mapping[str, Any]) -> GradeTerms:
-    """Return what the link of the course says; what is misspelled there is said at once."""
+    """Return what the link of the course says; anything misspelled there is reported at once."""
     rules = [rule.value for rule in GradeRule]
     methods = [method.value for method in RegistrationMethod]
     chosen = {

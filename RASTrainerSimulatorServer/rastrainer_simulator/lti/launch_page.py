@@ -1,4 +1,4 @@
-"""The page after a launch: who one is at the simulator, what to do, and one's scores."""
+"""The page after a launch: the user's pseudonym, what to do, and the user's scores."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class LaunchPage:
 
     @classmethod
     def in_language_of(cls, wanted: str) -> LaunchPage:
-        """Return the pages in the first language that is there of those in an Accept-Language.
+        """Return the pages in the first available language of an Accept-Language.
 
         A platform may write `de_AT` instead of `de-AT`, as Moodle does.
         """
@@ -81,7 +81,7 @@ class LaunchPage:
         return self._page("".join(parts))
 
     def for_teacher(self, launch: PlatformLaunch) -> str:
-        """Return the page of somebody who does not learn in the course, who is given no name."""
+        """Return the page of a user who is no learner in the course and gets no pseudonym."""
         counts = self._say("lti.link works") if launch.line_item else self._say("lti.no grade")
         return self._page(
             f"<p>{self._say('lti.no learner')}</p><p>{counts}</p>"
@@ -89,7 +89,7 @@ class LaunchPage:
         )
 
     def refusal(self, reason: str) -> str:
-        """Return a page that says that a launch has failed; the reason is for who runs this."""
+        """Return a page that says that a launch has failed; the reason is for the operator."""
         return self._page(
             f"<h2>{self._say('lti.refused')}</h2><p>{self._say('lti.refused help')}</p>"
             f'<code lang="en">{html.escape(reason)}</code>'
@@ -132,7 +132,7 @@ class LaunchPage:
         )
 
     def _value(self, name: str, text: str, **value: float | None) -> str:
-        """Return what is measured, or nothing where it is not known."""
+        """Return a measured value, or nothing if it is unknown."""
         if None in value.values():
             return ""
         return f"<div><dt>{self._say(name)}</dt><dd>{self._say(text, **value)}</dd></div>"

@@ -92,7 +92,7 @@ class LtiServer:
         """Open the study, listen and return the port; 0 is any free one.
 
         Raises:
-            InputError: the study cannot be opened, or the port not listened on.
+            InputError: the study cannot be opened, or the port cannot be used.
         """
         await self._study.do(CourseStudy.forget_deleted)
         return await self._http.listen(host, port, tls)
@@ -119,7 +119,7 @@ class LtiServer:
         except RefusedLaunchError as error:
             return _refusal(request, str(error), 400)
         except InputError as error:
-            # Paths and addresses of the lab are none of a visitor's business.
+            # Paths and addresses of the lab must not be revealed to a visitor.
             _log.warning("A launch has failed: %s", error)
             return _refusal(request, NOT_NOW, 503)
 
@@ -156,7 +156,7 @@ class LtiServer:
         return response
 
     async def _launch(self, request: web.Request) -> web.Response:
-        """Show who has launched their pseudonym and scores."""
+        """Show the user who has launched their pseudonym and scores."""
         values = await _form(request)
         login = self._logins.end(values.get("state", ""), _browser(request))
         if "id_token" not in values:
@@ -199,7 +199,7 @@ async def _form(request: web.Request) -> Mapping[str, str]:
         RefusedLaunchError: there is none.
     """
     if request.content_type == "application/x-www-form-urlencoded":
-        # LookupError: a charset that nobody knows.
+        # LookupError: an unknown charset.
         with contextlib.suppress(ValueError, LookupError, asyncio.TimeoutError, ConnectionError):
             values = await asyncio.wait_for(request.post(), BODY_S)
             return {name: value for name, value in values.items() if isinstance(value, str)}

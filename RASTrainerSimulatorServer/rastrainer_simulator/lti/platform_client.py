@@ -24,14 +24,14 @@ BUSY = (401, 408, 425, 429)
 """Statuses by which a platform asks for patience, or for another token."""
 MOST_KEYS = 30
 KEPT_S = 3600.0
-"""After which keys are asked for again, so that a revoked one is no longer accepted."""
+"""Time after which keys are fetched again, so that a revoked one is no longer accepted."""
 REST_S = 30.0
-"""Between two requests: tokens with made-up key IDs cause no more of them."""
+"""Time between two requests: tokens with made-up key IDs cause no more of them."""
 SHORTEST_BITS, LONGEST_BITS = 2048, 8192
 
 
 class PlatformUnreachableError(InputError):
-    """The platform does not answer as it should: the same may be asked later."""
+    """The platform does not answer as it should: the request may be repeated later."""
 
 
 class PlatformClient:

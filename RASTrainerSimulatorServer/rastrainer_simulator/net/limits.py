@@ -124,7 +124,7 @@ class ServerLimits:
 
 
 def read_limits(folder: Path) -> ServerLimits:
-    """Return the limits that the file in a folder sets; what it leaves out is as by default.
+    """Return the limits that the file in a folder sets; missing ones have their defaults.
 
     Raises:
         InputError: the file cannot be read, or sets an unknown or invalid limit.

@@ -36,7 +36,7 @@ class StoreUnreachableError(InputError):
 
 @dataclass
 class Delivery:
-    """What became of statements, by their UUIDs.
+    """The outcome of statements, by their UUIDs.
 
     Attributes:
         stored: that the store has, from now or from earlier.
@@ -50,7 +50,7 @@ class Delivery:
 
 
 class RecordStore:
-    """One store; each request is a connection of its own, and no redirection is followed."""
+    """One store; each request has its own connection, and no redirection is followed."""
 
     def __init__(self, url: str, credentials: str) -> None:
         """Check the address.
@@ -93,7 +93,7 @@ class RecordStore:
         }
 
     def deliver(self, statements: Sequence[dict[str, Any]]) -> Delivery:
-        """Send up to `BATCH` statements; one that is refused does not hold up the others.
+        """Send up to `BATCH` statements; one that is refused does not delay the others.
 
         Raises:
             StoreUnreachableError: the store is not reached; it may have taken some of them.
@@ -179,7 +179,7 @@ def _is_home_page(address: str) -> bool:
 
 @dataclass(frozen=True)
 class RecordStoreSettings:
-    """What the file of settings says; "" or None where it says nothing.
+    """The settings in the file; "" or None if missing.
 
     Attributes:
         store: URL of the xAPI endpoint.

@@ -245,7 +245,7 @@ class Notices:
         self._brief.append((self._time + seconds, ScreenMessage(text, tone)))
 
     def warn(self, about: str, key: str = "", **values: object) -> None:
-        """Show a warning until it is called off by an empty key."""
+        """Show a warning until it is withdrawn by an empty key."""
         self._lasting.pop(about, None)
         if key:
             self._lasting[about] = key, values
@@ -256,6 +256,6 @@ class Notices:
         return tuple(message for _, message in self._brief)
 
     def lasting(self, texts: Texts) -> tuple[ScreenMessage, ...]:
-        """Return the warnings that have not been called off."""
+        """Return the warnings that have not been withdrawn."""
         said = (texts.say(key, **values) for key, values in self._lasting.values())
         return tuple(ScreenMessage(text, Tone.WARNING) for text in said)

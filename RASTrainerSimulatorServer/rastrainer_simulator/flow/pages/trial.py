@@ -79,7 +79,7 @@ def match_report(training: TrainingState, scenario: Scenario) -> MatchReport:
 
 
 class MatchPage(SessionPage):
-    """Tells what is known of a match; the trial is registered only when it is accepted."""
+    """Shows what is known of a match; the trial is registered only when it is accepted."""
 
     name = "match"
     # Someone who presses twice should not accept what they have not read.
@@ -90,7 +90,7 @@ class MatchPage(SessionPage):
         self._looked = looked
 
     def menu(self) -> Menu:
-        """Return what is known so far; what cannot be matched cannot be accepted."""
+        """Return what is known so far; a trace that cannot be matched cannot be accepted."""
         if not self._looked.done():
             return self._menu(self.say("match.looking"))
         try:
@@ -101,7 +101,7 @@ class MatchPage(SessionPage):
         return self._menu(*wrong, self.say("match.residual and error"), report=report)
 
     def accept(self, item: str) -> None:
-        """Register the trial, or continue to draw."""
+        """Register the trial, or continue drawing."""
         if item == "accept":
             self.session.do(CommandName.REGISTER)
         else:
@@ -130,7 +130,7 @@ class TrialPage(SessionPage):
     name = "trial"
 
     def menu(self) -> Menu:
-        """Return what one can do with the trial."""
+        """Return the choices for the trial."""
         training = self.session.training
         task = self.session.task_title(training.task)
         is_complete = training.phase is Phase.COMPLETE
@@ -198,7 +198,7 @@ class AbortPage(SessionPage):
         return Menu(self.name, self.say("abort.title"), (text,), items=items)
 
     def accept(self, item: str) -> None:
-        """Keep the trial or give it up."""
+        """Keep the trial or abort it."""
         if item == "abort":
             self.session.do(CommandName.ABORT, {"reason": AbortReason.TRAINEE.value})
         else:

@@ -1,4 +1,4 @@
-"""A scored trial looked at again: the errors of its touches on the head, and its replay."""
+"""Reviewing a scored trial: the errors of its touches on the head, and its replay."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ POOR_MM = 4.0
 """Errors up to the first are good, from the second on they are poor: what frameless stereotaxy
 reaches in the clinic lies between them."""
 STEP_DEG = 10.0
-"""By so much each press turns the view; held inputs repeat."""
+"""Angle by which each press turns the view; held inputs repeat."""
 _TURNS = {
     ControlName.LEFT: (-STEP_DEG, 0.0),
     ControlName.RIGHT: (STEP_DEG, 0.0),
@@ -39,7 +39,7 @@ _TURNS = {
 }
 """Around the head to the right, and higher, degrees."""
 LONGER = 5.0
-"""An error of a millimeter would hardly be seen."""
+"""An error of a millimeter would be hardly visible."""
 
 
 class ErrorsPage(SessionPage):
@@ -58,7 +58,7 @@ class ErrorsPage(SessionPage):
         back = Hint(session.operator.label(ControlName.BACK), self.say("hint.result"), "back")
         hints: tuple[Hint, ...] = (back,)
         if not session.operator.is_one_of((SourceKind.XR,)):
-            # In a headset one looks around with the head.
+            # In a headset the trainee looks around by turning the head.
             pairs = (ControlName.LEFT, ControlName.RIGHT), (ControlName.UP, ControlName.DOWN)
             turn = self.say("hint.turn_view")
             hints = (*(Hint(session.operator.pair_label(*pair), turn) for pair in pairs), back)
@@ -101,11 +101,11 @@ def error_tone(error_mm: float) -> Tone:
 
 
 _WORST = {InputDevice.KEYBOARD: "KeyT", InputDevice.GAMEPAD: "x"}
-"""Further inputs for the worst touch, which no control of the menus needs."""
+"""Additional inputs for the worst touch, which no control of the menus uses."""
 
 
 class ReplayPage(SessionPage):
-    """Waits for the recorded trial, and replays it for the one in control.
+    """Waits for the recorded trial, and replays it for the operator.
 
     Attributes:
         playback: what is played; None while it is being loaded.
@@ -159,7 +159,7 @@ class ReplayPage(SessionPage):
         return True
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Take what has no meaning in menus: the worst touch, and the camera as while working."""
+        """Process what has no function in menus: the worst touch, and the camera as in a trial."""
         bindings = self.session.bindings
         if self._player is None or bindings.control(device, name, ControlContext.MENU) is not None:
             return False
@@ -191,7 +191,7 @@ class ReplayPage(SessionPage):
             self.session.view.want_best()
 
     def _feel(self, result: StepResult) -> None:
-        """Play the sounds and vibrations of what happened again."""
+        """Play the recorded sounds and vibrations again."""
         for event in result.events:
             felt = feedback_event(event, result.state.touch)
             if felt is not None:

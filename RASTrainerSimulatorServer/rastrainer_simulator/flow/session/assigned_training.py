@@ -13,10 +13,10 @@ from rastrainer.study.protocol.steps import StepAnswers, StudyStep
 from rastrainer_simulator.texts.texts import Texts
 
 MAX_TRAINEES = 1000
-"""Of whom steps and curricula are kept; the oldest is forgotten first."""
+"""Trainees whose steps and curricula are remembered; the oldest is forgotten first."""
 
 PLAYED, ANSWERED = "played", "answered"
-"""In place of a step's kind: it was done here, and Slicer will say what comes next."""
+"""In place of a step's kind: it was done here, and Slicer will send what comes next."""
 
 
 class StudySteps:
@@ -33,7 +33,7 @@ class StudySteps:
         self._answers: dict[str, StepAnswers] = {}
 
     def take(self, step: StudyStep) -> None:
-        """Take a step that Slicer sends."""
+        """Store a step that Slicer has sent."""
         name = step.trainee
         answers = self._answers.get(name)
         if answers is not None and not answers.belong_to(step):
@@ -46,25 +46,25 @@ class StudySteps:
             self._forget(next(iter(self._steps)))
 
     def step_of(self, trainee: str) -> StudyStep | None:
-        """Return what comes next for a trainee; None for who practices freely."""
+        """Return what comes next for a trainee; None for one who practices freely."""
         return self._steps.get(trainee)
 
     def break_left_s(self, trainee: str) -> float:
-        """Return how long the trainee's break still lasts, in s; 0 for who has none."""
+        """Return how long the trainee's break still lasts, in s; 0 without one."""
         step = self._steps.get(trainee)
         if step is None or step.kind != StepKind.BREAK:
             return 0.0
         return step.left_s(self._clock() - self._received_at[trainee])
 
     def note_registered(self, trainee: str, task: str, mode: str) -> None:
-        """Take note of a trial: what the study has asked for is not begun twice."""
+        """Note a trial: what the study has requested is not started twice."""
         step = self._steps.get(trainee)
         wanted = (StepKind.TRIAL.value, task, mode)
         if step is not None and (step.kind, step.task, step.mode) == wanted:
             self._steps[trainee] = replace(step, kind=PLAYED)
 
     def answer(self, trainee: str, answers: Sequence[int]) -> None:
-        """Keep the answers of the questionnaire that comes next, until Slicer has taken them.
+        """Keep the answers to the questionnaire that comes next, until Slicer has received them.
 
         Raises:
             InputError: an answer is missing or none that it allows.
@@ -103,7 +103,7 @@ def step_sentence(texts: Texts, step: StudyStep, task_title: str, left: str) -> 
 
 
 Titles = Callable[[str], str]
-"""From the name of a task or a procedure to what people call it."""
+"""Maps the name of a task or a procedure to its title."""
 
 
 class Curricula:
@@ -117,7 +117,7 @@ class Curricula:
         self._messages: dict[str, CurriculumMessage] = {}
 
     def take(self, curriculum: CurriculumMessage) -> None:
-        """Take what Slicer tells of a trainee."""
+        """Store the standing of a trainee that Slicer has sent."""
         self._messages.pop(curriculum.trainee, None)
         if curriculum.assignments:
             self._messages[curriculum.trainee] = curriculum
@@ -125,11 +125,11 @@ class Curricula:
             del self._messages[next(iter(self._messages))]
 
     def forget_all(self) -> None:
-        """Forget everybody, when no Slicer is connected any more."""
+        """Forget all trainees, when no Slicer is connected any more."""
         self._messages.clear()
 
     def of(self, trainee: str) -> CurriculumMessage | None:
-        """Return where a trainee stands; None for who has no curriculum."""
+        """Return the standing of a trainee; None without a curriculum."""
         return self._messages.get(trainee)
 
 
@@ -146,7 +146,7 @@ def newly_reached(
 
 
 class AssignmentTexts:
-    """Says what assignments are, in the trainee's language."""
+    """Describes assignments in the trainee's language."""
 
     def __init__(self, texts: Texts, task_title: Titles, procedure_title: Titles) -> None:
         self._say = texts.say
@@ -155,7 +155,7 @@ class AssignmentTexts:
         self._procedure_title = procedure_title
 
     def title(self, each: AssignmentMessage) -> str:
-        """Return what people call an assignment."""
+        """Return the title of an assignment."""
         by = f"study.by {each.method}"
         words = [self._task_title(each.task)]
         words += [self._say(by)] if by in self._texts else []
@@ -178,7 +178,7 @@ class AssignmentTexts:
         return f"{title} · {special}" if special else title
 
     def progress(self, each: AssignmentMessage) -> str:
-        """Return how far the trainee is, in few characters."""
+        """Return the trainee's progress, in few characters."""
         if each.is_reached:
             return self._say("assignments.reached")
         if each.is_locked:
@@ -208,7 +208,7 @@ class AssignmentTexts:
         )
 
     def in_brief(self, curriculum: CurriculumMessage) -> str:
-        """Return what a teacher reads of it: how many are reached, and how far the next one is."""
+        """Return what a teacher reads: how many are reached, and the progress of the next one."""
         best = curriculum.find(curriculum.next)
         if best is None:
             return self.summary(curriculum)

@@ -1,4 +1,4 @@
-"""A trial as the study asks for it or the trainee has chosen it, and what has to come before it."""
+"""A trial as the study requires or the trainee has chosen it, and what has to come before it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rastrainer_simulator.flow.session.session import TrainingSession
 
 
 def start_task(session: TrainingSession, task: str) -> None:
-    """Have a trial of a task begun by the trainee, in the chosen mode."""
+    """Start a trial of a task for the trainee, in the chosen mode."""
     trainee = session.trainee.strip()
     start = {"task": task, "trainee": trainee, "mode": session.mode}
     method = registration_method(session, task).value
@@ -43,7 +43,7 @@ def procedure_of(session: TrainingSession, task: str) -> str:
 
 
 def registration_method(session: TrainingSession, task: str) -> RegistrationMethod:
-    """Return by what a trial of a task is registered.
+    """Return the method by which a trial of a task is registered.
 
     A study says which; else it is what the trainee has chosen, if the head allows that. In the
     trial run it is fiducials.
@@ -84,7 +84,7 @@ def begin_ghost(session: TrainingSession, head_to_world: np.ndarray) -> None:
 
 
 def obstacle(session: TrainingSession, task: str) -> str:
-    """Return why the trainee cannot begin a task; "" where nothing is in the way."""
+    """Return why the trainee cannot start a task; "" if nothing prevents it."""
     unready = _unready(session)
     if unready:
         return unready
@@ -106,7 +106,7 @@ def obstacle(session: TrainingSession, task: str) -> str:
 
 
 def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> str:
-    """Return why the trainee cannot begin a trial of an assignment; "" if nothing is in the way."""
+    """Return why the trainee cannot start a trial of an assignment; "" if nothing prevents it."""
     unready, curriculum = _unready(session), session.curriculum
     if unready or curriculum is None:
         return unready
@@ -125,7 +125,7 @@ def assignment_obstacle(session: TrainingSession, each: AssignmentMessage) -> st
 
 
 def _missing_before(session: TrainingSession, task: str, is_assigned: bool) -> str:
-    """Return what has to be done first outside of a study; of assignments, their gates say that."""
+    """Return what has to be done first outside of a study; for assignments, their gates decide."""
     if session.preferences.order == "any":
         return ""
     if task == TRIAL_RUN:
@@ -147,7 +147,7 @@ def _tutorial_first(session: TrainingSession, task: str) -> str:
 
 
 def tutorial_obstacle(session: TrainingSession) -> str:
-    """Return why the trainee cannot begin the tutorial; "" where nothing is in the way.
+    """Return why the trainee cannot start the tutorial; "" if nothing prevents it.
 
     In a study it is practice, and comes where the study has it: before a trial run, once.
     """

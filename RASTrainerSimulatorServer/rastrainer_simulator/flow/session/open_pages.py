@@ -38,35 +38,35 @@ class Page:
         return None
 
     def accept(self, item: str) -> None:
-        """An item that can be chosen was."""
+        """Handle the choice of an item."""
 
     def step(self, item: str, direction: int) -> None:
-        """A choice goes to its next (1) or previous (−1) option."""
+        """Move a choice to its next (1) or previous (−1) option."""
 
     def write(self, item: str, value: str) -> None:
-        """A text item has another value."""
+        """Handle a new value of a text item."""
 
     def back(self) -> None:
-        """The trainee wants to leave."""
+        """Leave the page, as the trainee wants."""
         raise NotImplementedError
 
     def pressed_menu(self) -> None:
-        """The control for the menu was pressed."""
+        """Handle a press of the control for the menu."""
         self.back()
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:  # noqa: ARG002
-        """An input was pressed; return whether the page wants nothing more to come of it."""
+        """Handle a pressed input; return whether the page has consumed it."""
         return False
 
     def pressed(self, control: ControlName) -> bool:  # noqa: ARG002
-        """A control was pressed; return whether that was all."""
+        """Handle a pressed control; return whether the page has consumed it."""
         return False
 
     def advance(self, dt: float) -> None:
         """Advance by `dt` seconds."""
 
     def closed(self) -> None:
-        """It is not open any more."""
+        """Clean up: the page is no longer open."""
 
 
 GRACE_S = 0.7
@@ -109,7 +109,7 @@ class OpenPages:
             self.top.advance(dt)
 
     def show_start(self) -> None:
-        """Close all pages but the first."""
+        """Close all pages except the first."""
         self.show(self.home())
 
     def open(self, page: Page, has_grace: bool = False) -> None:
@@ -138,7 +138,7 @@ class OpenPages:
         return dataclasses.replace(menu, focus=self._focused(menu))
 
     def pressed(self, control: ControlName) -> None:
-        """Take a control of the menus."""
+        """Process a control of the menus."""
         page = self.top
         if page is None or self._grace_s > 0.0 or page.pressed(control):
             return
@@ -168,7 +168,7 @@ class OpenPages:
             self._happened(FeedbackEvent.FOCUS)
 
     def focus(self, name: str) -> None:
-        """Let an item of the page that is shown have the focus."""
+        """Give the focus to an item of the page that is shown."""
         if self._focus:
             self._focus[-1] = name
 

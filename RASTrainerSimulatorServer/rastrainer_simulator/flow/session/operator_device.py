@@ -1,6 +1,6 @@
-"""What the operator works the simulator with, and what its inputs are called on the screen.
+"""The device with which the operator works the simulator, and the names of its inputs.
 
-Who has nothing but a mouse gets two sticks that views draw on request.
+An operator with only a mouse gets two sticks that views draw on request.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SHOW, TILT = "sticks", "tilt"
 
 @dataclass(frozen=True)
 class OperatorDevice:
-    """The device of whoever has control, or the likely one before anybody has.
+    """The device of the holder of control, or the likely one before anyone has it.
 
     Attributes:
         controls: who has control, and which input does what.
@@ -40,7 +40,7 @@ class OperatorDevice:
 
     @property
     def kind(self) -> InputDevice:
-        """What is used; before anybody acts, a gamepad where there is one."""
+        """The device in use; before anyone acts, a gamepad if there is one."""
         holder = self.controls.holder
         if holder is None:
             has_pad = self.controls.has_gamepad
@@ -50,14 +50,14 @@ class OperatorDevice:
 
     @property
     def learned(self) -> SourceKind:
-        """What the arm is driven with, as far as it has controls of its own to be learned."""
+        """The device that drives the arm, if it has its own controls to be learned."""
         holder = self.controls.holder
         if holder is not None and holder.kind in (SourceKind.XR, SourceKind.TOUCH_SCREEN):
             return holder.kind
         if self.steers_by_mouse:
             return SourceKind.MOUSE
         has_pad = self.kind is InputDevice.GAMEPAD
-        # In a headset one holds its controllers, unless a gamepad is in use.
+        # In a headset the trainee holds its controllers, unless a gamepad is in use.
         other = SourceKind.XR if self.mode == Mode.HMD.value else SourceKind.KEYBOARD
         return SourceKind.GAMEPAD if has_pad else other
 
@@ -94,7 +94,7 @@ class OperatorDevice:
         return pair_label(self.label(first), self.label(second))
 
     def stick_label(self, controls: Sequence[ControlName]) -> str:
-        """Return what moves the tool one way or another: "Left stick", or the keys, "W A S D"."""
+        """Return what moves the tool in some directions: "Left stick", or the keys, "W A S D"."""
         labels = [self.label(control) for control in controls]
         words = [label.split() for label in labels]
         shared = 0
@@ -108,7 +108,7 @@ class OperatorDevice:
         return self.texts.listed(self.input_label(device, name) for name in names)
 
     def input_label(self, device: InputDevice, name: str) -> str:
-        """Return what an input is called."""
+        """Return the name of an input."""
         return input_label(self.texts, device.value, name)
 
 
@@ -130,7 +130,7 @@ class ScreenSticks:
         self.is_tilting = False
 
     def pressed(self, name: str) -> bool:
-        """Switch what a click is for; return whether it is for the sticks."""
+        """Switch what a click stands for; return whether it concerns the sticks."""
         if name == SHOW:
             self.is_shown = not self.is_shown
         elif name == TILT:

@@ -37,7 +37,7 @@ from rastrainer_simulator.state import Answer, TrainingState
 
 SENDER = "simulator"
 OWN_SCORE = "isOwnScore"
-"""The entry of a score's details that says whose it is."""
+"""The entry of a score's details that names its source."""
 RETURN_S = 5.0
 """A Slicer whose connection was lost is back after less, unless it has ended."""
 ANSWER_S = 60.0
@@ -50,7 +50,7 @@ _log = logging.getLogger(__name__)
 
 
 class _Job(NamedTuple):
-    """What is done alone: a trial is scored, or the touches of its n-th attempt registered."""
+    """A job done without Slicer: scoring a trial, or registering its n-th attempt."""
 
     trial_id: str
     phase: Phase
@@ -58,7 +58,7 @@ class _Job(NamedTuple):
 
 
 def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
-    """Return what somebody has to do for a trial, None where nothing is to be done here."""
+    """Return what has to be done for a trial, or None if nothing is to be done here."""
     procedure = training.procedure
     if training.phase is Phase.REGISTERED and not is_in_study:
         return _Job(training.trial_id, training.phase, 0)
@@ -70,7 +70,7 @@ def _job(training: TrainingState, is_in_study: bool) -> _Job | None:
 
 
 class OwnScore:
-    """Watches for a trial that nobody registers or scores, and does it in a thread.
+    """Watches for a trial that no Slicer registers or scores, and does it in a thread.
 
     Attributes:
         problem: why the present trial cannot be registered or scored, a sentence; empty otherwise.
@@ -104,7 +104,7 @@ class OwnScore:
     def advance(
         self, dt: float, training: TrainingState, scenario: Scenario, is_in_study: bool
     ) -> None:
-        """Begin what no Slicer does: it is not connected, or has not been for a while.
+        """Start what no Slicer does, if none has been connected for some time.
 
         A trial that is registered is scored, outside of a study. The touches of one with a
         procedure are registered so that it can continue: that reveals nothing.
@@ -205,7 +205,7 @@ def score_alone(
 
 
 def _asked(ask: Ask, command: str, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Have a command carried out after the checks that a client's has to pass."""
+    """Have a command carried out after the checks that a client's command has to pass."""
     return ask(command, check_arguments(command, arguments))
 
 

@@ -14,7 +14,7 @@ from rastrainer_simulator.trial_state import PlannedLine, ProcedureState, Trajec
 from rastrainer_simulator.vectors import Vector, add, dot, scale, subtract
 
 BEFORE_ENTRY_M = 0.05
-"""So far outside of the head the line at hand begins: the guide is brought onto it there."""
+"""The current line begins this far outside of the head: the guide is brought onto it there."""
 PLANNED, SHOWN, PLACED = Tone.GOOD, Tone.WARNING, Tone.PLAIN
 """Colors of the lines after the score: of the plan, as it was shown, and of what was placed."""
 
@@ -25,7 +25,7 @@ def plan_marks(
     """Return the lines of a plan as they are drawn, by the registration; () before it is accepted.
 
     Args:
-        procedure: how far it is.
+        procedure: its progress.
         bone: where its lines go through bone.
     """
     return () if procedure.present is None else tuple(_line_marks(procedure, bone))
@@ -37,7 +37,7 @@ def checkpoint_marks(
     """Return the checkpoints as marks on the skin; those touched by this registration are green.
 
     Args:
-        procedure: how far it is.
+        procedure: its progress.
         places: of the checkpoints by name, World, m.
     """
     touched = {each.name for each in procedure.checkpoints}
@@ -51,7 +51,7 @@ def depth_ruler(trajectory: TrajectoryState, bone: BoneAhead | None) -> DepthRul
     """Return the scale along the axis of a locked guide; None before it is locked.
 
     Args:
-        trajectory: at hand.
+        trajectory: the current one.
         bone: on its planned line.
     """
     guide, line = trajectory.guide, trajectory.line
@@ -93,7 +93,7 @@ def ball(place: Vector, tone: Tone) -> ErrorArrow:
 def _line_marks(
     procedure: ProcedureState, bone: Sequence[BoneAhead | None]
 ) -> Iterator[ErrorArrow]:
-    """Yield the lines; that at hand with its entry and the tables of the skull on it."""
+    """Yield the lines; the current one with its entry and the tables of the skull on it."""
     for number, trajectory in enumerate(procedure.trajectories):
         line = trajectory.line
         if number != procedure.trajectory:
@@ -109,5 +109,5 @@ def _line_marks(
 
 
 def _on(line: PlannedLine, depth_mm: float) -> Vector:
-    """Return the point of a line that is so deep below its entry."""
+    """Return the point of a line at a depth below its entry."""
     return add(line.entry, scale(line.direction, depth_mm / MM_PER_M))

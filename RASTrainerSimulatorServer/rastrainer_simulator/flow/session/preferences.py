@@ -1,4 +1,4 @@
-"""What is chosen at the simulator, and what of it is locked by an instructor's PIN."""
+"""The preferences chosen at the simulator, and which of them an instructor's PIN locks."""
 
 from __future__ import annotations
 
@@ -114,16 +114,16 @@ OF_THE_SIMULATION = ("coarse", "fine", "axes", "direction", "touch", "self_align
 OF_INSTRUCTORS = ("order", "tutorial")
 """Preferences that are changed in the file, or with the instructor's PIN where there is one.
 
-Who trains does not decide what they may leave out.
+Trainees do not decide what they may leave out.
 """
 OF_TRAINEES = ("language", "volume", "muted", "speech")
-"""Preferences that no PIN locks: who trains has to understand and hear."""
+"""Preferences that no PIN locks: trainees have to understand and hear."""
 OF_A_TRIAL = (*OF_THE_SIMULATION, "guidance", "ghost")
 """Preferences that a running trial must not change: they are in its record."""
 
 
 def read_preferences(path: Path) -> Preferences:
-    """Return the preferences of a file; what it leaves out is as by default.
+    """Return the preferences of a file; missing ones have their defaults.
 
     Raises:
         InputError: the file cannot be read, or holds what is no option.
@@ -186,14 +186,14 @@ class InstructorLock:
         return self.has_pin and not self._is_open
 
     def guess(self, pin: str) -> None:
-        """Have a PIN looked at, outside of this thread: that takes about 50 ms."""
+        """Have a PIN checked, outside of this thread: that takes about 50 ms."""
         if self._pin is not None and self._asked is None:
             worker = ThreadPoolExecutor(1, "instructor-pin")
             self._asked = worker.submit(self._pin.guess, pin)
             worker.shutdown(wait=False)
 
     def take_answer(self) -> PinAnswer | None:
-        """Return what became of the guess, once, and unlock by the right PIN; None before.
+        """Return the outcome of the guess, once, and unlock if it was right; None before.
 
         Raises:
             InputError: the PIN's file cannot be read or is no PIN's.
@@ -206,7 +206,7 @@ class InstructorLock:
         return answer
 
     def forget_guess(self) -> None:
-        """Unlock nothing by a PIN that is still being looked at."""
+        """Unlock nothing by a PIN that is still being checked."""
         self._asked = None
 
     def lock(self) -> None:
@@ -214,7 +214,7 @@ class InstructorLock:
         self._is_open = False
 
     def follow(self, trainee: str, trial_id: str, has_tutorial: bool) -> None:
-        """Take note of who trains, of the trial, "" for none, and whether a tutorial is open."""
+        """Note the trainee, the trial, "" for none, and whether a tutorial is open."""
         before, self._seen = self._seen, (trainee, trial_id, has_tutorial)
         is_other_trial = trial_id not in ("", before[1])
         if trainee != before[0] or is_other_trial or (has_tutorial and not before[2]):

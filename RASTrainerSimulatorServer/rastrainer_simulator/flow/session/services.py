@@ -59,7 +59,7 @@ class SettingUp:
     def __init__(
         self, services: FlowServices, control_loop: ControlLoop, complain: Callable[[str], None]
     ) -> None:
-        """`complain` is called with why that could not be done."""
+        """`complain` is called with the reason for a failure."""
         self._services = services
         self._control_loop = control_loop
         self._complain = complain
@@ -70,7 +70,7 @@ class SettingUp:
 
     @property
     def is_under_way(self) -> bool:
-        """Whether other settings of the simulation, or another scenario, are on their way.
+        """Whether other settings of the simulation, or another scenario, are being loaded.
 
         Clients load scenarios, too.
         """
@@ -78,7 +78,7 @@ class SettingUp:
         return is_ours or self._control_loop.is_being_replaced
 
     def want(self, present: SimulationSettings, wanted: SimulationSettings) -> None:
-        """Continue with other settings than the present ones, once they stay for a while."""
+        """Continue with settings other than the present ones, once they have stayed unchanged."""
         is_needed = wanted != present or self._answer is not None
         self._wanted = wanted if is_needed else None
         self._begins_in_s = SET_UP_AFTER_S

@@ -139,7 +139,7 @@ class TrainingSession:
 
     @property
     def training(self) -> TrainingState:
-        """Where the trial stands."""
+        """The state of the trial."""
         return self.state.training
 
     @property
@@ -169,12 +169,12 @@ class TrainingSession:
 
     @property
     def held(self) -> OperatorInput:
-        """How the operator's sticks stand."""
+        """The deflection of the operator's sticks."""
         return self._controls.held
 
     @property
     def operator(self) -> OperatorDevice:
-        """What the operator works with, and what its inputs are called."""
+        """The operator's device, and the names of its inputs."""
         return OperatorDevice(self._controls, self.texts, self.mode, self.screen_sticks.is_shown)
 
     @property
@@ -196,11 +196,11 @@ class TrainingSession:
 
     @property
     def assignment_texts(self) -> AssignmentTexts:
-        """What says of assignments what trainees read."""
+        """Describes assignments for trainees."""
         return AssignmentTexts(self.texts, self.task_title, self.procedure_title)
 
     def advance(self, dt: float, state: SimulationState) -> None:
-        """Take the newest state, and what has been answered within `dt` seconds."""
+        """Process the newest state, and the answers of the last `dt` seconds."""
         self.notices.advance(dt)
         self.state = state
         self.places.advance(dt, state)
@@ -254,7 +254,7 @@ class TrainingSession:
         return outcome
 
     def prefer(self, preferences: Preferences) -> None:
-        """Take on other preferences and save them."""
+        """Adopt other preferences and save them."""
         before = self._control_loop.setup.settings
         self.preferences = preferences
         self.texts = Texts(LANGUAGES[preferences.language])
@@ -292,17 +292,17 @@ class TrainingSession:
         self.progress.note(self.training.trainee, self.scenario.name, self.training.task)
 
     def rebind(self, bindings: Bindings) -> None:
-        """Take on other bindings and save them."""
+        """Adopt other bindings and save them."""
         self._controls.bindings = bindings
         self._save(lambda: write_bindings(self._services.config / BINDINGS_FILE, bindings))
 
     def complain(self, text: str) -> None:
-        """Say what went wrong."""
+        """Report a failure."""
         self.notices.add(self.texts.again(text), Tone.ERROR)
         self.happened(FeedbackEvent.ERROR)
 
     def task_title(self, name: str) -> str:
-        """Return what people call a task."""
+        """Return the title of a task."""
         key = f"task.{name}"
         if key in self.texts:
             return self.texts.say(key)
@@ -310,7 +310,7 @@ class TrainingSession:
         return titles.get(name, name)
 
     def procedure_title(self, name: str) -> str:
-        """Return what people call a procedure; "" is the touches alone."""
+        """Return the title of a procedure; "" stands for the touches alone."""
         titles = {each.name: each.title for each in self.scenario.procedures}
         return titles.get(name, name) if name else self.texts.say("experiment.touches alone")
 
@@ -339,11 +339,11 @@ class TrainingSession:
             self.complain(str(error))
 
     def _take_answers(self) -> None:
-        """Say why commands were refused, of those that have been answered."""
+        """Show why answered commands were refused."""
         asked, self._asked = self._asked, []
         for command, answer in asked:
             if not answer.done():
                 self._asked.append((command, answer))
-            # A touch that does not count comes as an event of its own, with its own sound.
+            # A touch that does not count comes as a separate event, with its own sound.
             elif not answer.result().ok and command != CommandName.CAPTURE:
                 self.complain(answer.result().message)

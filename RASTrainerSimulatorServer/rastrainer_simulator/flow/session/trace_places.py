@@ -25,7 +25,7 @@ from rastrainer_simulator.vectors import Vector, add, in_meters, scale, subtract
 LOOK_S = 0.25
 """Between two searches; one takes about 10 ms."""
 EYE_M = 0.45
-"""From the next place, where it is looked at."""
+"""Distance of the viewpoint from the next place."""
 
 _log = logging.getLogger(__name__)
 
@@ -53,7 +53,7 @@ class TracePlaces:
         self._trial = trial_id, setup, truth
 
     def forget(self) -> None:
-        """Guide no more."""
+        """Stop guiding."""
         self._trial = self._asked = self._found = self._place = None
 
     def close(self) -> None:
@@ -62,7 +62,7 @@ class TracePlaces:
         self._worker.shutdown(wait=False)
 
     def advance(self, dt: float, state: SimulationState) -> None:
-        """Take what has been found, and look for the next place of a trace that has changed."""
+        """Collect the result, and search the next place of a trace that has changed."""
         self._since_s += dt
         if self._found is not None and self._found.done():
             self._place, self._found = self._found.result(), None

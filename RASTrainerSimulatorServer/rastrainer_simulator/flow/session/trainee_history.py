@@ -57,7 +57,7 @@ class DoneTasks:
             self._take(path)
 
     def note(self, trainee: str, scenario: str, task: str) -> None:
-        """Take note of a scenario's task that was done."""
+        """Note that a scenario's task was done."""
         self._done[trainee, scenario].add(task)
 
     def has_done(self, trainee: str, scenario: str, task: str) -> bool:
@@ -65,7 +65,7 @@ class DoneTasks:
         return task in self._done.get((trainee, scenario), ())
 
     def latest_trainees(self, count: int) -> tuple[str, ...]:
-        """Return so many trainees at most, who trained last first."""
+        """Return at most this many trainees, the most recent first."""
         known = (trainee for trainee, journals in self.journals.items() if journals)
         latest = sorted(known, key=lambda trainee: self.journals[trainee][-1].name, reverse=True)
         return tuple(latest[:count])
@@ -78,7 +78,7 @@ class DoneTasks:
         return next((name for name in order[: order.index(task)] if name not in done), None)
 
     def _take(self, path: Path) -> None:
-        """Take note of a journal; one that cannot be read counts for nothing."""
+        """Add a journal; one that cannot be read counts for nothing."""
         try:
             with path.open("rb") as file:
                 header = decode_line(file.readline(MAX_LINE_BYTES).rstrip(b"\n"), 1, NO_LINE)
@@ -158,7 +158,7 @@ class ScoreHistory:
         self._past: dict[Path, PastTrial | None] = {}
 
     def changed(self, trainee: str, trial_id: str) -> None:
-        """Take note that a trial of a trainee has begun, ended or been scored."""
+        """Note that a trial of a trainee has begun, ended or been scored."""
         known = self._journals.setdefault(trainee, [])
         for path in journals_of(self._records, trial_id) if trial_id else ():
             self._past.pop(path, None)
@@ -166,7 +166,7 @@ class ScoreHistory:
                 known.append(path)
 
     def of(self, trainee: str) -> tuple[PastTrial, ...]:
-        """Return the trainee's scored trials but the trial runs, and the failures, oldest first."""
+        """Return the trainee's scored trials except trial runs, and the failures, oldest first."""
         paths = self._journals.get(trainee, ())
         self._past |= {path: _past_trial(path) for path in paths if path not in self._past}
         found = (self._past[path] for path in paths)

@@ -38,7 +38,7 @@ from rastrainer_simulator.viewpoint.view_control import (
 
 
 class TrialView:
-    """Where the pictures of the present trial are looked from, and what the sticks mean by it.
+    """The viewpoint of the pictures of the present trial, and what the sticks mean from there.
 
     Attributes:
         control: the view.
@@ -101,7 +101,7 @@ class TrialView:
         self.control.advance(dt, camera, motion, is_still)
 
     def pictures(self, now: SimulationState, cameras: Mapping[str, Camera]) -> Pictures:
-        """Return where the pictures of a state are looked from."""
+        """Return the viewpoint of the pictures of a state."""
         self.control.use(now.camera)
         main = self.control.pose(cameras[now.camera])
         tip = vector(now.tool_tip_to_world[:3, 3].tolist())
@@ -144,7 +144,7 @@ class TrialView:
 def turned(sticks: OperatorInput, turn_deg: float) -> OperatorInput:
     """Return sticks whose right and forward are turned counterclockwise from above.
 
-    Not turned at all they stay as they are, bit by bit. The second stick turns the tool as seen
+    Without a turn they stay as they are, bit by bit. The second stick turns the tool as seen
     from behind it, which is right for a tool that points down.
     """
     if turn_deg == 0.0:

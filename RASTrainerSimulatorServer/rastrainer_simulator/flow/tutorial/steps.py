@@ -57,7 +57,8 @@ WITH_POINTS = (
 def steps_for(device: SourceKind, mode: str) -> tuple[TutorialStep, ...]:
     """Return the steps for what is held, in the display mode of that name, in order.
 
-    In a headset one looks around with the head, and only the controllers' sticks follow the eyes.
+    In a headset the trainee looks around by turning the head, and only the controllers' sticks
+    follow the eyes.
     """
     view: tuple[TutorialStep, ...] = (TutorialStep.TURN_VIEW, TutorialStep.BEST_VIEW)
     if mode == Mode.HMD.value:
@@ -67,7 +68,7 @@ def steps_for(device: SourceKind, mode: str) -> tuple[TutorialStep, ...]:
 
 @dataclass(frozen=True)
 class TutorialObservation:
-    """What the trainee has made of the simulator at a moment.
+    """An observation of what the trainee has done with the simulator.
 
     Attributes:
         tip: position of the tool's tip, World, m.
@@ -108,41 +109,41 @@ class StepMeasure:
 
     @property
     def is_complete(self) -> bool:
-        """Whether that is all."""
+        """Whether all is done."""
         return self.done >= self.goal
 
     def take(self, before: TutorialObservation, now: TutorialObservation) -> None:
-        """Take what has happened between two observations."""
+        """Process what has happened between two observations."""
         raise NotImplementedError
 
 
 class TipMoved(StepMeasure):
-    """The tip has moved so far one way, mm; what it moved the other way before does not count."""
+    """Distance that the tip has moved in one direction, mm, since it last moved the other way."""
 
     def __init__(self, right: float = 0.0, forward: float = 0.0, up: float = 0.0) -> None:
         super().__init__(MOVE_MM)
         self._way = right, forward, up
 
     def take(self, before: TutorialObservation, now: TutorialObservation) -> None:
-        """Add the way between two observations, in the present directions of the sticks."""
+        """Add the distance between two observations, in the present directions of the sticks."""
         moved = subtract(now.tip, before.tip)
         self.done = max(0.0, self.done + MM_PER_M * dot(moved, now.axes.to_world(self._way)))
 
 
 class TipMovedSlowly(StepMeasure):
-    """The tip has moved so far while the control for slow motion was held, mm."""
+    """Distance that the tip has moved while the control for slow motion was held, mm."""
 
     def __init__(self) -> None:
         super().__init__(SLOW_MM)
 
     def take(self, before: TutorialObservation, now: TutorialObservation) -> None:
-        """Add the way between two observations."""
+        """Add the distance between two observations."""
         if before.is_slow and now.is_slow:
             self.done += MM_PER_M * distance(before.tip, now.tip)
 
 
 class ViewTurned(StepMeasure):
-    """The view was turned so far from where it was, to any side, degrees."""
+    """Angle by which the view was turned, to any side, degrees."""
 
     def __init__(self) -> None:
         super().__init__(TURN_DEG)
@@ -157,7 +158,7 @@ class ViewTurned(StepMeasure):
 
 
 class LookedAround(StepMeasure):
-    """The sticks were pushed with the eyes turned so far from before, degrees."""
+    """Angle by which the eyes were turned while the sticks were pushed, degrees."""
 
     def __init__(self) -> None:
         super().__init__(LOOK_DEG)
@@ -173,20 +174,20 @@ class LookedAround(StepMeasure):
 
 
 class BecameTrue(StepMeasure):
-    """Something is true that was not."""
+    """Whether a condition has become true."""
 
     def __init__(self, condition: Callable[[TutorialObservation], bool]) -> None:
         super().__init__()
         self._condition = condition
 
     def take(self, before: TutorialObservation, now: TutorialObservation) -> None:  # noqa: ARG002
-        """Look at the latest observation."""
+        """Check the latest observation."""
         if self._condition(now):
             self.done = self.goal
 
 
 class PointsTouched(StepMeasure):
-    """So many points are touched."""
+    """Number of touched points."""
 
     def __init__(self, goal: int) -> None:
         super().__init__(goal)
@@ -217,4 +218,4 @@ MEASURES: Mapping[TutorialStep, Callable[[], StepMeasure]] = {
     TutorialStep.PAUSE: lambda: BecameTrue(lambda now: now.has_paused),
     TutorialStep.GUIDED: lambda: PointsTouched(GUIDED_TOUCHES),
 }
-"""For each step what measures it, made anew when the step begins."""
+"""For each step its measure, newly made when the step begins."""

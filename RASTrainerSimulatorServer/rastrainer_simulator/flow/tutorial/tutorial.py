@@ -1,4 +1,4 @@
-"""One trainee's tutorial: which step is next, how much of it is done, and what came of it.
+"""One trainee's tutorial: the next step, how much of it is done, and the outcome.
 
 Its touches go by the rules of a trial, but are recorded nowhere.
 """
@@ -36,7 +36,7 @@ from rastrainer_simulator.vectors import Vector, distance, in_millimeters, vecto
 
 _NOT_MOVED = Perturbation(0.0, 0.0, 0.0)
 PRAISE_S = 0.8
-"""How long a step that is done is praised before the next one begins."""
+"""How long a completed step is praised before the next one begins."""
 _MAY_TOUCH = (TutorialStep.LOWER, TutorialStep.TOUCH, TutorialStep.GUIDED)
 _MAY_UNDO = (TutorialStep.UNDO, TutorialStep.GUIDED)
 
@@ -92,7 +92,7 @@ class TouchPractice:
 
     @property
     def state(self) -> TrainingState:
-        """How far the touches are."""
+        """The progress of the touches."""
         return self._training.state
 
     def touch(self, state: SimulationState) -> TrainingReply:
@@ -284,7 +284,7 @@ class Tutorial:
         return reply
 
     def outcome(self, device: SourceKind) -> TutorialOutcome:
-        """Return what came of it, once all steps are done."""
+        """Return the outcome, once all steps are done."""
         return TutorialOutcome(
             trainee=self.trainee,
             device=device.value,

@@ -1,6 +1,6 @@
 """One client's connection: always reads, never waits, and ends alone when it misbehaves.
 
-What waits to be sent is packed once for all clients, in a queue of limited size for each.
+Outgoing messages are packed once for all clients, in a queue of limited size for each.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class OutgoingQueue:
 
     @property
     def is_overfull(self) -> bool:
-        """Whether more waits than one client may cost."""
+        """Whether more is waiting than one client may cost."""
         return len(self) > self._most_messages or self._bytes > self._most_bytes
 
     def put(self, data: bytes) -> None:
@@ -104,7 +104,7 @@ class ConnectionOwner(Protocol):
         """Start sending to a connection whose header version is known."""
 
     def received(self, connection: ClientConnection, message: Message) -> None:
-        """Take one valid message."""
+        """Process one valid message."""
 
     def bad_bytes(self, connection: ClientConnection, errors: Counter) -> None:
         """Count what was no valid message."""
@@ -201,7 +201,7 @@ class ClientConnection(asyncio.BufferedProtocol):
         self._transport = transport
         transport.set_write_buffer_limits(high=self._limits.buffer_bytes)
         set_up_socket(transport.get_extra_info("socket"), self._limits)
-        # A peer that is gone already has no address.
+        # A peer that has already gone has no address.
         address = transport.get_extra_info("peername") or (self.host,)
         self.name = self.host = address[0]
         self._open_soon = self._loop.call_later(self._limits.first_message_s, self._open)
@@ -304,7 +304,7 @@ class ClientConnection(asyncio.BufferedProtocol):
         self._drop_stalled = self._loop.call_later(wait, self._drop_if_stalled)
 
     def _drop_if_stalled(self) -> None:
-        """Drop a peer whose message comes too slowly, be it a byte now and then."""
+        """Drop a peer whose message comes too slowly, such as a byte now and then."""
         waited = self._loop.time() - self._half.since - self._half.excused_s
         if self._half.received < waited * self._limits.slowest_bytes_per_s:
             self.drop("It left a message half sent.")
@@ -329,6 +329,6 @@ def set_up_socket(peer: socket.socket, limits: LinkLimits) -> None:
         "TCP_USER_TIMEOUT": int(limits.silent_peer_s * 1000),
     }
     for name, value in options.items():
-        # Not every system has every option; each is a help, none a need.
+        # Not every system has every option; each helps, none is required.
         with contextlib.suppress(AttributeError, OSError):
             peer.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)

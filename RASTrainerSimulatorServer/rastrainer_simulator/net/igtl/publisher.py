@@ -79,7 +79,7 @@ def what_changes(state: SimulationState, is_guided: bool = False) -> dict[str, A
 
 
 def _procedure(state: SimulationState, procedure: ProcedureState) -> dict[str, Any]:
-    """Return how far a procedure is: everything by the registration in use, mm and degrees."""
+    """Return the progress of a procedure: everything by the registration in use, mm and degrees."""
     alignment = state.alignment
     checked = procedure.checkpoints[-1:]
     return {
@@ -191,7 +191,7 @@ class Publisher:
         self._next = math.inf
 
     def subscribe(self, connection: ClientConnection, poses: PoseSubscription) -> None:
-        """Send a client the present state, and from now on what changes; again for other rates."""
+        """Send a client the present state, and changes from now on; call again for other rates."""
         self._poses[connection] = poses
         state = self._latest()
         self._send([connection], captured_points(state.training))
@@ -200,7 +200,7 @@ class Publisher:
         self._next = -math.inf
 
     def unsubscribe(self, connection: ClientConnection) -> None:
-        """Send a client nothing more."""
+        """Stop sending to a client."""
         self._poses.pop(connection, None)
 
     def is_due(self, state: SimulationState) -> bool:

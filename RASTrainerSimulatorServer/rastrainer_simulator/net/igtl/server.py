@@ -23,13 +23,13 @@ _MAX_KINDS = 20
 
 
 class LinkHandler(Protocol):
-    """What is done with clients and their messages; called in the event loop's thread."""
+    """Handles clients and their messages; called in the event loop's thread."""
 
     def connected(self, connection: ClientConnection) -> None:
         """Greet a client."""
 
     def received(self, connection: ClientConnection, message: Message) -> None:
-        """Take one valid message."""
+        """Process one valid message."""
 
     def disconnected(self, connection: ClientConnection) -> None:
         """Forget a client."""
@@ -79,7 +79,7 @@ class IgtlServer:
         return found
 
     async def keep_connected_to(self, host: str, port: int) -> None:
-        """Be the client of a Slicer that listens, and come back whenever it went; never returns."""
+        """Be the client of a listening Slicer, and reconnect whenever it is gone; never returns."""
         loop = asyncio.get_running_loop()
         is_absence_logged = False
         while True:
@@ -95,7 +95,7 @@ class IgtlServer:
             await asyncio.sleep(self.limits.reconnect_s)
 
     async def close(self) -> None:
-        """Stop listening, let the clients have what still waits for them, and end."""
+        """Stop listening, send the clients what is still waiting, and end."""
         if self._listener is not None:
             self._listener.close()
         connections = tuple(self._connections)
@@ -110,7 +110,7 @@ class IgtlServer:
         self._log.close()
 
     def connected(self, connection: ClientConnection) -> None:
-        """Accept a connection; where there are too many, the oldest silent one yields to it."""
+        """Accept a connection; if there are too many, the oldest silent one is dropped for it."""
         if len(self._connections) >= self.limits.clients:
             silent = next((each for each in self._connections if each.is_silent), None)
             if silent is None:

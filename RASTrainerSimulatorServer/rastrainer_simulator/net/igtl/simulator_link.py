@@ -55,7 +55,7 @@ _NUMBERS = 2**32
 
 @dataclass
 class _Turn:
-    """One client's commands: how many the simulation has, and which wait."""
+    """One client's commands: how many the simulation has, and which are waiting."""
 
     at_work: int = 0
     waiting: deque[tuple[Command, Mapping[str, Any]]] = field(default_factory=deque)
@@ -144,9 +144,9 @@ class CommandHandler:
 class SimulatorLink:
     """Answers commands, echoes foreign transforms and publishes the simulation's state.
 
-    A TRANSFORM with a foreign device name is echoed to its sender, unchanged: the test of
-    the link and the measure of its delay. All else that is valid is taken and ignored, such as
-    the STATUS with which Slicer starts every connection.
+    A TRANSFORM with a foreign device name is echoed to its sender, unchanged: the test of the link
+    and the measure of its delay. Anything else that is valid is accepted and ignored, such as the
+    STATUS with which Slicer starts every connection.
 
     Attributes:
         server: listens or connects, and owns the clients.
@@ -299,7 +299,7 @@ class TrialOffers:
         self._offer((*aborted[-OFFERS_AT_ONCE:], *records[-1:]))
 
     def repeat(self) -> None:
-        """Offer some again, others in the next round, so that none holds up the rest."""
+        """Offer some again, others in the next round, so that none delays the rest."""
         records = tuple(self._unacknowledged())
         start = self._start if self._start < len(records) else 0
         self._offer((records[start:] + records[:start])[:OFFERS_AT_ONCE])

@@ -1,1 +1,1 @@
-"""The server of the views, over HTTP and WebSocket, and what both say to each other."""
+"""The server of the views, over HTTP and WebSocket, and their messages."""

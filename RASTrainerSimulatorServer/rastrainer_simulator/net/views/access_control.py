@@ -1,4 +1,4 @@
-"""Who may pass: every request is looked at here before anything else happens.
+"""Who may pass: every request is checked here before anything else happens.
 
 A person types the pairing code into a view, and gets a session key for it.
 """
@@ -38,7 +38,7 @@ _HASH_DIGITS = 64
 
 
 class ViewRole(str, Enum):
-    """What somebody was paired for."""
+    """The role for which a client was paired."""
 
     VIEW = "view"
     """To see and to drive."""
@@ -57,7 +57,7 @@ class Sessions:
     """The keys that were given out, by their hashes."""
 
     def __init__(self, most: Mapping[ViewRole, int], boards: Path | None = None) -> None:
-        """Remember so many keys of each role; then the oldest of that role is forgotten.
+        """Remember at most so many keys of each role; then the oldest of that role is forgotten.
 
         The keys of boards are also in the file `boards`; deleting it unpairs all boards.
 
@@ -136,7 +136,7 @@ class PairingCode:
         """What a person types; never logged."""
 
     def seconds_to_wait(self) -> float:
-        """Return how long no code is looked at; 0 where one may be tried."""
+        """Return how long no code is checked; 0 if one may be tried."""
         return self._limit.seconds_to_wait()
 
     def accepts(self, code: str) -> bool:

@@ -25,7 +25,7 @@ from rastrainer_simulator.presentation.presenter import InstructorOrder, Present
 from rastrainer_simulator.state import SimulationState
 
 NEWS_HZ = 5.0
-"""At most: a board has many seats."""
+"""Maximum number of boards; a board has many seats."""
 LONGEST_SENTENCE = 200
 BODY_S = 5.0
 ONLY_BOARDS = "Only a teacher's board may instruct: pair as one."
@@ -65,7 +65,7 @@ class Boards:
         return bool(self._joined) and self._pacer.is_due(time_s)
 
     def tell(self, now: SimulationState, seat: Seat) -> None:
-        """Tell all boards how the seat is, if that has changed."""
+        """Send all boards the state of the seat, if it has changed."""
         text = seat_text(now, seat)
         if text != self._seat:
             self._seat = text
@@ -92,10 +92,10 @@ def seat_text(now: SimulationState, seat: Seat) -> str:
 
 
 class InstructorOrders:
-    """Takes orders over HTTP, each with the PIN."""
+    """Accepts orders over HTTP, each with the PIN."""
 
     def __init__(self, pin: PinGuesses | None, presenter: Presenter) -> None:
-        """Take orders for a presenter; without a PIN none."""
+        """Accept orders for a presenter; none without a PIN."""
         self._pin = pin
         self._presenter = presenter
         self._one_guess = asyncio.Lock()

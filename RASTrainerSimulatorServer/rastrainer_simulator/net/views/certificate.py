@@ -70,7 +70,7 @@ def own_addresses() -> tuple[str, ...]:
     """Return the addresses of this machine in its networks, the one others would use first."""
     found: list[str] = []
     with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        # Nothing is sent: this only asks for the way to an address that documents use.
+        # Nothing is sent: this only looks up the route to an address reserved for documentation.
         probe.connect(("192.0.2.1", 9))
         found.append(probe.getsockname()[0])
     with contextlib.suppress(OSError):

@@ -1,4 +1,4 @@
-"""What views send: the names of the messages, and the check of all that arrives.
+"""Messages of views: their names, and the check of everything that arrives.
 
 docs/views.md says what each means.
 """
@@ -43,7 +43,7 @@ HEADSET = "headset"
 SPECTATOR = "spectator"
 BOARD = "board"
 ONLY_WATCH = (SPECTATOR, BOARD)
-"""The kinds that may send nothing but that they are alive."""
+"""The kinds that may only send that they are alive."""
 VIEW_KINDS = (DESKTOP, "page", HEADSET, *ONLY_WATCH)
 MAX_AXES = 16
 MAX_BUTTONS = 32
@@ -51,7 +51,7 @@ MAX_BUTTONS = 32
 SLACK = 1.5
 POSE_NUMBERS = 7
 FARTHEST_M = 100.0
-# By so much the length of a quaternion that was rounded differs from 1.
+# How much the length of a rounded quaternion may differ from 1.
 NEARLY_UNIT = 0.01
 
 

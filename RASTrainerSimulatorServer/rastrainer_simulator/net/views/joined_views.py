@@ -59,7 +59,7 @@ class JoinedViews:
         self._unsubscribe = presenter.subscribe(self._send_update)
 
     def next_number(self) -> int:
-        """Return a number for a view that no other has had."""
+        """Return a number that no other view has had."""
         return next(self._numbers)
 
     async def serve(self, view: ViewSocket) -> None:
@@ -104,7 +104,7 @@ class JoinedViews:
         return bool(self._views or self._boards) and self._pacer.is_due(time.monotonic())
 
     def tell(self, now: SimulationState) -> None:
-        """Send what moves, and look whether it needs another scene."""
+        """Send what moves, and check whether it needs another scene."""
         if self._boards.is_due(time.monotonic()):
             self._boards.tell(now, self._presenter.seat())
         if not self._views:
@@ -167,7 +167,7 @@ class JoinedViews:
                 self._send_screen(screen, views)
 
     def _send_screen(self, screen: Screen, views: Iterable[ViewSocket]) -> None:
-        """Send a screen; what is private in it only to the views of who operates."""
+        """Send a screen; private parts only to the operator's views."""
         whole = outgoing.screen(screen)
         bare = outgoing.screen(without_secrets(screen)) if screen.is_private else whole
         for view in views:
@@ -175,7 +175,7 @@ class JoinedViews:
             view.outbox.put_latest(outgoing.SCREEN, whole if is_whole else bare)
 
     def _is_operators(self, view: ViewSocket) -> bool:
-        """Return whether a view is in front of who holds the control."""
+        """Return whether a view is in front of the holder of control."""
         if view.is_spectator:
             return False
         number = self._presenter.control.view

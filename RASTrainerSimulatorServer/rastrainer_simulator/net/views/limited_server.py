@@ -32,7 +32,7 @@ LARGEST_BODY = 1024
 
 
 def http_log() -> logging.Logger:
-    """Return a log of our own mistakes only: what strangers send is not written down."""
+    """Return a log of our own errors only: what strangers send is not logged."""
     log = logging.getLogger(f"{__name__}.http")
     if not log.filters:
         log.addFilter(_is_our_own_error)
@@ -45,7 +45,7 @@ def _is_our_own_error(record: logging.LogRecord) -> bool:
 
 
 class Connections:
-    """Makes who talks to each new connection; a protocol factory for `loop.create_server`.
+    """Makes the protocol of each new connection; a factory for `loop.create_server`.
 
     Where there are as many as may be, the oldest that has shown no key yields to a new one, and
     where all have, the oldest that only watches: whoever takes places and does not even read what
@@ -60,10 +60,10 @@ class Connections:
         self._paired: dict[asyncio.BaseProtocol, ViewRole] = {}
         self._sent_away: set[asyncio.BaseProtocol] = set()
         self.server: web.Server | None = None
-        """Talks to the connections; set once it is there."""
+        """Talks to the connections; set once it exists."""
 
     def __call__(self) -> asyncio.BaseProtocol:
-        """Return who talks to a new connection."""
+        """Return the protocol of a new connection."""
         if self.server is None or not self._has_room(self.server.connections):
             return _Refused()
         protocol = self.server()
@@ -73,18 +73,18 @@ class Connections:
         return protocol
 
     def note(self, request: web.BaseRequest) -> None:
-        """Take note that a connection has asked for something."""
+        """Note that a connection has requested something."""
         timer = self._silent.pop(request.protocol, None)
         if timer is not None:
             # It would keep a connection that has long ended in memory.
             timer.cancel()
 
     def note_key(self, request: web.BaseRequest, role: ViewRole) -> None:
-        """Take note that a connection has shown the key of a session."""
+        """Note that a connection has shown the key of a session."""
         self._paired[request.protocol] = role
 
     def _has_room(self, there: list[web.RequestHandler]) -> bool:
-        """Return whether one more connection may be; one that matters less makes room for it."""
+        """Return whether one more connection is allowed; a less important one makes room for it."""
         self._paired = {each: self._paired[each] for each in there if each in self._paired}
         self._sent_away.intersection_update(there)
         if len(there) - len(self._sent_away) < self._most:
@@ -106,9 +106,9 @@ class Connections:
 
 
 def _send_away(protocol: web.RequestHandler) -> None:
-    """End a connection to which something may be on its way."""
+    """End a connection to which something may be in transit."""
     if protocol.transport is not None:
-        # Closed, it would wait for its peer to read; so the write that is under way fails.
+        # Closed, it would wait for its peer to read; so the pending write fails.
         with contextlib.suppress(OSError):
             protocol.transport.get_extra_info("socket").shutdown(socket.SHUT_RDWR)
 
@@ -187,7 +187,7 @@ class LimitedServer:
 
 
 class GuardedServer(LimitedServer):
-    """A server that lets through nobody but who is paired, except to the page and the pairing."""
+    """A server that serves only paired clients, except for the page and the pairing."""
 
     def __init__(
         self,

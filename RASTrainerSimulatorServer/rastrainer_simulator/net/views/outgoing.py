@@ -1,4 +1,4 @@
-"""The messages to views, as texts, and when there is news; docs/views.md says what each means."""
+"""The messages to views, as texts, and when they change; docs/views.md says what each means."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def wearer(worn: Worn) -> str:
 
 
 def mirrored(state_text: str, wearer_text: str) -> str:
-    """Return the state as a spectator gets it, with who wears a headset; "null" for nobody."""
+    """Return the state as a spectator gets it, with the wearer of a headset; "null" for none."""
     return f'{state_text[:-1]},"wearer":{wearer_text}}}'
 
 
