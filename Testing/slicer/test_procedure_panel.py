@@ -10,9 +10,8 @@ import pytest
 from rastrainer import transforms
 from rastrainer.igtl.content import String
 from rastrainer.procedure.errors import analyze_procedure
-from rastrainer.procedure.score import ProcedureMeasures, score_procedure
 from rastrainer.protocol import DeviceName
-from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
 from Testing.domain.procedure.procedure_records import recorded
 from Testing.slicer.simulator_double import SimulatorDouble, connect_module

@@ -23,7 +23,8 @@ from rastrainer.procedure.record import (
     TouchedCheckpoint,
     UsedRegistration,
 )
-from rastrainer.procedure.score import (
+from rastrainer.protocol import Phase
+from rastrainer.trial.procedure_outcome import (
     ALIGNING_S,
     DRILLING_S,
     HANDLING_S,
@@ -31,7 +32,6 @@ from rastrainer.procedure.score import (
     STAND_OFF_MM,
     VERIFYING_S,
 )
-from rastrainer.protocol import Phase
 from rastrainer_simulator.virtual.scripted_trainee import Skill
 
 MISSED_BONE_MM = 20.0

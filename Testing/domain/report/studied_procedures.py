@@ -9,10 +9,9 @@ import numpy as np
 from rastrainer import transforms
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import ProcedureKind
-from rastrainer.procedure.score import ProcedureMeasures, score_procedure
 from rastrainer.study.database.values import StoredProcedure
 from rastrainer.study.study_data import StudyData
-from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from rastrainer.trial.procedure_outcome import ProcedureMeasures, ProcedureOutcome, score_procedure
 from Testing.domain.procedure.made_up_procedure import made_up_meshes, made_up_procedure
 from Testing.domain.procedure.procedure_records import recorded
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from rastrainer.procedure.plan import ProcedureKind
-from rastrainer.procedure.score import PROCEDURE_SCORE_VERSION
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol
+from rastrainer.trial.procedure_outcome import PROCEDURE_SCORE_VERSION
 from rastrainer.trial.record import TrialRecord
 from Testing.domain.report.studied_procedures import TOO_DEEP_MM, outcome
 from Testing.domain.trial.trial_records import gentle_score, make_record

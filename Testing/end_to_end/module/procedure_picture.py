@@ -13,11 +13,15 @@ from rastrainer import transforms
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import read_procedure_meshes
 from rastrainer.procedure.record import UsedRegistration
-from rastrainer.procedure.score import ProcedureMeasures, reference_duration_s, score_procedure
 from rastrainer.registration.registration import register
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.logic.views import AlongInstrument
-from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from rastrainer.trial.procedure_outcome import (
+    ProcedureMeasures,
+    ProcedureOutcome,
+    reference_duration_s,
+    score_procedure,
+)
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.virtual.virtual_procedure import (
     ProcedureHands,

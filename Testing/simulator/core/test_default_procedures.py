@@ -5,9 +5,13 @@ import pytest
 
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import read_procedure_meshes
-from rastrainer.procedure.score import ProcedureMeasures, reference_duration_s, score_procedure
 from rastrainer.protocol import CommandName, Phase
 from rastrainer.transforms import MM_PER_M
+from rastrainer.trial.procedure_outcome import (
+    ProcedureMeasures,
+    reference_duration_s,
+    score_procedure,
+)
 from rastrainer_simulator.core.simulation import Simulation
 from rastrainer_simulator.record.trial_records import FeedRecording, procedure_record
 from Testing.simulator.core.test_procedure_simulation import IN, Surgeon

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 
 from rastrainer.number_text import counted, fixed, percent
-from rastrainer.procedure.score import (
+from rastrainer.report.markup import bullets, figure, heading, paragraph, section, table
+from rastrainer.report.svg import INK, SCATTER_LEFT, scatter_sheet
+from rastrainer.statistics.intervals import Estimate, mean
+from rastrainer.study.study_data import StudyData, TrialRow
+from rastrainer.trial.procedure_outcome import (
     ANGLE_LIMIT_DEG,
     ENTRY_LIMIT_MM,
     PLUNGE_LIMIT_MM,
     TARGET_LIMIT_MM,
 )
-from rastrainer.report.markup import bullets, figure, heading, paragraph, section, table
-from rastrainer.report.svg import INK, SCATTER_LEFT, scatter_sheet
-from rastrainer.statistics.intervals import Estimate, mean
-from rastrainer.study.study_data import StudyData, TrialRow
 
 KINDS = {
     "biopsy": ("Biopsy", "#1b6ca8"),

@@ -1,26 +1,244 @@
-"""The errors and the score of a trial's procedure, once the truth is revealed."""
+"""The outcome of a trial's procedure: its true errors, and a score of 0 to 100.
+
+Errors, drilling, distances kept and time have strictly decreasing desirabilities, as those of
+`rastrainer.trial.scoring`, and the score is 100 times the geometric mean of all. Beyond a limit,
+and where a no-go structure is hit or bone is missed, the procedure is not acceptable and its score
+falls below that of every acceptable one: neither speed nor anything else makes up for it.
+Checkpoints, FRE and expected TRE play no part: none of them sees an offset common to all touches.
+
+The values of half and limit are our own convention, near published figures: clinical target point
+errors of 1.91 mm (DBS) and 2.34 mm (SEEG; 10.1093/neuros/nyaa428), and a median entry point error
+of 1.54 mm (SEEG; 10.1007/s00701-017-3242-9).
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.procedure.errors import ProcedureAnalysis, TrajectoryErrors, analyze_procedure
-from rastrainer.procedure.plan import read_procedure_meshes
-from rastrainer.procedure.score import (
-    ProcedureMeasures,
-    ProcedureScore,
-    reference_duration_s,
-    score_procedure,
-)
+from rastrainer.procedure.plan import MAX_SAFETY_MM, Procedure, read_procedure_meshes
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.score_reference import score_reference
-from rastrainer.trial.scoring import ScoreReference
+from rastrainer.trial.scoring import TIME_FLOOR, ScoreReference, falling, of_time
+
+PROCEDURE_SCORE_VERSION = "procedure-1"
+"""Changes with any change of a formula or a reference, so that scores stay comparable."""
+HALF_TARGET_MM, TARGET_LIMIT_MM = 2.0, 3.0
+HALF_ENTRY_MM, ENTRY_LIMIT_MM = 1.5, 3.0
+HALF_ANGLE_DEG, ANGLE_LIMIT_DEG = 2.0, 5.0
+HALF_PLUNGE_MM, PLUNGE_LIMIT_MM = 2.0, 5.0
+HALF_INTRUSION_MM = 1.5
+MAX_MEASURE = 1e6
+"""Of any measure: what is above is a mistake."""
+
+VERIFYING_S, ALIGNING_S, DRILLING_S, HANDLING_S = 15.0, 45.0, 15.0, 10.0
+"""Times of the reference: once, and three for each trajectory. Our own convention."""
+STAND_OFF_MM, INSERTION_MM_S = 30.0, 8.0
+"""Distance that the instrument travels before its entry, and its speed, in the reference."""
+
+
+@dataclass(frozen=True)
+class ProcedureMeasures:
+    """What is scored of a procedure.
+
+    Attributes:
+        duration_s: from the start of the trial to the last release, without pauses; above 0.
+        target_mm: root mean square of the true target point errors.
+        worst_target_mm: the largest of them.
+        entry_mm: root mean square of the true entry point errors.
+        worst_entry_mm: the largest of them.
+        angle_deg: root mean square of the angular deviations.
+        worst_angle_deg: the largest of them.
+        plunge_mm: the deepest that the drill was past an inner table.
+        intrusion_mm: how far an instrument is within its safety distance to a no-go structure.
+        hits: how many times an instrument and a no-go structure meet.
+        missed_bone: how many instruments do not go through the skull.
+    """
+
+    duration_s: float
+    target_mm: float
+    worst_target_mm: float
+    entry_mm: float
+    worst_entry_mm: float
+    angle_deg: float
+    worst_angle_deg: float
+    plunge_mm: float
+    intrusion_mm: float
+    hits: int
+    missed_bone: int
+
+    @classmethod
+    def of(cls, analysis: ProcedureAnalysis) -> ProcedureMeasures:
+        """Return the measures of an analyzed procedure."""
+        each = analysis.trajectories
+        return cls(
+            duration_s=analysis.record.duration_s,
+            target_mm=analysis.target_rms_mm,
+            worst_target_mm=max(one.target.length_mm for one in each),
+            entry_mm=analysis.entry_rms_mm,
+            worst_entry_mm=max(one.entry.length_mm for one in each),
+            angle_deg=analysis.angle_rms_deg,
+            worst_angle_deg=max(one.angle_deg for one in each),
+            plunge_mm=max(one.plunge_mm or 0.0 for one in each),
+            intrusion_mm=max(one.intrusion_mm for one in each),
+            hits=len(analysis.hits),
+            missed_bone=len(analysis.missed_bone),
+        )
+
+    def check(self) -> None:
+        """Raise `InputError` unless all are numbers of a procedure."""
+        for field in fields(self):
+            if not 0 <= getattr(self, field.name) <= MAX_MEASURE:
+                raise InputError(
+                    f"The procedure's {field.name} must be a number from 0 to {MAX_MEASURE:g}."
+                )
+        if self.duration_s <= 0:
+            raise InputError("The procedure's duration must be a number of seconds above 0.")
+
+    @property
+    def is_accurate(self) -> bool:
+        """Whether every error is within its limit, and every instrument in the skull."""
+        return (
+            self.worst_target_mm <= TARGET_LIMIT_MM
+            and self.worst_entry_mm <= ENTRY_LIMIT_MM
+            and self.worst_angle_deg <= ANGLE_LIMIT_DEG
+            and self.missed_bone == 0
+        )
+
+    @property
+    def is_safe(self) -> bool:
+        """Whether no no-go structure is hit, and the drill stopped in time."""
+        return self.hits == 0 and self.plunge_mm <= PLUNGE_LIMIT_MM
+
+
+@dataclass(frozen=True)
+class ProcedureScore:
+    """The score of a procedure and its parts.
+
+    Attributes:
+        score: above 0 up to 100.
+        desirabilities: by measure: `time`, `target`, `entry`, `angle`, `plunge` and `distance`.
+        is_accurate: whether errors are within their limits.
+        is_safe: whether no no-go structure is hit, and the drill stopped in time.
+        measures: what was scored.
+        reference_s: duration of half the range of the time desirability.
+        version: of the formula and the references.
+    """
+
+    score: float
+    desirabilities: Mapping[str, float]
+    is_accurate: bool
+    is_safe: bool
+    measures: ProcedureMeasures
+    reference_s: float
+    version: str = PROCEDURE_SCORE_VERSION
+
+    @property
+    def acceptable(self) -> bool:
+        """Whether the procedure is within all limits."""
+        return self.is_accurate and self.is_safe
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the score as a JSON object."""
+        return {
+            "score": self.score,
+            "desirabilities": dict(self.desirabilities),
+            "acceptable": self.acceptable,
+            "isAccurate": self.is_accurate,
+            "isSafe": self.is_safe,
+            "measures": dict(vars(self.measures)),
+            "referenceS": self.reference_s,
+            "version": self.version,
+        }
+
+    @classmethod
+    def from_json(cls, value: Mapping[str, Any]) -> ProcedureScore:
+        """Return the score that `to_json` described."""
+        return cls(
+            score=value["score"],
+            desirabilities=dict(value["desirabilities"]),
+            is_accurate=value["isAccurate"],
+            is_safe=value["isSafe"],
+            measures=ProcedureMeasures(**value["measures"]),
+            reference_s=value["referenceS"],
+            version=value["version"],
+        )
+
+
+def reference_duration_s(touching_s: float, procedure: Procedure) -> float:
+    """Return the reference duration of a procedure.
+
+    Args:
+        touching_s: reference time of the trial's task, which is touched first.
+        procedure: the plan; a longer trajectory takes longer.
+    """
+    inserting = sum(
+        (STAND_OFF_MM + trajectory.length_mm) / INSERTION_MM_S
+        for trajectory in procedure.trajectories
+    )
+    each = ALIGNING_S + DRILLING_S + HANDLING_S
+    return touching_s + VERIFYING_S + each * len(procedure.trajectories) + inserting
+
+
+def score_procedure(measures: ProcedureMeasures, reference_s: float) -> ProcedureScore:
+    """Return the score of a procedure.
+
+    Args:
+        measures: what is scored of it.
+        reference_s: from `reference_duration_s`, above 0.
+
+    Raises:
+        InputError: a measure is no such number.
+    """
+    measures.check()
+    desirabilities = {
+        "time": of_time(measures.duration_s, reference_s),
+        **_accuracy(measures.target_mm, measures.entry_mm, measures.angle_deg),
+        **_safety(measures.plunge_mm, measures.intrusion_mm),
+    }
+    product = math.prod(desirabilities.values())
+    if not (measures.is_accurate and measures.is_safe):
+        product *= _worst_acceptable()
+    return ProcedureScore(
+        score=100 * product ** (1 / len(desirabilities)),
+        desirabilities=desirabilities,
+        is_accurate=measures.is_accurate,
+        is_safe=measures.is_safe,
+        measures=measures,
+        reference_s=reference_s,
+    )
+
+
+def _accuracy(target_mm: float, entry_mm: float, angle_deg: float) -> dict[str, float]:
+    return {
+        "target": falling(target_mm, HALF_TARGET_MM),
+        "entry": falling(entry_mm, HALF_ENTRY_MM),
+        "angle": falling(angle_deg, HALF_ANGLE_DEG),
+    }
+
+
+def _safety(plunge_mm: float, intrusion_mm: float) -> dict[str, float]:
+    return {
+        "plunge": falling(plunge_mm, HALF_PLUNGE_MM),
+        "distance": falling(intrusion_mm, HALF_INTRUSION_MM),
+    }
+
+
+def _worst_acceptable() -> float:
+    """Return the product of the desirabilities at all limits and infinite time.
+
+    As a factor it brings every procedure beyond a limit below every acceptable one.
+    """
+    accuracy = _accuracy(TARGET_LIMIT_MM, ENTRY_LIMIT_MM, ANGLE_LIMIT_DEG)
+    safety = _safety(PLUNGE_LIMIT_MM, MAX_SAFETY_MM)
+    return TIME_FLOOR * math.prod([*accuracy.values(), *safety.values()])
 
 
 @dataclass(frozen=True, eq=False)

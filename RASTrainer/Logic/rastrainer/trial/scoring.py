@@ -23,10 +23,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from rastrainer.desirability import TIME_FLOOR, falling, of_time
 from rastrainer.errors import InputError
 from rastrainer.protocol import RegistrationMethod
 
+TIME_FLOOR = 0.04
+"""Desirability of an infinite time: being slow never costs as much as being wrong."""
 SCORE_VERSION = "3"
 """Changes with any change of a formula or a reference, so that scores stay comparable."""
 FIRST_SCORE_VERSION = "1"
@@ -306,6 +307,16 @@ def score_trial(
         reference=reference,
         version=version,
     )
+
+
+def falling(value: float, half: float, power: int = 2) -> float:
+    """Return a desirability, 1/(1 + (value/half)^power): 1 at 0, ½ at `half`; never 0."""
+    return 1 / (1 + (value / half) ** power)
+
+
+def of_time(time_s: float, reference_s: float) -> float:
+    """Return the desirability of a time: half of its range at the reference."""
+    return TIME_FLOOR + (1 - TIME_FLOOR) * falling(time_s, reference_s)
 
 
 def _accuracy(tre_mm: float, bias_mm: float | None, reference: ScoreReference) -> float:

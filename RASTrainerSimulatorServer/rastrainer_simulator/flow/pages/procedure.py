@@ -9,13 +9,13 @@ from typing import Any
 
 from rastrainer.json_checks import is_number
 from rastrainer.procedure.plan import MAX_TRAJECTORIES
-from rastrainer.procedure.score import (
+from rastrainer.protocol import CommandName, Phase
+from rastrainer.trial.procedure_outcome import (
     ANGLE_LIMIT_DEG,
     ENTRY_LIMIT_MM,
     PLUNGE_LIMIT_MM,
     TARGET_LIMIT_MM,
 )
-from rastrainer.protocol import CommandName, Phase
 from rastrainer_simulator.flow.pages.session_page import SessionPage
 from rastrainer_simulator.flow.pages.trial_review import ErrorsPage
 from rastrainer_simulator.flow.session.plan_marks import (

@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rastrainer.errors import InputError
-from rastrainer.procedure.score import ProcedureScore
 from rastrainer.protocol import PROCEDURE_PHASES, TRIAL_RUN
 from rastrainer.study.curriculum.curriculum import Curriculum, curriculum_from_json
 from rastrainer.study.curriculum.standing import CountedTrial, CurriculumStanding, standing_in
@@ -23,6 +22,7 @@ from rastrainer.study.database.values import StoredProcedure, moment, utc_now
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import StudyProtocol, pass_mark_of
 from rastrainer.trial.aborted_trial import AbortedTrial
+from rastrainer.trial.procedure_outcome import ProcedureScore
 from rastrainer.trial.scoring import TrialScore, method_of_version
 
 _STAMPS = """

@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from statistics import fmean
 
 from rastrainer.number_text import fixed
-from rastrainer.procedure.score import PROCEDURE_SCORE_VERSION
 from rastrainer.protocol import AssignmentState, GoalKind, RegistrationMethod
 from rastrainer.study.curriculum.curriculum import Assignment, Curriculum
 from rastrainer.study.database.values import day_of, moment
 from rastrainer.study.protocol.steps import trial_title
+from rastrainer.trial.procedure_outcome import PROCEDURE_SCORE_VERSION
 from rastrainer.trial.scoring import passes, score_version
 from rastrainer.trial.trial_feedback import competence_of
 

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.procedure.score import ProcedureScore
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.target_error import TargetError
 from rastrainer.trial.analysis import RevealedTruth
-from rastrainer.trial.procedure_outcome import ProcedureOutcome
+from rastrainer.trial.procedure_outcome import ProcedureOutcome, ProcedureScore
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import TrialScore
 

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from rastrainer import transforms
 from rastrainer.errors import InputError
-from rastrainer.procedure import score as scoring
 from rastrainer.procedure.errors import analyze_procedure
 from rastrainer.procedure.plan import MAX_SAFETY_MM
-from rastrainer.procedure.score import (
+from rastrainer.trial import procedure_outcome as scoring
+from rastrainer.trial.procedure_outcome import (
     ANGLE_LIMIT_DEG,
     ENTRY_LIMIT_MM,
     PLUNGE_LIMIT_MM,
