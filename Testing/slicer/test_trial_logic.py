@@ -354,8 +354,8 @@ def reviews(monkeypatch):
         done.append((analysis.record.trial_id, threading.get_ident()))
         return scored_with_journal(analysis, *arguments)
 
-    monkeypatch.setattr("rastrainer.slicer.logic.trial_computations.analyze_trial", registered)
-    monkeypatch.setattr("rastrainer.slicer.logic.trial_computations.scored_with_journal", scored)
+    monkeypatch.setattr("rastrainer.study.delivered_trial.analyze_trial", registered)
+    monkeypatch.setattr("rastrainer.study.delivered_trial.scored_with_journal", scored)
     return done
 
 

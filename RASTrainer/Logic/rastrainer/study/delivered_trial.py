@@ -1,14 +1,20 @@
-"""Storing, registering and scoring delivered trials, with feedback."""
+"""Storing, registering and scoring delivered trials, with feedback.
+
+Slicer has what takes long done in a separate process, by the names of these functions: a trial's
+journal holds thousands of lines, and a registration calls numpy hundreds of times. In a thread,
+both would keep its window from answering. The study stays with Slicer.
+"""
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from rastrainer.errors import InputError
-from rastrainer.journal.recording import read_trajectory
+from rastrainer.journal.recording import ReplayTrack, find_track, read_trajectory
 from rastrainer.motion.trajectory import Trajectory
 from rastrainer.protocol import TRIAL_RUN
 from rastrainer.scenario.scenario import Scenario
@@ -16,10 +22,14 @@ from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer.study.protocol.study_progress import StudyProgress
 from rastrainer.study.protocol.study_protocol import pass_mark_of
-from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
+from rastrainer.trial import ctps
+from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis, analyze_trial
+from rastrainer.trial.procedure_outcome import ProcedureOutcome, procedure_outcome
 from rastrainer.trial.record import TrialRecord
 from rastrainer.trial.scoring import ScoreReference
+from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration, register_trial
 from rastrainer.trial.trial_feedback import PastTrial, progress_of
+from rastrainer.work_progress import Progress
 
 
 @dataclass(frozen=True)
@@ -138,3 +148,75 @@ def with_progress_among(
     """
     progress = progress_of(attempts, analysis.record.trial_id, pass_mark)
     return replace(analysis, feedback=replace(analysis.feedback, progress=progress))
+
+
+# Names for a separate process.
+REGISTER = f"{__name__}:register"
+REGISTER_OPEN = f"{__name__}:register_open"
+SCORE = f"{__name__}:score"
+EXPLAIN = f"{__name__}:explain"
+EXPLAIN_PROCEDURE = f"{__name__}:explain_procedure"
+READ_TRACK = f"{__name__}:read_track"
+_READING = "Reading the journal"
+
+
+def register(
+    record: TrialRecord, scenario: Scenario, cohort: Sequence[ctps.Trial], progress: Progress
+) -> TrialAnalysis:
+    """Return the registration of a trial; its journal, which takes long to read, is not needed.
+
+    Raises:
+        InputError: it cannot be registered.
+    """
+    progress("Registering", 0.0)
+    return analyze_trial(record, scenario, cohort)
+
+
+def register_open(given: GivenPoints, scenario: Scenario, progress: Progress) -> TouchRegistration:
+    """Return the registration of an open trial; errors of `register_trial`."""
+    progress("Registering", 0.0)
+    return register_trial(given, scenario)
+
+
+def score(
+    analysis: TrialAnalysis,
+    truth: RevealedTruth,
+    scenario: Scenario,
+    references: Mapping[str, ScoreReference] | None,
+    records: Path | None,
+    progress: Progress,
+) -> TrialAnalysis:
+    """Return a registered trial with its score; arguments and errors of `scored_with_journal`."""
+    progress(_READING, 0.0)
+    return scored_with_journal(analysis, truth, scenario, references, records)
+
+
+def explain(
+    record: TrialRecord, scenario: Scenario, records: Path, progress: Progress
+) -> TrialAnalysis:
+    """Return the registration of a trial, with the touches explained by its journal.
+
+    Raises:
+        InputError: it cannot be registered.
+    """
+    progress(_READING, 0.0)
+    return analyze_trial(record, scenario, trajectory=trajectory_of(record, records))
+
+
+def explain_procedure(
+    record: TrialRecord, scenario: Scenario, truth: RevealedTruth, progress: Progress
+) -> ProcedureOutcome | None:
+    """Return the errors of a stored trial's procedure; None where it is of another plan."""
+    progress("Computing errors", 0.0)
+    try:
+        return procedure_outcome(record, scenario, truth.matrix)
+    except InputError as error:
+        # The trial itself can be shown all the same.
+        logging.info("The lines of a procedure are not shown: %s", error)
+        return None
+
+
+def read_track(records: Path, trial_id: str, progress: Progress) -> ReplayTrack:
+    """Return what is shown of a trial again; errors of `find_track`."""
+    progress(_READING, 0.0)
+    return find_track(records, trial_id)

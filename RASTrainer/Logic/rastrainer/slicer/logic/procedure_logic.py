@@ -12,11 +12,11 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.training_logic import knownNumber
-from rastrainer.slicer.logic.trial_computations import REGISTER_OPEN
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.procedure_lines import showPlannedLines, showProcedureErrors
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
+from rastrainer.study.delivered_trial import REGISTER_OPEN
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.touch_registration import GivenPoints, TouchRegistration

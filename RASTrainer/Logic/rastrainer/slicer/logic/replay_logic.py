@@ -14,7 +14,6 @@ from rastrainer.journal.recording import ReplayTrack
 from rastrainer.registration.fits import RIGID
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork, inBackground
-from rastrainer.slicer.logic.trial_computations import EXPLAIN, EXPLAIN_PROCEDURE, READ_TRACK
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.robot import URDF, readArmChain
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
@@ -33,7 +32,7 @@ from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredTrial
-from rastrainer.study.delivered_trial import with_progress
+from rastrainer.study.delivered_trial import EXPLAIN, EXPLAIN_PROCEDURE, READ_TRACK, with_progress
 from rastrainer.trial.procedure_outcome import ProcedureOutcome
 from rastrainer.trial.trial_feedback import TrialFeedback
 from rastrainer.work_progress import Progress, no_progress

@@ -22,7 +22,6 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.delivery_queue import Delivery, DeliveryQueue
-from rastrainer.slicer.logic.trial_computations import REGISTER, SCORE
 from rastrainer.slicer.logic.trial_scoring import TrialScoring
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial
@@ -30,7 +29,13 @@ from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyBusyError
 from rastrainer.study.database.study import Study
-from rastrainer.study.delivered_trial import DeliveredTrial, score_references, store_delivered
+from rastrainer.study.delivered_trial import (
+    REGISTER,
+    SCORE,
+    DeliveredTrial,
+    score_references,
+    store_delivered,
+)
 from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
