@@ -6,6 +6,9 @@ main thread's.
 Nothing is lost and nothing counts twice, whatever is cut on the way. The simulator offers a trial
 until it is acknowledged, and it is acknowledged only when it is in the study; what is in the study
 without its truth is scored again over the next connection, and after the study was away.
+
+A trial is scored in the order in which nobody can cheat: the registration is submitted, which makes
+it final; the simulator reveals the truth; the score is computed, sent and stored.
 """
 
 from __future__ import annotations
@@ -17,12 +20,13 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rastrainer.protocol import OPEN_PHASES
+from rastrainer.errors import InputError
+from rastrainer.igtl.client import Reply
+from rastrainer.protocol import OPEN_PHASES, CommandName
 from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.delivery_queue import Delivery, DeliveryQueue
-from rastrainer.slicer.logic.trial_scoring import TrialScoring
 from rastrainer.slicer.program.own_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial
 from rastrainer.slicer.signal import Listening, Signal
@@ -35,13 +39,24 @@ from rastrainer.study.delivered_trial import (
     DeliveredTrial,
     score_references,
     store_delivered,
+    with_progress,
 )
-from rastrainer.trial.analysis import RevealedTruth, TrialAnalysis
+from rastrainer.trial.analysis import (
+    RevealedTruth,
+    TrialAnalysis,
+    registration_arguments,
+    score_arguments,
+)
 from rastrainer.trial.ctps import Trial
 from rastrainer.trial.record import TrialRecord
 
 RETRY_S = 5.0
 """After a study was locked or unreachable, until its trials are looked for again."""
+ANSWER_TIMEOUT_S = 60.0
+"""Nobody waits for the answers to a trial, and what times out is requested again only over the next
+connection: a busy simulator gets the time it needs."""
+
+End = Callable[[Exception], None]
 
 
 class TrialLogic:
@@ -88,7 +103,6 @@ class TrialLogic:
         self._cohort = cohort
         self._records = records
         self._run = run
-        self._scoring = TrialScoring(link, work, openStudy, self._scoreByProtocol)
         self._beingScored: set[str] = set()
         self._scored: set[str] = set()
         self._unscored: deque[TrialRecord] = deque()
@@ -168,14 +182,6 @@ class TrialLogic:
     def _analyze(self, record: TrialRecord) -> TrialAnalysis:
         scenario = self._findScenario(record.scenario)
         return self._run(REGISTER, self._work.checkWanted, record, scenario, self._cohort)
-
-    def _scoreByProtocol(
-        self, analysis: TrialAnalysis, study: Study, truth: RevealedTruth
-    ) -> TrialAnalysis:
-        scenario = self._findScenario(analysis.record.scenario)
-        references = score_references(study)
-        checkWanted = self._work.checkWanted
-        return self._run(SCORE, checkWanted, analysis, truth, scenario, references, self._records)
 
     def _resume(self) -> None:
         """Score the trials that were not scored before connection or study were lost."""
@@ -257,4 +263,82 @@ class TrialLogic:
             finally:
                 proceed()
 
-        self._scoring.begin(analysis, take, fail)
+        self._reveal(analysis, take, fail)
+
+    def _reveal(
+        self, analysis: TrialAnalysis, take: Callable[[TrialAnalysis], None], end: End
+    ) -> None:
+        """Have a registered trial that is in the study revealed and scored.
+
+        If that is interrupted, the truth is not stored, and all of it is done again over the next
+        connection, with the same outcome.
+
+        Args:
+            analysis: its registration.
+            take: receives the analysis with truth and score, once they are in the study.
+            end: receives the reason for a failure.
+        """
+
+        def score(answer: Mapping[str, Any]) -> None:
+            truth = RevealedTruth.from_json(answer)
+            self._work.do(
+                lambda: self._storeScore(analysis, truth),
+                lambda scored: report(scored, truth),
+                lambda error: refuse(error, truth),
+            )
+
+        def refuse(error: Exception, truth: RevealedTruth) -> None:
+            """Store the truth of a trial that can never be scored; others are requested again."""
+            if isinstance(error, StudyBusyError):
+                end(error)
+                return
+            keep(truth, lambda _none: end(error))
+
+        def report(scored: TrialAnalysis, truth: RevealedTruth) -> None:
+            self._ask(
+                CommandName.TRIAL_SCORED,
+                score_arguments(scored),
+                lambda _answer: keep(truth, lambda _none: take(scored)),
+                end,
+            )
+
+        def keep(truth: RevealedTruth, proceed: Callable[[None], None]) -> None:
+            self._work.do(lambda: self._storeTruth(analysis.record, truth), proceed, end)
+
+        self._ask(CommandName.SUBMIT_REGISTRATION, registration_arguments(analysis), score, end)
+
+    def _ask(
+        self,
+        command: str,
+        arguments: dict[str, Any],
+        go: Callable[[Mapping[str, Any]], None],
+        end: End,
+    ) -> None:
+        def takeAnswer(reply: Reply) -> None:
+            try:
+                if not reply.ok:
+                    raise InputError(reply.error)
+                go(reply.data)
+            except InputError as error:
+                end(error)
+
+        self._link.send(command, arguments, takeAnswer, ANSWER_TIMEOUT_S)
+
+    def _storeScore(self, analysis: TrialAnalysis, truth: RevealedTruth) -> TrialAnalysis:
+        record = analysis.record
+        with self._openStudy() as study:
+            scored = self._run(
+                SCORE,
+                self._work.checkWanted,
+                analysis,
+                truth,
+                self._findScenario(record.scenario),
+                score_references(study),
+                self._records,
+            )
+            study.add_results(record.trial_id, score=scored.score, procedure=scored.procedure)
+            return with_progress(scored, study)
+
+    def _storeTruth(self, record: TrialRecord, truth: RevealedTruth) -> None:
+        with self._openStudy() as study:
+            study.set_truth(record.trial_id, truth.true_tre_mm, truth.head_to_world)
