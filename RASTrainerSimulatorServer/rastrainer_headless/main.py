@@ -36,7 +36,7 @@ from rastrainer.scenario.scenario import Scenario, load_scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkStatus
-from rastrainer.slicer.logic.aborted_trial_logic import AbortedTrialLogic
+from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.trial_logic import TrialLogic

@@ -15,7 +15,7 @@ import pytest
 from rastrainer.journal.folder import SUFFIX
 from rastrainer.journal.journal_file import FORMAT, FORMAT_VERSION, stamp
 from rastrainer.scenario.scenario import load_scenario
-from rastrainer.slicer.logic.aborted_trial_logic import AbortedTrialLogic
+from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study

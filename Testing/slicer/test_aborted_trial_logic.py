@@ -5,8 +5,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.logic.aborted_trial_logic import AbortedTrialLogic
-from rastrainer.slicer.logic.delivery_queue import MAX_WAITING
+from rastrainer.slicer.logic.delivery_queue import MAX_WAITING, AbortedTrialLogic
 from rastrainer.study.database.aborted_trials import AbortedTrials
 from rastrainer.study.database.study import Study
 from rastrainer_headless.connector import headlessKit

@@ -13,7 +13,7 @@ from rastrainer.scenario.scenario import Scenario, playable_methods
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.connection import ConnectorKit
 from rastrainer.slicer.link.link import CallSoon, Link, neverSoon
-from rastrainer.slicer.logic.aborted_trial_logic import AbortedTrialLogic
+from rastrainer.slicer.logic.delivery_queue import AbortedTrialLogic
 from rastrainer.slicer.logic.landmark_logic import LandmarkLogic
 from rastrainer.slicer.logic.procedure_logic import ProcedureLogic
 from rastrainer.slicer.logic.procedure_plan_logic import ProcedurePlanLogic
