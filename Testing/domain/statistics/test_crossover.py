@@ -7,8 +7,8 @@ import pytest
 import scipy.stats
 
 from rastrainer.errors import InputError
+from rastrainer.report.statistical_methods import what_cannot_be_concluded
 from rastrainer.statistics.crossover import fit_differences, is_separable
-from rastrainer.statistics.few_subjects import what_cannot_be_concluded
 from rastrainer.statistics.paired import compare_paired, rank_sum_test
 
 rng = np.random.default_rng(8)

@@ -1,13 +1,10 @@
 """Tests, intervals and effect sizes agree with scipy's and with published values."""
 
-import math
-
 import numpy as np
 import pytest
 import scipy.stats
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.few_subjects import what_cannot_be_concluded, what_it_shows
 from rastrainer.statistics.intervals import (
     correlation,
     detectable_effect,
@@ -151,28 +148,3 @@ def test_incomparable_values_are_refused(first, second, words):
 def test_differences_that_are_all_zero_are_refused():
     with pytest.raises(InputError, match="differences that are not 0"):
         signed_rank_test(np.zeros(5))
-
-
-def test_the_limits_of_few_subjects_are_stated():
-    four = compare_paired(np.zeros(4), SAMPLES[1])
-    words = " ".join(what_cannot_be_concluded(4, four, order_known=False))
-    assert "smallest possible p is .125" in words
-    assert "did first is not in the data" in words
-    assert "199, 34 or 15 subjects" in words
-    assert "1.9 times" in words or "2.0 times" in words or "2.1 times" in words
-    thirty = compare_paired(np.zeros(25), SAMPLES[5])
-    assert "Wilcoxon" not in " ".join(what_cannot_be_concluded(25, thirty))
-    assert "orders of the conditions do not allow the effect of the period" in " ".join(
-        what_cannot_be_concluded(25, thirty)
-    )
-    assert "no comparison" in what_cannot_be_concluded(1)[0]
-
-
-def test_a_difference_that_is_not_shown_is_not_called_absent():
-    comparison = compare_paired(np.array([1.0, 2.0, 3.0]), np.array([1.2, 1.8, 3.4]))
-    words = what_it_shows("Time", "s", "desktop", "hmd", comparison, 1.0)
-    assert "not evidence that there is none" in words
-    clear = compare_paired(np.zeros(9), np.linspace(1.0, 1.5, 9))
-    assert "1.25 s higher with hmd" in what_it_shows("Time", "s", "desktop", "hmd", clear, 0.001)
-    assert "does not hold" in what_it_shows("Time", "s", "desktop", "hmd", clear, 0.06)
-    assert not math.isnan(clear.hedges_gz)

@@ -25,8 +25,7 @@ from rastrainer.report.markup import (
     table,
 )
 from rastrainer.report.mode_comparison import Series, grouped_bars
-from rastrainer.report.paired_statistics import interval_text
-from rastrainer.statistics.few_subjects import what_it_shows
+from rastrainer.report.paired_statistics import interval_text, what_it_shows
 from rastrainer.statistics.intervals import mean
 from rastrainer.study.outcomes import Outcome
 from rastrainer.study.study_data import StudyData, TrialRow, values_of

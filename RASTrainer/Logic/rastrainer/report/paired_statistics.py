@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rastrainer.number_text import fixed, p_text, significant
+from rastrainer.number_text import fixed, p_text, signed, significant
 from rastrainer.report.comparisons import ModeComparison, tested
 from rastrainer.report.markup import Cell, Line, figure, heading, paragraph, section, table
 from rastrainer.report.svg import (
@@ -19,8 +19,8 @@ from rastrainer.report.svg import (
     number,
     y_grid,
 )
-from rastrainer.statistics.few_subjects import what_it_shows
-from rastrainer.statistics.paired import equivalence_margin
+from rastrainer.statistics.intervals import ALPHA
+from rastrainer.statistics.paired import PairedComparison, equivalence_margin
 from rastrainer.study.outcomes import mode_name, mode_title, short_mode_title
 
 SEPARATED = (
@@ -58,6 +58,50 @@ def findings(comparisons: Sequence[ModeComparison]) -> list[str]:
         for comparison, result in tested(comparisons)
         if comparison.adjusted_p is not None
     ]
+
+
+def what_it_shows(
+    name: str,
+    unit: str,
+    first: str,
+    second: str,
+    comparison: PairedComparison,
+    adjusted_p: float,
+    digits: int = 2,
+    several: str = "outcomes",
+) -> str:
+    """Return a sentence that says what the comparison shows, never more.
+
+    Args:
+        name: Of the outcome, such as "Completion time".
+        unit: Of it, "" where it has none.
+        first: Name of the first condition.
+        second: Name of the second condition.
+        comparison: Second minus first.
+        adjusted_p: Its p, adjusted for the number of outcomes.
+        digits: After the point, of the difference and its interval.
+        several: What p was adjusted for.
+    """
+    low, high = comparison.interval
+    difference = comparison.mean_difference
+    amount = f"{fixed(abs(difference), digits)} {unit}".rstrip()
+    ends = [signed(end, digits) for end in (low, high)]
+    span = f"from {ends[0]} to {ends[1]} {unit}".rstrip()
+    direction = "higher" if difference > 0 else "lower"
+    if adjusted_p < ALPHA:
+        return (
+            f"{name} was {amount} {direction} with {second} than with {first} "
+            f"(95 % interval {span}); this holds after correction for testing several {several}."
+        )
+    if comparison.p < ALPHA:
+        return (
+            f"{name} was {amount} {direction} with {second} than with {first} (95 % interval "
+            f"{span}), but this does not hold after correction for testing several {several}."
+        )
+    return (
+        f"{name}: no difference is shown. The data are compatible with anything {span}; that is "
+        "not evidence that there is none."
+    )
 
 
 def paired_statistics(comparisons: Sequence[ModeComparison]) -> str:

@@ -28,10 +28,9 @@ from rastrainer.report.passing import passing, started_trials
 from rastrainer.report.procedures import procedures
 from rastrainer.report.published_tables import paper_notes, published_tables, with_ctps
 from rastrainer.report.raters import raters
-from rastrainer.report.statistical_methods import limits, methods
+from rastrainer.report.statistical_methods import FEW_SUBJECTS, limits, methods
 from rastrainer.report.trainees import curricula, groups, questionnaires
 from rastrainer.report.variation import variation
-from rastrainer.statistics.few_subjects import FEW_SUBJECTS
 from rastrainer.statistics.intervals import scipy_module
 from rastrainer.study.outcomes import MAIN_OUTCOMES, MOTION_OUTCOMES, mode_title
 from rastrainer.study.study_data import StudyData
