@@ -58,15 +58,15 @@ def run_measure(arguments: argparse.Namespace) -> int:
     """
     # Only here: to verify a journal, no metric need be imported.
     from rastrainer.journal.recording import Recording
-    from rastrainer.motion.definitions import DEFINITIONS
     from rastrainer.motion.trial_motion import trial_motion
+    from rastrainer.study.outcomes import MOTION_METRICS
 
     reading = read_journal(arguments.journal)
     motion = trial_motion(Recording.of(reading.entries).trajectory())
     if arguments.json:
         print(json_text(motion))
         return 0
-    known = [DEFINITIONS[name] for name in DEFINITIONS if name in motion]
+    known = [MOTION_METRICS[name] for name in MOTION_METRICS if name in motion]
     rows = [[d.title, f"{motion[d.name]:.4g}", d.unit] for d in known]
     print(f"{arguments.journal}: {reading.sentence}\n{text_table(['', 'value', 'unit'], rows)}")
     if arguments.explain:

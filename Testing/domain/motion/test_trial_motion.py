@@ -9,9 +9,9 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.head.mesh import HeadMesh
 from rastrainer.journal.recording import Recording
-from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.motion.trajectory import Interval, Touch, Trajectory
 from rastrainer.motion.trial_motion import trial_motion
+from rastrainer.study.outcomes import MOTION_METRICS
 from rastrainer_simulator.authoring.touch_order import SurfaceGraph, shortest_path_mm
 from Testing.domain.head.spheres import RADIUS_MM, on_sphere, sphere_mesh
 
@@ -146,7 +146,7 @@ def test_a_trial_that_has_just_started_has_only_counts():
 
 def test_every_metric_has_a_definition_and_every_definition_a_metric(trajectory):
     motion = trial_motion(whole(trajectory, depth_mm=np.zeros(len(trajectory.times_s))))
-    assert set(motion) == set(DEFINITIONS)
+    assert set(motion) == set(MOTION_METRICS)
     assert all(np.isfinite(value) for value in motion.values())
 
 

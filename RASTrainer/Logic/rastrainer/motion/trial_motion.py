@@ -1,6 +1,6 @@
 """The motion metrics of a trial, by name, from its trajectory.
 
-`rastrainer.motion.definitions` defines each metric with its unit, thresholds and source. The same
+`rastrainer.study.outcomes` defines each metric with its unit, thresholds and source. The same
 function is used when a trial is registered, when its journal is read, and when it is replayed:
 equal samples give equal numbers. None is shown during a trial, because the low-pass filter also
 runs backward from the end, so values of a part would change later.

@@ -36,9 +36,9 @@ TITLES = {
     RegistrationMethod.SURFACE.value: "Trace",
     RegistrationMethod.LANDMARKS_SURFACE.value: "Landmarks and trace",
 }
-RESIDUAL = Outcome("rmse_mm", "Residual", "mm", 0, 2)
-EXPECTED = Outcome("expected_tre_mm", "Expected target error", "mm", -1, 2)
-TRUE = Outcome("true_tre_mm", "True target error", "mm", -1, 2)
+RESIDUAL = Outcome("rmse_mm", "Residual", unit="mm")
+EXPECTED = Outcome("expected_tre_mm", "Expected target error", unit="mm", better=-1)
+TRUE = Outcome("true_tre_mm", "True target error", unit="mm", better=-1)
 OUTCOMES = (RESIDUAL, EXPECTED, TRUE)
 COLORS = {RESIDUAL: "#6b7785", EXPECTED: "#0b6fa4", TRUE: "#d1661b"}
 INTRO = (

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.number_text import fixed
 from rastrainer.report.comparisons import ModeComparison, tested
 from rastrainer.report.markup import Cell, Line, figure, paragraph, section, table
@@ -204,8 +203,8 @@ def motion(data: StudyData, comparisons: Sequence[ModeComparison]) -> str:
     definitions: list[Line] = [
         [
             outcome.title,
-            Cell(DEFINITIONS[outcome.name].definition, kind="text"),
-            Cell(DEFINITIONS[outcome.name].source, kind="text"),
+            Cell(outcome.definition, kind="text"),
+            Cell(outcome.source, kind="text"),
         ]
         for outcome in outcomes
     ]

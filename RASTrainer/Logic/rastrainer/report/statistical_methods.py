@@ -8,7 +8,6 @@ from collections.abc import Sequence
 import numpy as np
 
 import rastrainer
-from rastrainer.motion.definitions import FILTER
 from rastrainer.number_text import counted, p_text, percent
 from rastrainer.report.comparisons import ModeComparison, compared_version
 from rastrainer.report.markup import bullets, heading, paragraph, section, table
@@ -20,7 +19,7 @@ from rastrainer.statistics.intervals import (
     subjects_needed,
 )
 from rastrainer.statistics.paired import PairedComparison
-from rastrainer.study.outcomes import mode_title, task_title
+from rastrainer.study.outcomes import FILTER, mode_title, task_title
 from rastrainer.study.protocol.study_protocol import BALANCED
 from rastrainer.study.study_data import StudyData
 from rastrainer.trial.score_reference import (

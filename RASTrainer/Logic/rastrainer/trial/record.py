@@ -88,7 +88,7 @@ class TrialRecord:
         versions: Name and version of each program and format that made the record.
         seed: Seed of the trial, where the simulator reveals it.
         touch_rule: Which touches counted, a `TouchRule`; in older records the paper's.
-        motion: Motion metrics by name (`rastrainer.motion.definitions`); empty in older records.
+        motion: Motion metrics by name (`rastrainer.study.outcomes`); empty in older records.
         display: What the trainee looked at: `kind`, `device`, `refreshHz`, `shownFrames` and
             `droppedFrames`, the `guidance` to the next point, and the `ghost` that was shown (a
             `GhostRule`); empty where no view reported it.

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from rastrainer.motion.definitions import DEFINITIONS
 from rastrainer.number_text import fixed
 from rastrainer.registration.fits import RIGID
 from rastrainer.registration.target_error import INTERVAL_NOTE
@@ -17,6 +16,7 @@ from rastrainer.slicer.scene.tables import Column, showTable
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.study import Study
 from rastrainer.study.database.values import StoredProcedure, StoredTrial
+from rastrainer.study.outcomes import MOTION_METRICS
 from rastrainer.trial.analysis import published_score
 from rastrainer.trial.ctps import CTPS_WARNING, Trial
 from rastrainer.trial.scoring import (
@@ -195,8 +195,8 @@ def ctpsRows(trial: StoredTrial, cohort: Sequence[Trial]) -> list[Row]:
 def motionRows(trial: StoredTrial) -> list[Row]:
     """Return the motion metrics of a trial, each with its definition."""
     return [
-        Row(definition.title, trial.motion[name], definition.unit, definition.definition)
-        for name, definition in DEFINITIONS.items()
+        Row(metric.title, trial.motion[name], metric.unit, metric.definition)
+        for name, metric in MOTION_METRICS.items()
         if name in trial.motion
     ]
 
