@@ -10,7 +10,7 @@ from rastrainer.head.mesh import HeadMesh, write_head_mesh
 from rastrainer.scenario.points import LABELS, Task
 from rastrainer.scenario.scenario import Perturbation, Scenario
 from rastrainer.slicer.link.link import Link
-from rastrainer.slicer.program.own_process import OwnProcess, runHere
+from rastrainer.slicer.program.child_process import OwnProcess, runHere
 from rastrainer_headless.connector import headlessKit
 from rastrainer_headless.scene import HeadlessScene
 from Testing.slicer.host.fixtures import host, module_widget, start_slicer  # noqa: F401

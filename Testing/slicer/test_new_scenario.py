@@ -17,7 +17,7 @@ from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings, Volume, forSegment, volumeOfSegment
 from rastrainer.slicer.logic import head_preview, scenario_logic, scenario_maker
 from rastrainer.slicer.logic.head_preview import HeadPreview
-from rastrainer.slicer.program.own_process import OwnProcess
+from rastrainer.slicer.program.child_process import OwnProcess
 from rastrainer.slicer.scene.nodes import Role, findNode, setPoints
 from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario, png
 from Testing.slicer.head.phantoms import phantom

@@ -13,7 +13,7 @@ import pytest
 from rastrainer.errors import InputError
 from rastrainer.slicer.head.extraction import findHead
 from rastrainer.slicer.head.volume import HeadSettings
-from rastrainer.slicer.program.own_process import LOGIC, OwnProcess, runHere
+from rastrainer.slicer.program.child_process import LOGIC, OwnProcess, runHere
 from Testing.slicer.head.phantoms import phantom
 
 pytestmark = pytest.mark.usefixtures("own_processes")
@@ -113,7 +113,7 @@ def test_showing_a_head_imports_no_scipy_and_finding_it_neither_slicer_nor_qt():
         "import sys; sys.modules['slicer'] = sys.modules['qt'] = None\n"
         f"sys.path.insert(0, {str(LOGIC)!r})\n"
         "import rastrainer.slicer.head.volume\n"
-        "import rastrainer.slicer.program.own_process\n"
+        "import rastrainer.slicer.program.child_process\n"
         "assert 'scipy' not in sys.modules\n"
         "import rastrainer.slicer.head.head_draft"
     )

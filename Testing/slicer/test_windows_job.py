@@ -13,8 +13,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from rastrainer.slicer.program import windows_job
-from rastrainer.slicer.program.windows_job import WINDOWS_OPTIONS, WindowsJob
+from rastrainer.slicer.program import process_group
+from rastrainer.slicer.program.process_group import WINDOWS_OPTIONS, WindowsJob
 
 SUSPENDED = 0x4
 OTHER_PID = 7
@@ -215,7 +215,7 @@ def test_no_handle_is_leaked_and_closing_the_last_one_ends_nothing(windows):
 def test_without_a_job_a_program_still_runs_and_is_ended_as_a_tree(windows, monkeypatch, call):
     windows.refused.add(call)
     ended = []
-    monkeypatch.setattr(windows_job, "endTree", ended.append)
+    monkeypatch.setattr(process_group, "endTree", ended.append)
     process, job = started(windows)
     assert len(windows.running) == 2
     job.end()

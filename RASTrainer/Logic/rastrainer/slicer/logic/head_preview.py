@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.background_work import inBackground
-from rastrainer.slicer.program.own_process import Run
+from rastrainer.slicer.program.child_process import Run
 from rastrainer.slicer.scene.nodes import Role, findNode, findOrAddNode
 from rastrainer.slicer.scene.scenario_nodes import SKIN_COLOR, trianglesPolyData
 from rastrainer.slicer.translation import _

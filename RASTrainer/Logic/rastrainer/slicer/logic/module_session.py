@@ -34,7 +34,7 @@ from rastrainer.slicer.logic.trainee_logic import CurriculumLogic, TraineeLogic
 from rastrainer.slicer.logic.training_logic import TrainingLogic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
-from rastrainer.slicer.program.own_process import OwnProcess
+from rastrainer.slicer.program.child_process import OwnProcess
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
 from rastrainer.slicer.scene.registration_nodes import followPlacement

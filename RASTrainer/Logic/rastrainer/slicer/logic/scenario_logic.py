@@ -16,7 +16,7 @@ from rastrainer.slicer.background_work import inBackground
 from rastrainer.slicer.logic.head_preview import findSkin
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
-from rastrainer.slicer.program.own_process import Run
+from rastrainer.slicer.program.child_process import Run
 from rastrainer.slicer.scene.nodes import (
     ROLE_ATTRIBUTE,
     Role,

@@ -24,8 +24,7 @@ from rastrainer.slicer.logic.head_preview import HeadPreview
 from rastrainer.slicer.logic.scenario_cache import ScenarioCache
 from rastrainer.slicer.logic.scenario_logic import planArguments
 from rastrainer.slicer.logic.simulator_logic import SimulatorLogic
-from rastrainer.slicer.program.child_process import runChild
-from rastrainer.slicer.program.own_process import Run
+from rastrainer.slicer.program.child_process import Run, runChild
 from rastrainer.slicer.scene.nodes import ROLE_ATTRIBUTE, labelsOf, nodesOfClass, worldPoints
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress

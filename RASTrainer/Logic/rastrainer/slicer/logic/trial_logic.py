@@ -27,7 +27,7 @@ from rastrainer.scenario.scenario import Scenario
 from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic.delivery_queue import Delivery, DeliveryQueue
-from rastrainer.slicer.program.own_process import Run, runHere
+from rastrainer.slicer.program.child_process import Run, runHere
 from rastrainer.slicer.scene.trial_scene import showTrial
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _

@@ -1,13 +1,16 @@
-"""Windows: a program and all that it starts in one job object, from its first moment on.
+"""A program and all that it starts, ended together: a session on POSIX, a job object on Windows.
 
-The program is started suspended and resumed once it is in the job: what it starts is in it, too.
-`subprocess` closes the handle of its first thread, which is therefore found by the process.
-The calls are those of Microsoft's documentation of kernel32.
+On Windows the program is started suspended and goes on once it is in the job: what it starts is in
+it, too. `subprocess` closes the handle of its first thread, which is therefore found by the
+process. The calls are those of Microsoft's documentation of kernel32.
 """
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
+import os
+import signal
 import subprocess
 import sys
 import weakref
@@ -131,3 +134,55 @@ def endTree(pid: int) -> None:
     """End a process and all that it has started, as far as their parents still run, at once."""
     words = ["taskkill", "/F", "/T", "/PID", str(pid)]
     subprocess.Popen(words, stdin=subprocess.DEVNULL, creationflags=_CREATE_NO_WINDOW)
+
+
+if sys.platform == "win32":
+    OPTIONS = WINDOWS_OPTIONS
+    ProcessGroup = WindowsJob
+
+    def endProcess(pid: int, hasOwnGroup: bool, isAsked: bool) -> None:  # noqa: ARG001
+        """End a process and all that it has started, at once: see `WindowsJob.end`."""
+        endTree(pid)
+
+else:
+    OPTIONS: dict[str, Any] = {"start_new_session": True}
+    """Of `subprocess.Popen`."""
+
+    def endProcess(pid: int, hasOwnGroup: bool, isAsked: bool) -> None:
+        """End a process that this one has not started.
+
+        Args:
+            pid: its number.
+            hasOwnGroup: whether `OPTIONS` have started it; then all that it has started ends, too.
+            isAsked: whether it is asked to end; otherwise it is killed.
+
+        Raises:
+            PermissionError: it is another user's.
+        """
+        number = signal.SIGTERM if isAsked else signal.SIGKILL
+        with contextlib.suppress(ProcessLookupError):
+            if hasOwnGroup:
+                os.killpg(os.getpgid(pid), number)
+            else:
+                os.kill(pid, number)
+
+    class PosixProcessGroup:
+        """A process started with `OPTIONS`, and all that it starts."""
+
+        def __init__(self, process: subprocess.Popen[str]) -> None:
+            self._id = process.pid
+
+        def end(self) -> None:
+            """Ask them to end."""
+            self._send(signal.SIGTERM)
+
+        def kill(self) -> None:
+            """End them at once."""
+            self._send(signal.SIGKILL)
+
+        def _send(self, number: int) -> None:
+            # Where they have all ended, or (macOS) those that have wait to be noticed.
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._id, number)
+
+    ProcessGroup = PosixProcessGroup
