@@ -265,7 +265,8 @@ class RASTrainerTest(ScriptedLoadableModuleTest):
         import numpy as np
         from rastrainer.slicer.scene.nodes import setPoints, worldPoints
         from rastrainer.registration.registration import register
-        from rastrainer.slicer.scene.registration_nodes import Choices, readPairs, showRegistration
+        from rastrainer.slicer.scene.registration_input import Choices, readPairs
+        from rastrainer.slicer.scene.trial_scene import showRegistration
 
         fixedPoints = np.array([[0.0, 0, 0], [90, 0, 0], [0, 70, 0], [0, 0, 50], [30, 30, 30]])
         movingPoints = fixedPoints[:, [1, 2, 0]] + [500.0, 20.0, 300.0]

@@ -14,7 +14,7 @@ from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import Role, findNode, labelsOf, worldPoints
-from rastrainer.slicer.scene.registration_nodes import FIXED_REFERENCE, isApplied, matrixOf
+from rastrainer.slicer.scene.trial_scene import FIXED_REFERENCE, isApplied, matrixOf
 from rastrainer.study.database.study import Study
 from rastrainer.trial.analysis import analyze_trial
 from rastrainer.trial.record import TrialRecord

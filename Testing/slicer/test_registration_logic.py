@@ -17,15 +17,15 @@ from rastrainer.slicer.background_work import BackgroundWork
 from rastrainer.slicer.logic.registration_logic import RegistrationLogic
 from rastrainer.slicer.scene.error_colors import TRE_SCALARS
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode, setPoints, worldPoints
-from rastrainer.slicer.scene.registration_nodes import (
+from rastrainer.slicer.scene.registration_input import Choices
+from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
+from rastrainer.slicer.scene.trial_scene import (
     FIXED_REFERENCE,
-    Choices,
     isApplied,
     matrixOf,
     movingNode,
     setApplied,
 )
-from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
 from rastrainer.transforms import MM_PER_M
 
 LEGEND = "vtkMRMLColorLegendDisplayNode"
@@ -310,7 +310,7 @@ def test_a_new_head_is_prepared_in_another_thread_and_its_touches_registered_aga
         threads.add(threading.get_ident())
         return nearest_on_mesh(mesh, point)
 
-    monkeypatch.setattr("rastrainer.slicer.scene.skin_normals.nearest_on_mesh", watched)
+    monkeypatch.setattr("rastrainer.slicer.scene.registration_input.nearest_on_mesh", watched)
     table = Table(scene, scenario)
     table.touch()
     at_once = table.logic.comparison

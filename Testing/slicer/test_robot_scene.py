@@ -8,9 +8,9 @@ import slicer
 
 from rastrainer.errors import InputError
 from rastrainer.slicer.scene.nodes import capturedPointsNode
-from rastrainer.slicer.scene.registration_nodes import followPlacement, setApplied, showPlannedPlace
 from rastrainer.slicer.scene.robot import robotNode, setRobotVisible, showRobot
 from rastrainer.slicer.scene.scenario_nodes import showTask
+from rastrainer.slicer.scene.trial_scene import followPlacement, setApplied, showPlannedPlace
 from rastrainer.transforms import MM_PER_M
 from rastrainer_simulator.assets import asset_path
 from rastrainer_simulator.robot.kinematics import make_kinematics

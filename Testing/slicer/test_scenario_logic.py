@@ -8,7 +8,7 @@ from rastrainer.errors import InputError
 from rastrainer.slicer.logic.scenario_logic import ScenarioLogic
 from rastrainer.slicer.program.child_process import runHere
 from rastrainer.slicer.scene.nodes import Role, findNode
-from rastrainer.slicer.scene.registration_nodes import isApplied
+from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer_simulator.assets import asset_path
 
 

@@ -8,7 +8,7 @@ from rastrainer.errors import InputError
 from rastrainer.igtl.content import Point, Points
 from rastrainer.protocol import DeviceName
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode
-from rastrainer.slicer.scene.registration_nodes import isApplied, isPlanned, matrixOf
+from rastrainer.slicer.scene.trial_scene import isApplied, isPlanned, matrixOf
 from Testing.slicer.training_room import LOADING_REFUSAL, TRIAL
 
 

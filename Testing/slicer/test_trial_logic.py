@@ -17,7 +17,7 @@ from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.logic import delivery_queue, trial_logic
 from rastrainer.slicer.logic.trial_logic import TrialLogic
 from rastrainer.slicer.scene.nodes import Role, findNode
-from rastrainer.slicer.scene.registration_nodes import isApplied
+from rastrainer.slicer.scene.trial_scene import isApplied
 from rastrainer.study.database.database import LockWait, StudyUnreachableError
 from rastrainer.study.database.study import Study
 from rastrainer.study.delivered_trial import scored_with_journal

@@ -25,7 +25,8 @@ from rastrainer.registration.target_error import INTERVAL_NOTE
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.registration_logic import Comparison
 from rastrainer.slicer.logic.views import jumpTo
-from rastrainer.slicer.scene.registration_nodes import Remedy, isApplied, setApplied
+from rastrainer.slicer.scene.registration_input import Remedy
+from rastrainer.slicer.scene.trial_scene import isApplied, setApplied
 from rastrainer.slicer.settings import FIT, IS_HEAD_COLORED
 from rastrainer.slicer.translation import _
 

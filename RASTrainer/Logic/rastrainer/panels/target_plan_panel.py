@@ -26,7 +26,7 @@ from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.logic.module_session import ModuleSession
 from rastrainer.slicer.logic.target_plan_logic import PlanOnImages, targetsOf
 from rastrainer.slicer.scene.plan_points import startPlacing, whyNotRemoved
-from rastrainer.slicer.scene.registration_nodes import snapshot
+from rastrainer.slicer.scene.registration_input import snapshot
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import no_progress

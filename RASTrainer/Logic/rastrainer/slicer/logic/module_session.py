@@ -37,8 +37,8 @@ from rastrainer.slicer.logic.views import BorrowedLayout, SliceFollower
 from rastrainer.slicer.program.child_process import OwnProcess
 from rastrainer.slicer.program.simulator_package import SimulatorPackage
 from rastrainer.slicer.program.simulator_setup import SimulatorSetup
-from rastrainer.slicer.scene.registration_nodes import followPlacement
 from rastrainer.slicer.scene.scenario_nodes import VolumeLoader
+from rastrainer.slicer.scene.trial_scene import followPlacement
 from rastrainer.slicer.settings import Settings
 from rastrainer.slicer.signal import Signal
 from rastrainer.study.database.database import LockWait, PostgresAddress, StudyPlace

@@ -22,19 +22,18 @@ from rastrainer.slicer.scene.error_colors import (
     showResidualArrows,
 )
 from rastrainer.slicer.scene.nodes import Role, findNode, localPoints, worldPoints
-from rastrainer.slicer.scene.registration_nodes import (
+from rastrainer.slicer.scene.registration_input import (
     Choices,
     Pairs,
     Remedy,
+    SkinNormals,
     readPairs,
     remedies,
-    showRegistration,
     snapshot,
 )
 from rastrainer.slicer.scene.scenario_nodes import TASK_ATTRIBUTE
-from rastrainer.slicer.scene.skin_normals import SkinNormals
 from rastrainer.slicer.scene.tables import showFits, showResiduals
-from rastrainer.slicer.scene.trial_scene import checkSameTask
+from rastrainer.slicer.scene.trial_scene import checkSameTask, showRegistration
 from rastrainer.slicer.signal import Signal
 
 

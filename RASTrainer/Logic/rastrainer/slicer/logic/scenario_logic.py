@@ -25,7 +25,6 @@ from rastrainer.slicer.scene.nodes import (
     labelsOf,
     worldPoints,
 )
-from rastrainer.slicer.scene.registration_nodes import followPlacement, isPlanned, showPlannedPlace
 from rastrainer.slicer.scene.robot import robotNode, setRobotVisible, showRobot
 from rastrainer.slicer.scene.scenario_nodes import (
     SKIN_COLOR,
@@ -34,7 +33,12 @@ from rastrainer.slicer.scene.scenario_nodes import (
     showTask,
     trianglesPolyData,
 )
-from rastrainer.slicer.scene.trial_scene import showOnlyTouchesOf
+from rastrainer.slicer.scene.trial_scene import (
+    followPlacement,
+    isPlanned,
+    showOnlyTouchesOf,
+    showPlannedPlace,
+)
 from rastrainer.slicer.translation import _
 from rastrainer.work_progress import Progress, no_progress
 

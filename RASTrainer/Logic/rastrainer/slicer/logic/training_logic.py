@@ -22,9 +22,12 @@ from rastrainer.scenario.scenario import Scenario, method_of
 from rastrainer.slicer.link.link import Link
 from rastrainer.slicer.link.link_status import LinkState
 from rastrainer.slicer.scene.nodes import Role, capturedPointsNode, findNode
-from rastrainer.slicer.scene.registration_nodes import showPlannedPlace
 from rastrainer.slicer.scene.scenario_nodes import showScenario, showTask
-from rastrainer.slicer.scene.trial_scene import forgetStoredTouches, noteTouchedTask
+from rastrainer.slicer.scene.trial_scene import (
+    forgetStoredTouches,
+    noteTouchedTask,
+    showPlannedPlace,
+)
 from rastrainer.slicer.signal import Listening, Signal
 from rastrainer.slicer.translation import _
 

@@ -22,7 +22,7 @@ from rastrainer.slicer.scene.nodes import (
     nodesOfClass,
     worldPoints,
 )
-from rastrainer.slicer.scene.registration_nodes import matrixOf
+from rastrainer.slicer.scene.trial_scene import matrixOf
 
 LAYOUT_TAG = "vtkMRMLLayoutNode"
 WITH_TABLE = slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpTableView

@@ -8,10 +8,11 @@ import vtk
 from rastrainer.errors import InputError
 from rastrainer.registration.registration import register
 from rastrainer.registration.target_error import target_error
-from rastrainer.slicer.scene import registration_nodes
+from rastrainer.slicer.scene import trial_scene
 from rastrainer.slicer.scene.nodes import labelsOf, localPoints, setPoints, worldPoints
-from rastrainer.slicer.scene.registration_nodes import Choices, readPairs, showRegistration
+from rastrainer.slicer.scene.registration_input import Choices, readPairs
 from rastrainer.slicer.scene.tables import showFits, showResiduals
+from rastrainer.slicer.scene.trial_scene import showRegistration
 
 LABELS = tuple(str(i + 1) for i in range(15))
 
@@ -71,7 +72,7 @@ def test_the_registration_is_that_of_vtk_landmark_transform(scene, moving, fixed
     registration = registered(moving, fixed)
     node = showRegistration(scene, registration, moving, fixed)
     expected = landmark_transform(localPoints(moving), localPoints(fixed))
-    np.testing.assert_allclose(registration_nodes.matrixOf(node), expected, atol=1e-6)
+    np.testing.assert_allclose(trial_scene.matrixOf(node), expected, atol=1e-6)
 
 
 def test_points_are_paired_by_label_whatever_their_order(scene, moving, fixed, points):
@@ -85,11 +86,11 @@ def test_points_are_paired_by_label_whatever_their_order(scene, moving, fixed, p
 def test_applying_the_result_shows_the_touches_on_the_head(scene, moving, fixed, points):
     registration = registered(moving, fixed)
     node = showRegistration(scene, registration, moving, fixed)
-    assert registration_nodes.isApplied(node)
+    assert trial_scene.isApplied(node)
     residuals = np.linalg.norm(worldPoints(moving) - points, axis=1)
     np.testing.assert_allclose(residuals, registration.residuals_mm, atol=1e-6)
-    registration_nodes.setApplied(node, False)
-    assert not registration_nodes.isApplied(node)
+    trial_scene.setApplied(node, False)
+    assert not trial_scene.isApplied(node)
     np.testing.assert_allclose(worldPoints(moving), localPoints(moving))
 
 
@@ -97,30 +98,30 @@ def test_registering_again_gives_the_same_result_whether_applied_or_not(scene, m
     first = registered(moving, fixed)
     node = showRegistration(scene, first, moving, fixed)
     np.testing.assert_array_equal(registered(moving, fixed).matrix, first.matrix)
-    registration_nodes.setApplied(node, False)
+    trial_scene.setApplied(node, False)
     assert showRegistration(scene, first, moving, fixed) is node
-    assert not registration_nodes.isApplied(node)
+    assert not trial_scene.isApplied(node)
 
 
 def test_the_transform_remembers_its_lists_even_in_a_saved_scene(
     headless_scene, moving, fixed, tmp_path
 ):
     node = showRegistration(headless_scene.scene, registered(moving, fixed), moving, fixed)
-    assert registration_nodes.movingNode(node) is moving
+    assert trial_scene.movingNode(node) is moving
     headless_scene.save(tmp_path / "trial.mrb")
     headless_scene.load(tmp_path / "trial.mrb")
     node = headless_scene.scene.GetFirstNodeByName("WorldToHead")
-    assert registration_nodes.movingNode(node).GetName() == "CapturedPoints"
-    assert labelsOf(node.GetNodeReference(registration_nodes.FIXED_REFERENCE)) == LABELS
-    assert registration_nodes.isApplied(node)
+    assert trial_scene.movingNode(node).GetName() == "CapturedPoints"
+    assert labelsOf(node.GetNodeReference(trial_scene.FIXED_REFERENCE)) == LABELS
+    assert trial_scene.isApplied(node)
 
 
 def test_deleted_lists_cause_no_trouble(scene, moving, fixed):
     node = showRegistration(scene, registered(moving, fixed), moving, fixed)
     scene.RemoveNode(moving)
-    assert registration_nodes.movingNode(node) is None
-    assert not registration_nodes.isApplied(node)
-    registration_nodes.setApplied(node, True)
+    assert trial_scene.movingNode(node) is None
+    assert not trial_scene.isApplied(node)
+    trial_scene.setApplied(node, True)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,7 @@
-"""A registration in the scene: its two lists of points, what the user changed, and its result."""
+"""What a registration takes from the scene: pairs of points, and the normals of the skin at them.
+
+The user may change the pairs. Of touches on the skin, errors differ along and across it.
+"""
 
 from __future__ import annotations
 
@@ -8,23 +11,18 @@ from typing import Any
 
 import numpy as np
 import slicer
+from vtk.util.numpy_support import vtk_to_numpy
 
-from rastrainer import transforms
 from rastrainer.errors import InputError
 from rastrainer.files.point_list import PointList, pair
+from rastrainer.head.mesh import HeadMesh, nearest_on_mesh, normal_at
 from rastrainer.registration.fits import extents
+from rastrainer.registration.localization_error import LocalizationError, error_along_surface
 from rastrainer.registration.registration import Registration
 from rastrainer.registration.warnings import SAME_PLACE, RegistrationWarning, find_order
-from rastrainer.scenario.scenario import Scenario
-from rastrainer.slicer.scene.nodes import (
-    Role,
-    findNode,
-    findOrAddNode,
-    labelsOf,
-    localPoints,
-    worldPoints,
-)
-from rastrainer.slicer.scene.robot import placeRobot
+from rastrainer.slicer.background_work import BackgroundWork
+from rastrainer.slicer.scene.nodes import labelsOf, localPoints, worldPoints
+from rastrainer.slicer.signal import Signal
 from rastrainer.slicer.translation import _
 
 USUAL_FLE_MM = 1.0
@@ -189,87 +187,93 @@ def _laterTwins(warning: RegistrationWarning, registration: Registration) -> tup
     return tuple(later)
 
 
-MOVING_REFERENCE = "RASTrainer.moving"
-FIXED_REFERENCE = "RASTrainer.fixed"
-KIND_ATTRIBUTE = "RASTrainer.registration"
-FRE_ATTRIBUTE = "RASTrainer.freMm"
+SAME_HEAD_MM = 3.0
+"""Fiducials farther from the surface do not lie on this head."""
 
 
-def showRegistration(scene: Any, registration: Registration, moving: Any, fixed: Any) -> Any:
-    """Put a registration into the scene's WorldToHead transform and return that node.
+class SkinNormals:
+    """Finds and remembers normals on a head model of the scene.
 
-    The node remembers its lists of points. Whether it is applied to the moving points stays as it
-    was; the first time it is.
+    Attributes:
+        found: emits nothing when a search in the background has found normals.
     """
-    node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
-    isFirst = movingNode(node) is None
-    node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(registration.matrix))
-    rememberLists(node, moving, fixed)
-    node.SetAttribute(KIND_ATTRIBUTE, registration.kind)
-    node.SetAttribute(FRE_ATTRIBUTE, f"{registration.fre_mm:.6f}")
-    if isFirst:
-        setApplied(node, True)
-    return node
+
+    def __init__(self, work: BackgroundWork | None = None) -> None:
+        """`work` looks for the normals on a head that is new; at once if omitted."""
+        self.found = Signal()
+        self._work = work
+        self._surface: tuple = ()
+        self._mesh: HeadMesh | None = None
+        self._known: dict[bytes, np.ndarray | None] = {}
+        self._isLooking = False
+
+    def errorOnSkin(
+        self, model: Any | None, registration: Registration, expected: np.ndarray | None = None
+    ) -> LocalizationError | None:
+        """Return the localization error of touches on the skin, separately along and across it.
+
+        None where the fixed points do not all lie on the surface of the model, or are too few:
+        then nothing is known but an error that is alike in all directions. None, too, until the
+        normals on a new head are found.
+
+        Args:
+            model: a `vtkMRMLModelNode`, or None.
+            registration: whose fixed points are touched.
+            expected: (n, 3) float, RAS mm, points that will be; they are looked for as well.
+        """
+        if model is None or model.GetPolyData() is None:
+            return None
+        self._read(model)
+        missing = [point for point in registration.fixed_mm if point.tobytes() not in self._known]
+        if missing:
+            points = missing if expected is None else [*missing, *expected]
+            if not self._look(points):
+                return None
+        normals = [self._known[point.tobytes()] for point in registration.fixed_mm]
+        if any(normal is None for normal in normals):
+            return None
+        try:
+            return error_along_surface(registration, np.array(normals))
+        except InputError:
+            return None
+
+    def _read(self, model: Any) -> None:
+        data = model.GetPolyData()
+        surface = (model.GetID(), data.GetPoints() and data.GetPoints().GetMTime())
+        if surface == self._surface:
+            return
+        self._surface, self._known, self._mesh = surface, {}, None
+        self._isLooking = False
+        if data.GetNumberOfPolys() and data.GetPolys().IsHomogeneous() == 3:
+            vertices = slicer.util.arrayFromModelPoints(model).astype(float)
+            triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+            self._mesh = HeadMesh(vertices, triangles.copy())
+
+    def _look(self, points: list[np.ndarray]) -> bool:
+        """Look for the normals at points, and return whether they are known at once."""
+        mesh, surface = self._mesh, self._surface
+        # The first search on a head takes some seconds, a further point a moment.
+        if self._work is None or self._known or mesh is None:
+            self._known |= _normalsOn(mesh, points)
+            return True
+
+        def take(normals: dict[bytes, np.ndarray | None]) -> None:
+            if surface == self._surface:
+                self._known |= normals
+                self._isLooking = False
+                self.found.emit()
+
+        if not self._isLooking:
+            self._isLooking = True
+            self._work.do(lambda: _normalsOn(mesh, points), take)
+        return False
 
 
-def rememberLists(transformNode: Any, moving: Any, fixed: Any) -> None:
-    """Store in the transform which lists of points it was computed from."""
-    transformNode.SetNodeReferenceID(MOVING_REFERENCE, moving.GetID())
-    transformNode.SetNodeReferenceID(FIXED_REFERENCE, fixed.GetID())
+def _normalsOn(mesh: HeadMesh | None, points: list[np.ndarray]) -> dict[bytes, np.ndarray | None]:
+    """Return the normal at each point; None at one that does not lie on the mesh."""
+    return {point.tobytes(): None if mesh is None else _normalOn(mesh, point) for point in points}
 
 
-def movingNode(transformNode: Any) -> Any | None:
-    """Return the list of touched points that the transform was made from, if it still exists."""
-    return transformNode.GetNodeReference(MOVING_REFERENCE)
-
-
-def isApplied(transformNode: Any) -> bool:
-    """Return whether the touched points are shown on the head."""
-    moving = movingNode(transformNode)
-    return moving is not None and moving.GetTransformNodeID() == transformNode.GetID()
-
-
-def setApplied(transformNode: Any, applied: bool) -> None:
-    """Show the touched points on the head, or where they are in the robot's World."""
-    moving = movingNode(transformNode)
-    if moving is not None:
-        moving.SetAndObserveTransformNodeID(transformNode.GetID() if applied else None)
-        if moving.GetDisplayNode() is not None:
-            # On the head, the fiducials beside them have the same numbers.
-            moving.GetDisplayNode().SetPointLabelsVisibility(not applied)
-
-
-def matrixOf(transformNode: Any) -> np.ndarray:
-    """Return the transform to the parent, (4, 4) float, mm."""
-    return slicer.util.arrayFromTransformMatrix(transformNode)
-
-
-PLANNED = "planned"
-
-
-def showPlannedPlace(scene: Any, scenario: Scenario, moving: Any, fixed: Any) -> Any:
-    """Place World as the scenario plans it, and return the WorldToHead transform.
-
-    The head of a trial is placed a little differently; only its registration shows where.
-    """
-    known = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
-    wasApplied = known is None or isApplied(known)
-    node = findOrAddNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD, "WorldToHead")
-    matrix = transforms.inverse(scenario.head_to_world)
-    node.SetMatrixTransformToParent(slicer.util.vtkMatrixFromArray(matrix))
-    node.SetAttribute(KIND_ATTRIBUTE, PLANNED)
-    node.RemoveAttribute(FRE_ATTRIBUTE)
-    rememberLists(node, moving, fixed)
-    setApplied(node, wasApplied)
-    return node
-
-
-def isPlanned(transform: Any) -> bool:
-    """Return whether the transform is the planned pose rather than a registration."""
-    return transform.GetAttribute(KIND_ATTRIBUTE) == PLANNED
-
-
-def followPlacement(scene: Any) -> None:
-    """Show the robot where the touched points are shown: at the head, or in World."""
-    node = findNode(scene, "vtkMRMLLinearTransformNode", Role.WORLD_TO_HEAD)
-    placeRobot(scene, node if node is not None and isApplied(node) else None)
+def _normalOn(mesh: HeadMesh, point: np.ndarray) -> np.ndarray | None:
+    nearest = nearest_on_mesh(mesh, point)
+    return normal_at(mesh, nearest) if nearest.distance <= SAME_HEAD_MM else None
