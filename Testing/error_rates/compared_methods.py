@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.report.method_comparison import TITLES
-from rastrainer.statistics.crossover import fit_differences, is_separable
 from rastrainer.statistics.intervals import ALPHA, scipy_module
-from rastrainer.statistics.paired import holm
+from rastrainer.statistics.paired import fit_differences, holm, is_separable
 from rastrainer.study.study_data import StudyData, TrialRow
 from Testing.error_rates.measured import Measured, share_of, share_text
 

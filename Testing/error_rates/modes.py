@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rastrainer.statistics.crossover import fit_differences
 from rastrainer.statistics.intervals import scipy_module, small_sample_factor
-from rastrainer.statistics.paired import compare_paired, rank_test
+from rastrainer.statistics.paired import compare_paired, fit_differences, rank_test
 from rastrainer_simulator.virtual.outcome_model import OutcomeModel, rejection_rates
 from Testing.error_rates.measured import Measured, share_of, share_text
 

@@ -21,9 +21,8 @@ import numpy as np
 
 from rastrainer.protocol import FIDUCIAL_COUNT
 from rastrainer.report.comparisons import CONFIRMATORY
-from rastrainer.statistics.crossover import fit_differences, is_separable
 from rastrainer.statistics.intervals import ALPHA, scipy_module
-from rastrainer.statistics.paired import holm, rank_test
+from rastrainer.statistics.paired import fit_differences, holm, is_separable, rank_test
 from rastrainer.trial.scoring import ScoreMeasures, ScoreReference, score_trial
 
 DOF = 3 * FIDUCIAL_COUNT - 6

@@ -8,8 +8,12 @@ import scipy.stats
 
 from rastrainer.errors import InputError
 from rastrainer.report.statistical_methods import what_cannot_be_concluded
-from rastrainer.statistics.crossover import fit_differences, is_separable
-from rastrainer.statistics.paired import compare_paired, rank_sum_test
+from rastrainer.statistics.paired import (
+    compare_paired,
+    fit_differences,
+    is_separable,
+    rank_sum_test,
+)
 
 rng = np.random.default_rng(8)
 ORDERS = {

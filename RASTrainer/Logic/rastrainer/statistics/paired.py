@@ -1,5 +1,11 @@
 """Two conditions on the same subjects: difference, interval, effect size and tests.
 
+A subject has more practice, or is more tired, in the later condition. With balanced orders half of
+the subjects gain by this in one condition and half in the other: the mean difference is right, but
+the differences scatter by twice the effect of the period, so a paired test finds little. The
+regression here removes it (for two sequences AB and BA it is the usual analysis of a crossover:
+Hills and Armitage 1979; Senn 2002, chapter 3).
+
 Wilcoxon's signed-rank and rank-sum tests are exact for any number of ties.
 """
 
@@ -11,12 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.errors import InputError
-from rastrainer.statistics.crossover import (
-    Sequences,
-    compare_sequences,
-    fit_differences,
-    is_separable,
-)
 from rastrainer.statistics.intervals import (
     CONFIDENCE,
     coefficient,
@@ -24,6 +24,129 @@ from rastrainer.statistics.intervals import (
     scipy_module,
     small_sample_factor,
 )
+
+MIN_SUBJECTS = 4
+"""Difference and period take two; one degree of freedom for the variance is not enough."""
+
+
+@dataclass(frozen=True)
+class DifferenceFit:
+    """The mean of differences, and the effect of the period if separated.
+
+    Arrays have the shape of the data without its last axis.
+
+    Attributes:
+        mean: Difference for subjects unaffected by the order.
+        standard_error: Of the mean.
+        sd: Standard deviation of the differences about the fit.
+        dof: Degrees of freedom.
+        later: Effect of doing a condition one period later, or None.
+        later_error: Its standard error, or None.
+    """
+
+    mean: np.ndarray
+    standard_error: np.ndarray
+    sd: np.ndarray
+    dof: int
+    later: np.ndarray | None = None
+    later_error: np.ndarray | None = None
+
+
+def is_separable(order: np.ndarray | None) -> bool:
+    """Return whether the effect of the period can be separated from that of the conditions.
+
+    Args:
+        order: (n,) float, by how many periods each subject did the second condition later than the
+            first: 1 for AB, -1 for BA; None where that is unknown.
+    """
+    if order is None or len(order) < MIN_SUBJECTS:
+        return False
+    return bool(np.ptp(order) > 0 and np.min(order) <= 0 <= np.max(order))
+
+
+def fit_differences(differences: np.ndarray, order: np.ndarray | None = None) -> DifferenceFit:
+    """Return the mean of (…, n) float differences, second condition minus first.
+
+    Args:
+        differences: A study in the last axis.
+        order: As for `is_separable`; where it is not separable, the plain mean is returned.
+    """
+    n = differences.shape[-1]
+    means = differences.mean(axis=-1)
+    centered = differences - means[..., None]
+    if order is None or not is_separable(order):
+        sd = np.sqrt((centered**2).sum(axis=-1) / (n - 1))
+        return DifferenceFit(means, sd / np.sqrt(n), sd, n - 1)
+    offsets = order - order.mean()
+    squares = float(offsets @ offsets)
+    later = centered @ offsets / squares
+    residuals = centered - later[..., None] * offsets
+    sd = np.sqrt((residuals**2).sum(axis=-1) / (n - 2))
+    return DifferenceFit(
+        mean=means - later * order.mean(),
+        standard_error=sd * np.sqrt(1 / n + order.mean() ** 2 / squares),
+        sd=sd,
+        dof=n - 2,
+        later=later,
+        later_error=sd / np.sqrt(squares),
+    )
+
+
+MIN_SEQUENCE_SIZE = 2
+"""Subjects of a sequence, to estimate how much they scatter."""
+
+
+@dataclass(frozen=True)
+class Sequences:
+    """Subjects by the condition that they did first.
+
+    Attributes:
+        first_first: Number who did the first condition first.
+        second_first: Number who did the second one first.
+        later: Effect of one period later.
+        later_interval: Its 95 % interval.
+        between: Mean over both conditions of those who did the second one first, minus that of the
+            others; None with fewer than two subjects in a sequence. Without carry-over it is 0 but
+            for chance.
+        between_interval: Its 95 % interval.
+    """
+
+    first_first: int
+    second_first: int
+    later: float
+    later_interval: tuple[float, float]
+    between: float | None
+    between_interval: tuple[float, float] | None
+
+
+def compare_sequences(
+    first: np.ndarray, second: np.ndarray, order: np.ndarray, fit: DifferenceFit
+) -> Sequences:
+    """Return the effects of the order on (n,) float values of both conditions.
+
+    `order` is that of `is_separable`, and `fit` that of the differences, with the period.
+
+    Raises:
+        ValueError: the fit does not separate the period.
+    """
+    if fit.later is None or fit.later_error is None:
+        raise ValueError("The effect of the period is not separated.")
+    later = coefficient(float(fit.later), float(fit.later_error), fit.dof)
+    means = (first + second) / 2
+    groups = means[order < 0], means[order > 0]
+    between, between_interval = None, None
+    if min(map(len, groups)) >= MIN_SEQUENCE_SIZE and np.ptp(means) > 0:
+        between = float(groups[0].mean() - groups[1].mean())
+        limits = scipy_module("stats").ttest_ind(*groups).confidence_interval(CONFIDENCE)
+        between_interval = (float(limits.low), float(limits.high))
+    return Sequences(
+        first_first=len(groups[1]),
+        second_first=len(groups[0]),
+        later=later.value,
+        later_interval=later.interval,
+        between=between,
+        between_interval=between_interval,
+    )
 
 
 @dataclass(frozen=True)
@@ -56,7 +179,7 @@ class PairedComparison:
     p: float
     hedges_gz: float | None
     gz_interval: tuple[float, float] | None
-    ranks: SignedRankTest | RankSumTest | None
+    ranks: RankTest | None
     sequences: Sequences | None = None
 
 
@@ -68,11 +191,7 @@ def compare_paired(
     The t-test is Student's (1908), with the period as a covariate where the order allows it. The
     effect size is Cohen's d_z with Hedges' exact correction (1981).
 
-    Args:
-        first: One condition.
-        second: The other one.
-        order: (n,) float, by how many periods each subject did the second condition later than the
-            first; None where that is unknown.
+    `order` is that of `is_separable`.
 
     Raises:
         InputError: fewer than two subjects, or all differences are equal.
@@ -88,7 +207,10 @@ def compare_paired(
         raise InputError("All subjects differ by the same amount: no test can be computed.")
     error = float(fit.standard_error)
     t, dof = mean / error, fit.dof
-    gz, gz_interval = _effect_size(mean, sd, error, dof)
+    gz, gz_interval, factor = None, None, small_sample_factor(dof)
+    if factor is not None:
+        low, high = noncentrality_interval(t, dof)
+        gz, gz_interval = factor * mean / sd, (low * error / sd, high * error / sd)
     return PairedComparison(
         n=n,
         mean_difference=mean,
@@ -130,19 +252,7 @@ def holm(p_values: np.ndarray) -> np.ndarray:
     return adjusted
 
 
-def _effect_size(
-    mean: float, sd: float, error: float, dof: int
-) -> tuple[float | None, tuple[float, float] | None]:
-    factor = small_sample_factor(dof)
-    if factor is None:
-        return None, None
-    low, high = noncentrality_interval(mean / error, dof)
-    return factor * mean / sd, (low * error / sd, high * error / sd)
-
-
-def rank_test(
-    differences: np.ndarray, order: np.ndarray | None
-) -> SignedRankTest | RankSumTest | None:
+def rank_test(differences: np.ndarray, order: np.ndarray | None) -> RankTest | None:
     """Return the rank test that goes with (n,) differences: with the period, where it is separated.
 
     Args:
@@ -159,25 +269,23 @@ def rank_test(
     return rank_sum_test(later_minus_earlier[order > 0], later_minus_earlier[order < 0])
 
 
-MAX_SIGNED = 400
-
-
 @dataclass(frozen=True)
-class SignedRankTest:
-    """The signed-rank test of differences.
+class RankTest:
+    """A test on ranks.
 
     Attributes:
-        n: Number of differences that are not 0.
-        p: Two-sided, exact.
-        smallest_p: Smallest possible p for these differences.
+        p: Two-sided; exact, or by the normal approximation for more than 100 values of two groups.
+        smallest_p: Smallest possible p for these ranks; 0 where p is approximate.
     """
 
-    n: int
     p: float
     smallest_p: float
 
 
-def signed_rank_test(differences: np.ndarray) -> SignedRankTest:
+MAX_SIGNED = 400
+
+
+def signed_rank_test(differences: np.ndarray) -> RankTest:
     """Test whether (n,) float differences scatter about 0.
 
     Zeros are left out (Wilcoxon 1945); tied sizes share their mean rank. The distribution is that
@@ -192,74 +300,48 @@ def signed_rank_test(differences: np.ndarray) -> SignedRankTest:
         raise InputError(
             f"The signed-rank test needs 1 to {MAX_SIGNED} differences that are not 0."
         )
-    # Twice the ranks, since tied ones are halves: whole numbers can be counted.
-    doubled = np.rint(2 * scipy_module("stats").rankdata(np.abs(values))).astype(int)
-    counts = _distribution(doubled)
-    observed = int(doubled[values > 0].sum())
-    lower, upper = counts[: observed + 1].sum(), counts[observed:].sum()
-    return SignedRankTest(
-        n=len(values),
-        p=float(min(1.0, 2 * min(lower, upper))),
-        smallest_p=float(min(1.0, 2 * counts[0])),
-    )
-
-
-def _distribution(doubled_ranks: np.ndarray) -> np.ndarray:
-    """Return the probability of each sum of ranks with random signs, (sum + 1,) float."""
-    counts = np.zeros(int(doubled_ranks.sum()) + 1)
-    counts[0] = 1.0
-    for rank in doubled_ranks:
-        counts[rank:] += counts[: len(counts) - rank].copy()
-        counts /= 2
-    return counts
+    doubled = _doubled(scipy_module("stats").rankdata(np.abs(values)))
+    chances = np.zeros(int(doubled.sum()) + 1)
+    chances[0] = 1.0
+    for rank in doubled:
+        chances[rank:] += chances[: len(chances) - rank].copy()
+        chances /= 2
+    return _exact_test(chances, int(doubled[values > 0].sum()))
 
 
 MAX_EXACT_SUMS = 100
 
 
-@dataclass(frozen=True)
-class RankSumTest:
-    """The rank-sum test of two groups.
-
-    Attributes:
-        p: Two-sided; exact, or by the normal approximation for more than 100 values.
-        smallest_p: Smallest possible p; 0 for more than 100 values.
-    """
-
-    p: float
-    smallest_p: float
-
-
-def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankSumTest | None:
+def rank_sum_test(one: np.ndarray, other: np.ndarray) -> RankTest | None:
     """Test whether (n,) and (m,) float values have equal location; None if a group is empty.
 
     The distribution is that of all draws of n of the observed ranks; tied values share their mean
     rank, which scipy's exact test does not support.
     """
-    if not len(one) or not len(other):
+    drawn = len(one)
+    if not drawn or not len(other):
         return None
     stats = scipy_module("stats")
     ranks = stats.rankdata(np.concatenate([one, other]))
     if len(ranks) > MAX_EXACT_SUMS:
-        p = float(stats.mannwhitneyu(one, other, method="asymptotic").pvalue)
-        return RankSumTest(p, 0.0)
-    # Twice the ranks, since tied ones are halves: whole numbers can be counted.
-    doubled = np.rint(2 * ranks).astype(int)
-    chances = _sum_probabilities(doubled, len(one))
-    observed = int(doubled[: len(one)].sum())
+        return RankTest(float(stats.mannwhitneyu(one, other, method="asymptotic").pvalue), 0.0)
+    doubled = _doubled(ranks)
+    counts = np.zeros((drawn + 1, int(doubled.sum()) + 1))
+    counts[0, 0] = 1.0
+    for rank in doubled:
+        counts[1:, rank:] += counts[:-1, : counts.shape[1] - rank].copy()
+    chances = counts[drawn] / math.comb(len(doubled), drawn)
+    return _exact_test(chances, int(doubled[:drawn].sum()))
+
+
+def _doubled(ranks: np.ndarray) -> np.ndarray:
+    """Return twice the ranks, since tied ones are halves: whole numbers can be counted."""
+    return np.rint(2 * ranks).astype(int)
+
+
+def _exact_test(chances: np.ndarray, observed: int) -> RankTest:
+    """Return the test of an observed sum of ranks by the probability of each, (sum + 1,) float."""
     lower, upper = chances[: observed + 1].sum(), chances[observed:].sum()
     possible = np.flatnonzero(chances)
     smallest = min(chances[possible[0]], chances[possible[-1]])
-    return RankSumTest(
-        p=float(min(1.0, 2 * min(lower, upper))),
-        smallest_p=float(min(1.0, 2 * smallest)),
-    )
-
-
-def _sum_probabilities(doubled_ranks: np.ndarray, drawn: int) -> np.ndarray:
-    """Return the probability of each sum of `drawn` ranks, (sum + 1,) float."""
-    counts = np.zeros((drawn + 1, int(doubled_ranks.sum()) + 1))
-    counts[0, 0] = 1.0
-    for rank in doubled_ranks:
-        counts[1:, rank:] += counts[:-1, : counts.shape[1] - rank].copy()
-    return counts[drawn] / math.comb(len(doubled_ranks), drawn)
+    return RankTest(float(min(1.0, 2 * min(lower, upper))), float(min(1.0, 2 * smallest)))
