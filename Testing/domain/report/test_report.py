@@ -14,7 +14,7 @@ from scipy.stats import pearsonr
 
 from rastrainer.errors import InputError
 from rastrainer.report.comparisons import compare_modes, mode_delays, paired_means
-from rastrainer.report.markup import paragraph
+from rastrainer.report.elements import paragraph
 from rastrainer.report.published_tables import (
     cohort_scores,
     complexity_correlation,

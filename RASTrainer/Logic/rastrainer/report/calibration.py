@@ -6,16 +6,20 @@ from collections.abc import Mapping
 
 from rastrainer.number_text import fixed
 from rastrainer.registration.target_error import INTERVAL_NOTE
-from rastrainer.report.markup import bullets, figure, paragraph, section, table
-from rastrainer.report.svg import (
+from rastrainer.report.elements import (
     FAINT,
     GRID,
     INK,
     SCATTER_LEFT,
     Axis,
     Sheet,
+    bullets,
+    figure,
     mode_color,
+    paragraph,
     scatter_sheet,
+    section,
+    table,
 )
 from rastrainer.statistics.intervals import Proportion
 from rastrainer.study.outcomes import mode_title, short_mode_title

@@ -9,9 +9,23 @@ import numpy as np
 
 from rastrainer.number_text import fixed, p_text, percent, significant
 from rastrainer.report.comparisons import versions_note
-from rastrainer.report.markup import Cell, Line, bullets, figure, paragraph, section, table
+from rastrainer.report.elements import (
+    FAINT,
+    INK,
+    Axis,
+    Cell,
+    Line,
+    Sheet,
+    axis_over,
+    bullets,
+    figure,
+    mode_color,
+    paragraph,
+    section,
+    table,
+    y_grid,
+)
 from rastrainer.report.paired_statistics import interval_text
-from rastrainer.report.svg import FAINT, INK, Axis, Sheet, axis_over, mode_color, y_grid
 from rastrainer.statistics.trend import (
     ALPHA,
     MIN_FIT_TRIALS,

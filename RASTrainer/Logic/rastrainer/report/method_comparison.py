@@ -14,7 +14,7 @@ import numpy as np
 from rastrainer.number_text import fixed, p_text
 from rastrainer.protocol import RegistrationMethod
 from rastrainer.report.comparisons import ModeComparison, compare_modes, tested, with_adjusted_p
-from rastrainer.report.markup import (
+from rastrainer.report.elements import (
     Cell,
     Line,
     bullets,

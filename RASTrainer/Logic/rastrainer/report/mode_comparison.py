@@ -9,19 +9,24 @@ import numpy as np
 
 from rastrainer.number_text import fixed
 from rastrainer.report.comparisons import ModeComparison, tested
-from rastrainer.report.markup import Cell, Line, figure, paragraph, section, table
-from rastrainer.report.paired_statistics import interval_text
-from rastrainer.report.svg import (
+from rastrainer.report.elements import (
     FAINT,
     INK,
     Axis,
+    Cell,
+    Line,
     Sheet,
     axis_over,
+    figure,
     legend,
     mode_color,
     number,
+    paragraph,
+    section,
+    table,
     y_grid,
 )
+from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.paired import PairedComparison
 from rastrainer.study.outcomes import (
     MAIN_OUTCOMES,

@@ -8,15 +8,21 @@ import numpy as np
 
 from rastrainer.number_text import fixed, p_text, signed, significant
 from rastrainer.report.comparisons import ModeComparison, tested
-from rastrainer.report.markup import Cell, Line, figure, heading, paragraph, section, table
-from rastrainer.report.svg import (
+from rastrainer.report.elements import (
     FAINT,
     INK,
     Axis,
+    Cell,
+    Line,
     Sheet,
     axis_over,
+    figure,
+    heading,
     mode_color,
     number,
+    paragraph,
+    section,
+    table,
     y_grid,
 )
 from rastrainer.statistics.intervals import ALPHA

@@ -9,9 +9,16 @@ import numpy as np
 
 from rastrainer.number_text import counted, percent
 from rastrainer.report.comparisons import SCORE, compared_version, versions_note
+from rastrainer.report.elements import (
+    bullets,
+    figure,
+    heading,
+    mode_color,
+    paragraph,
+    section,
+    table,
+)
 from rastrainer.report.learning import learning_curves
-from rastrainer.report.markup import bullets, figure, heading, paragraph, section, table
-from rastrainer.report.svg import mode_color
 from rastrainer.statistics.competence import (
     FALSE_DISCOVERY,
     LcCusum,

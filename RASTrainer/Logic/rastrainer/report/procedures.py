@@ -10,8 +10,17 @@ from typing import Any
 import numpy as np
 
 from rastrainer.number_text import counted, fixed, percent
-from rastrainer.report.markup import bullets, figure, heading, paragraph, section, table
-from rastrainer.report.svg import INK, SCATTER_LEFT, scatter_sheet
+from rastrainer.report.elements import (
+    INK,
+    SCATTER_LEFT,
+    bullets,
+    figure,
+    heading,
+    paragraph,
+    scatter_sheet,
+    section,
+    table,
+)
 from rastrainer.statistics.intervals import Estimate, mean
 from rastrainer.study.study_data import StudyData, TrialRow
 from rastrainer.trial.procedure_outcome import (

@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted, fixed, p_phrase, significant
-from rastrainer.report.markup import (
+from rastrainer.report.elements import (
     Cell,
     Line,
     bullets,

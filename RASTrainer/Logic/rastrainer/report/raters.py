@@ -9,7 +9,7 @@ import numpy as np
 
 from rastrainer.errors import InputError
 from rastrainer.number_text import counted, fixed
-from rastrainer.report.markup import Line, heading, paragraph, section, table
+from rastrainer.report.elements import Line, heading, paragraph, section, table
 from rastrainer.statistics.agreement import (
     FEWEST,
     Agreement,

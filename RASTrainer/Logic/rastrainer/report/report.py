@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import html
 import itertools
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -19,8 +21,8 @@ from rastrainer.report.comparisons import (
     versions_note,
     with_one_score_version,
 )
+from rastrainer.report.elements import bullets, paragraph, section
 from rastrainer.report.learning import learning
-from rastrainer.report.markup import bullets, page, paragraph, section
 from rastrainer.report.method_comparison import method_comparison, shifted_skin
 from rastrainer.report.mode_comparison import distributions, mode_comparison, motion
 from rastrainer.report.paired_statistics import findings, order_caveat, paired_statistics
@@ -115,7 +117,7 @@ def report_html(data: StudyData, made_utc: str | None = None) -> str:
         f"RASTrainer {rastrainer.__version__}. For teaching and research; not a medical device. "
         "Trainees are named by pseudonyms only."
     )
-    return page(data.title, subtitle, sections, footer)
+    return _page(data.title, subtitle, sections, footer)
 
 
 def _summary(comparisons: list[ModeComparison], gap: str, *left_out: str) -> str:
@@ -166,3 +168,69 @@ def methods_note(data: StudyData) -> str:
         f"those by {compared} and leaves out {others}. trials.csv has all of them, each with its "
         "method."
     )
+
+
+STYLE = """
+@page { size: A4; margin: 16mm 15mm 18mm; }
+* { box-sizing: border-box; }
+html { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
+body { margin: 0 auto; max-width: 190mm; padding: 10mm 8mm; color: #1f2933; background: #fff;
+  font: 10.5pt/1.5 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-serif; }
+header { border-bottom: 3px solid #1f2933; margin-bottom: 7mm; padding-bottom: 3mm; }
+header .kind { color: #6b7785; font-size: 9pt; letter-spacing: .08em; text-transform: uppercase; }
+h1 { font-size: 20pt; line-height: 1.2; margin: 1mm 0 2mm; }
+h2 { font-size: 13.5pt; margin: 9mm 0 2.5mm; padding-top: 2mm; border-top: 1px solid #cbd2d9;
+  break-after: avoid; }
+h3 { font-size: 10.5pt; margin: 5mm 0 1.5mm; break-after: avoid; }
+p { margin: 0 0 2.5mm; orphans: 3; widows: 3; }
+p:has(+ table) { break-after: avoid; break-inside: avoid; }
+ul { margin: 0 0 3mm; padding-left: 5mm; } li { margin-bottom: 1.2mm; }
+.lead { font-size: 11.5pt; } .small, figcaption { color: #52606d; font-size: 9pt; }
+.warning { background: #fff7e6; border-left: 4px solid #d9922b; padding: 2.5mm 4mm;
+  break-inside: avoid; }
+figure { margin: 3mm 0 4mm; }
+.chart, .chart-alone { break-inside: avoid; }
+figcaption { margin-top: 1mm; break-before: avoid; break-inside: avoid; }
+.charts { display: flex; flex-wrap: wrap; gap: 3mm; }
+.charts .chart { flex: 1 1 45%; min-width: 70mm; max-width: 50%; }
+.chart svg, .chart-alone svg { display: block; width: 100%; height: auto; }
+table { border-collapse: collapse; font-size: 9pt; margin: 1mm 0 4mm; width: 100%;
+  break-inside: avoid; font-variant-numeric: tabular-nums; }
+table.long { break-inside: auto; } tr { break-inside: avoid; }
+th, td { white-space: nowrap; padding: 1.1mm 1.8mm; border-bottom: 1px solid #e3e7ec;
+  text-align: right; }
+thead th, thead td { border-bottom: 1.5px solid #1f2933; font-weight: 600; vertical-align: bottom; }
+tbody th { font-weight: inherit; }
+th:first-child, td:first-child, td.text, th.text { text-align: left; white-space: normal; }
+table.wide { font-size: 8pt; } .wide th, .wide td { padding: 1.1mm 0.9mm; }
+.wide thead th { white-space: normal; }
+.tasks th:first-child, .tasks td:first-child { white-space: nowrap; }
+thead th.group, thead td.group { text-align: center; border-bottom: 1px solid #9aa5b1; }
+td.marginal { font-weight: 600; }
+.total { text-align: center; font-weight: 700; border-top: 1.5px solid #1f2933; }
+caption { text-align: left; font-weight: 600; padding-bottom: 1mm; }
+footer { margin-top: 10mm; padding-top: 2mm; border-top: 1px solid #cbd2d9; color: #6b7785;
+  font-size: 8.5pt; }
+@media print { body { padding: 0; max-width: none; font-size: 9.5pt; } h2 { margin-top: 6mm; } }
+"""
+
+
+def _page(title: str, subtitle: str, sections: Sequence[str], footer: str) -> str:
+    """Return the whole page; the sections are HTML, the other arguments plain text."""
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
+<title>{html.escape(title)}</title>
+<style>{STYLE}</style>
+</head>
+<body>
+<header><div class="kind">RASTrainer study report</div><h1>{html.escape(title)}</h1>
+<div class="small">{html.escape(subtitle)}</div></header>
+{"".join(part for part in sections if part)}
+<footer>{html.escape(footer)}</footer>
+</body>
+</html>
+"""

@@ -10,7 +10,7 @@ import numpy as np
 import rastrainer
 from rastrainer.number_text import counted, p_text, percent
 from rastrainer.report.comparisons import ModeComparison, compared_version
-from rastrainer.report.markup import bullets, heading, paragraph, section, table
+from rastrainer.report.elements import bullets, heading, paragraph, section, table
 from rastrainer.statistics.intervals import (
     ALPHA,
     TARGET_POWER,

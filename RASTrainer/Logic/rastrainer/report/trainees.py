@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from rastrainer.number_text import fixed, p_phrase
-from rastrainer.report.markup import (
+from rastrainer.report.elements import (
     Cell,
     Line,
     bullets,

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rastrainer.number_text import counted, fixed
-from rastrainer.report.markup import Cell, Line, heading, paragraph, section, table
+from rastrainer.report.elements import Cell, Line, heading, paragraph, section, table
 from rastrainer.report.paired_statistics import interval_text
 from rastrainer.statistics.intervals import Estimate, Proportion, mean, proportion
 from rastrainer.statistics.variation import (

@@ -7,8 +7,8 @@ Nothing is lost and nothing counts twice, whatever is cut on the way. The simula
 until it is acknowledged, and it is acknowledged only when it is in the study; what is in the study
 without its truth is scored again over the next connection, and after the study was away.
 
-A trial is scored in the order in which nobody can cheat: the registration is submitted, which makes
-it final; the simulator reveals the truth; the score is computed, sent and stored.
+A trial is scored in an order that rules out cheating: the registration is submitted, which makes it
+final; the simulator reveals the truth; the score is computed, sent and stored.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ from rastrainer.trial.record import TrialRecord
 RETRY_S = 5.0
 """After a study was locked or unreachable, until its trials are looked for again."""
 ANSWER_TIMEOUT_S = 60.0
-"""Nobody waits for the answers to a trial, and what times out is requested again only over the next
+"""No user waits for these answers, and what times out is requested again only over the next
 connection: a busy simulator gets the time it needs."""
 
 End = Callable[[Exception], None]

@@ -1,6 +1,6 @@
 """A program and all that it starts, ended together: a session on POSIX, a job object on Windows.
 
-On Windows the program is started suspended and goes on once it is in the job: what it starts is in
+On Windows the program is started suspended and resumed once it is in the job: what it starts is in
 it, too. `subprocess` closes the handle of its first thread, which is therefore found by the
 process. The calls are those of Microsoft's documentation of kernel32.
 """

@@ -1,11 +1,110 @@
-"""A sheet to draw on: shapes as SVG text, and axes with round numbers."""
+"""What the sections of a report are made of: HTML with escaped text, and charts drawn as SVG.
+
+A chart is a sheet with shapes, and axes with round numbers; a figure of the page holds charts.
+"""
 
 from __future__ import annotations
 
 import html
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+MAX_KEPT_TOGETHER = 10
+"""Rows; keeping longer tables on one page could leave half a page empty."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A table cell: text, column span, color and class."""
+
+    text: str
+    span: int = 1
+    color: str = ""
+    kind: str = ""
+
+    def html(self, tag: str, scope: str = "col") -> str:
+        """Return the cell; `scope` is that of a `th`."""
+        attributes = f' colspan="{self.span}"' if self.span > 1 else ""
+        attributes += f' class="{self.kind}"' if self.kind else ""
+        attributes += f' style="background:{self.color}"' if self.color else ""
+        if tag == "th":
+            if not self.text:
+                # A corner is no header; a screen reader would read it.
+                tag = "td"
+            else:
+                attributes += f' scope="{scope}{"group" if self.span > 1 else ""}"'
+        return f"<{tag}{attributes}>{html.escape(self.text)}</{tag}>"
+
+
+Line = list[Cell | str]
+"""A row of a table."""
+
+
+def table(
+    headers: Sequence[Sequence[Cell | str]], rows: Sequence[Sequence[Cell | str]], kind: str = ""
+) -> str:
+    """Return a table; the first cell of each row is its header.
+
+    Tables of more than `MAX_KEPT_TOGETHER` rows may break across printed pages.
+    """
+    if len(rows) > MAX_KEPT_TOGETHER:
+        kind = " ".join(filter(None, (kind, "long")))
+    head = "".join(
+        f"<tr>{''.join(_cell(cell).html('th') for cell in line)}</tr>" for line in headers
+    )
+    body = "".join(f"<tr>{_row(line)}</tr>" for line in rows)
+    return f'<table class="{kind}"><thead>{head}</thead><tbody>{body}</tbody></table>'
+
+
+def section(title: str, *parts: str) -> str:
+    """Return a section with its heading."""
+    return f"<section><h2>{html.escape(title)}</h2>{''.join(parts)}</section>"
+
+
+def heading(text: str) -> str:
+    """Return a heading within a section."""
+    return f"<h3>{html.escape(text)}</h3>"
+
+
+def paragraph(text: str, kind: str = "") -> str:
+    """Return a paragraph."""
+    attribute = f' class="{kind}"' if kind else ""
+    return f"<p{attribute}>{_flowing(text)}</p>"
+
+
+def bullets(texts: Sequence[str]) -> str:
+    """Return a list."""
+    return f"<ul>{''.join(f'<li>{_flowing(text)}</li>' for text in texts)}</ul>"
+
+
+def figure(charts: Sequence[str], caption: str) -> str:
+    """Return charts, which are HTML already, side by side if they fit."""
+    inside = "".join(f'<div class="chart">{chart}</div>' for chart in charts)
+    kind = "charts" if len(charts) > 1 else "chart-alone"
+    return (
+        f'<figure><div class="{kind}">{inside}</div>'
+        f"<figcaption>{_flowing(caption)}</figcaption></figure>"
+    )
+
+
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|(?:mm|s|of 100)\b))")
+
+
+def _flowing(text: str) -> str:
+    """Return escaped text in which no line ends between a number and its unit."""
+    return html.escape(_BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", text))
+
+
+def _row(line: Sequence[Cell | str]) -> str:
+    first, *others = map(_cell, line)
+    return first.html("th", "row") + "".join(cell.html("td") for cell in others)
+
+
+def _cell(content: Cell | str) -> Cell:
+    return content if isinstance(content, Cell) else Cell(content)
+
 
 INK = "#1f2933"
 FAINT = "#6b7785"
