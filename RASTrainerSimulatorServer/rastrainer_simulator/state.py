@@ -54,11 +54,11 @@ class OperatorInput:
 
 
 HANDS_OFF = OperatorInput()
-"""Nobody touches the sticks and no command has come."""
+"""The sticks are at rest and no command has arrived."""
 
 
 class EventKind(str, Enum):
-    """What happened in a tick; sounds, vibration and the journal follow from these.
+    """Events of a tick, from which sounds, vibration and the journal follow.
 
     `TRACE` is one point of a trace, `STROKE` the beginning, the end or the undoing of a stroke.
     """
@@ -80,7 +80,7 @@ class EventKind(str, Enum):
 
 
 class TouchStage(str, Enum):
-    """How the next touch is going; the last four are errors, which views show in red.
+    """The state of the next touch; the last four are errors, which views show in red.
 
     `ON_SKIN`: the tip is on the skin where a touch counts. `TOO_DEEP`: it is pressed in.
     `ELSEWHERE`: it is on the skin away from the next point. `SHAFT`: the tool touches the head
@@ -241,7 +241,7 @@ class SimulationState:
 
     @property
     def plan_in_world(self) -> PlannedLine | None:
-        """The planned line at hand, as the registration in use shows it; None without one."""
+        """The current planned line, as the registration in use shows it; None without one."""
         procedure = self.training.procedure
         here = None if procedure is None else procedure.present
         return None if here is None else here.line
@@ -254,7 +254,7 @@ class SimulationState:
 
     @property
     def alignment(self) -> GuideAlignment | None:
-        """How the guide lies to the planned line at hand; None without one."""
+        """The position of the guide relative to the current planned line; None without one."""
         line = self.plan_in_world
         return None if line is None else GuideAlignment.of(self.guide_axis, line)
 
@@ -274,7 +274,7 @@ class StartingPoint:
 
     @classmethod
     def after(cls, state: SimulationState) -> StartingPoint:
-        """Return the point that follows a state."""
+        """Return the point of continuation after a state."""
         return cls(state.tick, state.sim_time, state.training.revision, state.camera)
 
 

@@ -1,4 +1,4 @@
-"""What of a trial's state is touched, traced, registered and carried out; m, rad and s."""
+"""What was touched, traced, registered and carried out in a trial; m, rad and s."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class TraceState:
 
     @property
     def is_full(self) -> bool:
-        """Whether it takes no further point."""
+        """Whether it accepts no further point."""
         return len(self.points) >= MAX_TRACE_POINTS
 
     def begun(self) -> TraceState:
@@ -170,7 +170,7 @@ class Tool(str, Enum):
 
 
 EXACT_M, EXACT_RAD = 5e-5, math.radians(0.05)
-"""The robot aligns the guide at least so exactly by itself; no hand does."""
+"""The robot by itself aligns the guide at least this exactly; no hand does."""
 
 TOOL_OF_PHASE: Mapping[Phase, Tool] = {
     Phase.ALIGNING: Tool.GUIDE,
@@ -204,7 +204,7 @@ class GuideAxis:
 
 @dataclass(frozen=True)
 class GuideAlignment:
-    """How the guide lies to the planned line.
+    """The position of the guide relative to the planned line.
 
     Attributes:
         entry_distance: perpendicular distance of the planned entry from the guide's axis, m.
@@ -224,7 +224,7 @@ class GuideAlignment:
 
     @classmethod
     def of(cls, guide: GuideAxis, line: PlannedLine) -> GuideAlignment:
-        """Return how a guide lies to a planned line."""
+        """Return the position of a guide relative to a planned line."""
         to_entry = subtract(line.entry, guide.tip)
         return cls(
             length(reject(to_entry, guide.direction)),
@@ -258,7 +258,7 @@ class TrajectoryState:
 
 @dataclass(frozen=True)
 class ProcedureState:
-    """How far the procedure of a trial is; the same object until something changes.
+    """The progress of a trial's procedure; the same object until something changes.
 
     Attributes:
         name: of the procedure.
@@ -292,7 +292,7 @@ class ProcedureState:
 
     @property
     def present(self) -> TrajectoryState | None:
-        """The trajectory at hand; None before the registration is accepted."""
+        """The current trajectory; None before the registration is accepted."""
         return self.trajectories[self.trajectory] if self.stage in TOOL_OF_PHASE else None
 
     def entering(self, stage: Phase, elapsed: float) -> ProcedureState:
@@ -309,7 +309,7 @@ class ProcedureState:
         return left.with_present(timed)
 
     def with_present(self, trajectory: TrajectoryState) -> ProcedureState:
-        """Return the state with the trajectory at hand replaced."""
+        """Return the state with the current trajectory replaced."""
         before, after = self.trajectories[: self.trajectory], self.trajectories[self.trajectory :]
         return replace(self, trajectories=(*before, trajectory, *after[1:]))
 

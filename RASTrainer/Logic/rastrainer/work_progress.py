@@ -16,7 +16,7 @@ _WARNING = "Warning: "
 
 
 def no_progress(_step: str, _share: float) -> None:
-    """Ignore the progress, where nobody waits for the work."""
+    """Ignore the progress, if no one waits for the work."""
 
 
 def print_progress(step: str, share: float) -> None:

@@ -1,4 +1,4 @@
-"""The instructor's PIN: kept as a slow hash, and asked for a few times only."""
+"""The instructor's PIN: stored as a slow hash, and with few guesses allowed."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ class GuessLimit:
         self._open_from = -float("inf")
 
     def seconds_to_wait(self) -> float:
-        """Return how long no guess is looked at; 0 where one may be made."""
+        """Return how long no guess is checked; 0 if one may be made."""
         return max(0.0, self._open_from - self._clock())
 
     def guessed(self, is_right: bool) -> bool:
-        """Take note of a guess; return whether it was one too many, so that a pause begins."""
+        """Count a guess; return whether it was one too many, so that a pause begins."""
         if is_right:
             self._wrong, self._pause = 0, FIRST_PAUSE_S
             return False
@@ -108,11 +108,11 @@ class InstructorPin:
 
 @dataclass(frozen=True)
 class PinAnswer:
-    """What became of a guess at a PIN.
+    """The outcome of a guess at a PIN.
 
     Attributes:
         is_right: whether it was the PIN.
-        wait_s: how long no guess is looked at from now on, s; 0 where one may be made.
+        wait_s: how long no guess is checked from now on, s; 0 if one may be made.
     """
 
     is_right: bool
@@ -135,7 +135,7 @@ class PinGuesses:
         return self._pin.is_set
 
     def guess(self, pin: str) -> PinAnswer:
-        """Look at a guess, unless guessing is paused; takes about 50 ms, in any thread.
+        """Check a guess, unless guessing is paused; takes about 50 ms, in any thread.
 
         Raises:
             InputError: the PIN's file cannot be read or is no PIN's.

@@ -1,4 +1,4 @@
-"""Processes: the environment of ours and its children, its end by a signal, and the window's."""
+"""Processes: our environment and that of children, ending by a signal, the window's process."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def stop_on_signals(stop: asyncio.Event) -> Iterator[None]:
     # Not by the event loop's own means, which Windows lacks.
     numbers = [signal.SIGINT, signal.SIGTERM]
     hang_up = getattr(signal, "SIGHUP", None)
-    # Who starts a program by nohup wants it to outlive the terminal.
+    # A program started by nohup should outlive the terminal.
     if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
         numbers.append(hang_up)
     before = {number: signal.signal(number, request_stop) for number in numbers}

@@ -1,4 +1,4 @@
-"""The one thread that a study is for, which the event loop waits for."""
+"""The one thread that uses a study, for which the event loop waits."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Generic, Protocol, TypeVar
 
 
 class OpenedStudy(Protocol):
-    """What is done with a study; for one thread."""
+    """Work on a study; for one thread."""
 
     def close(self) -> None:
         """Close the study."""
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class StudyThread(Generic[Opened]):
-    """Does one thing after the other with a study, which is opened by the first."""
+    """Does one job after the other with a study, which is opened by the first."""
 
     def __init__(self, open_study: Callable[[], Opened]) -> None:
         """Open nothing yet; `open_study` is called in the thread, and may raise `InputError`."""

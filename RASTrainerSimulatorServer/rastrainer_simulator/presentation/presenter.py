@@ -16,7 +16,7 @@ from rastrainer_simulator.viewpoint.view_control import Pictures
 
 @dataclass(frozen=True)
 class Hello:
-    """What a view says of itself when it joins.
+    """A view's description of itself when it joins.
 
     Attributes:
         kind: "desktop", "page", "headset", "spectator" or "board".
@@ -40,7 +40,7 @@ class Frames:
 
 @dataclass(frozen=True)
 class Feedback:
-    """Something to be heard and felt, once.
+    """A sound and a vibration, to be played once.
 
     Attributes:
         number: counts from 1 without a gap.
@@ -64,9 +64,9 @@ class Control:
     """What drives the arm.
 
     Attributes:
-        holder: what people read, such as "gamepad" or "keyboard"; "" while nobody drives.
+        holder: what people read, such as "gamepad" or "keyboard"; "" while no one drives.
         view: number of the view that the holder's input comes from; None for a gamepad at the
-            simulator, and while nobody drives.
+            simulator, and while no one drives.
     """
 
     holder: str = ""
@@ -78,7 +78,7 @@ ViewUpdate = Screen | Feedback | Control
 
 @dataclass(frozen=True)
 class SkinPlace:
-    """A place on the skin in the head's frame: RAS mm, and the outward unit normal there."""
+    """A point on the skin in the head's frame: RAS mm, and the outward unit normal there."""
 
     position: tuple[float, float, float]
     normal: tuple[float, float, float]
@@ -98,7 +98,7 @@ class TraceGuidance:
 
 
 class InstructorOrder(str, Enum):
-    """What a teacher can have done at a seat."""
+    """Orders that a teacher can give to a seat."""
 
     PAUSE = "pause"
     SAY = "say"
@@ -112,7 +112,7 @@ class Seat:
     """What a teacher's board shows of a seat beside the trial's state.
 
     Attributes:
-        trainee: whose trial it is, or whose ID is entered; "" for nobody.
+        trainee: whose trial it is, or whose ID is entered; "" for none.
         task: title of the open trial's task, "" without one.
         count: points of this task; 0 without a trial.
         screen: title of the open menu, "" while the trainee works.
@@ -155,7 +155,7 @@ class Presenter(Protocol):
         """What drives the arm now."""
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return where the pictures of a state are looked from."""
+        """Return the viewpoint of the pictures of a state."""
 
     def ghost(self, now: SimulationState) -> tuple[np.ndarray, ...] | None:
         """Return the poses of the ghost beside the arm in a state, in the order of `GHOST_BODIES`.
@@ -170,7 +170,7 @@ class Presenter(Protocol):
         """Return what a teacher's board shows of this seat."""
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
-        """Do what a teacher who knows the PIN wants; return why it cannot be done, "" if it is.
+        """Carry out an order of a teacher who knows the PIN; return why it is impossible, or "".
 
         `text` is the sentence of `InstructorOrder.SAY`, else "".
         """
@@ -182,22 +182,22 @@ class Presenter(Protocol):
         """
 
     def view_joined(self, view: int, hello: Hello) -> None:
-        """Take note of a view."""
+        """Register a view."""
 
     def view_left(self, view: int) -> None:
         """Forget a view; what it held has been released before."""
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
-        """Take a key: W3C `KeyboardEvent.code`, and what it types or "".
+        """Process a key: W3C `KeyboardEvent.code`, and what it types or "".
 
         While a key is held it may come down again and again, as keyboards repeat it. A view
         that leaves or falls silent releases each key that it held, with `is_down` False.
         """
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Take a gamepad that a browser reads: the W3C standard gamepad, axes −1…1, buttons 0…1.
+        """Process a gamepad that a browser reads: the W3C standard gamepad, axes −1…1, buttons 0…1.
 
-        A view that leaves or falls silent sends it once more with nothing pressed.
+        A view that leaves or falls silent sends it once again with nothing pressed.
         """
 
     def on_sticks(
@@ -208,30 +208,30 @@ class Presenter(Protocol):
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Take the sticks of XR controllers, −1…1, as in `OperatorInput`.
+        """Process the sticks of XR controllers, −1…1, as in `OperatorInput`.
 
         `yaw_deg` is where the eyes look, counterclockwise from World's x: forward is there.
 
-        A view that leaves or falls silent lets them go: zeros.
+        A view that leaves or falls silent releases them: zeros.
         """
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
-        """Take a turn of the view: around to the right, higher, and its distance multiplied."""
+        """Process a turn of the view: around to the right, higher, and its distance multiplied."""
 
     def on_press(self, view: int, control: str) -> None:
-        """Take one press of a control by its name in the settings of the controls; any name."""
+        """Process one press of a control by its name in the settings of the controls; any name."""
 
     def on_item(self, view: int, name: str) -> None:
-        """Take a click on an item of the menu; any name, the menu may have changed."""
+        """Process a click on an item of the menu; any name, the menu may have changed."""
 
     def on_text(self, view: int, name: str, value: str) -> None:
-        """Take what now stands in a text item; any name, the menu may have changed."""
+        """Process the new text of a text item; any name, the menu may have changed."""
 
     def on_frames(self, view: int, frames: Frames) -> None:
-        """Take how smoothly a view draws, once a second."""
+        """Process how smoothly a view draws, once a second."""
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Take whether the trainee sees the view: the headset was doffed, the page hidden."""
+        """Process whether the trainee sees the view: the headset was doffed, the page hidden."""
 
     def on_silence(self, view: int) -> None:
-        """Take that a view has said nothing for so long that its picture must stand still."""
+        """Process that a view has been silent for so long that its picture must be frozen."""

@@ -10,7 +10,7 @@ from typing import Any
 from rastrainer_simulator.texts.texts import Texts
 
 PRESS = "press "
-"""Before the name of a control: the item of a hint whose click presses that control."""
+"""Prefix of the name of a control: the item of a hint whose click presses that control."""
 
 
 class Tone(str, Enum):
@@ -23,7 +23,7 @@ class Tone(str, Enum):
 
 
 class ItemKind(str, Enum):
-    """What one does with an item.
+    """What can be done with an item.
 
     A button is pressed, a choice goes left and right through its options, a text is typed, and an
     axis only shows a position from −1 to 1, as on the screen that tests the gamepad.
@@ -150,7 +150,7 @@ class DepthRuler:
 
 @dataclasses.dataclass(frozen=True)
 class Hint:
-    """Which control does what just now, such as "A" and "Touch".
+    """Which control does what at the moment, such as "A" and "Touch".
 
     Attributes:
         control: the input's name.
@@ -205,7 +205,7 @@ class Screen:
 
 
 def without_secrets(screen: Screen) -> Screen:
-    """Return a private screen as others see it: what its menu is about, and nothing to choose."""
+    """Return a private screen as others see it: the subject of its menu, and nothing to choose."""
     if screen.menu is None or not screen.is_private:
         return screen
     menu = dataclasses.replace(screen.menu, facts=(), items=(), focus="")

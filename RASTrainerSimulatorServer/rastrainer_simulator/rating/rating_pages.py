@@ -1,4 +1,4 @@
-"""What a rater has done, and reads and chooses next: replay by replay, one domain a page."""
+"""A rater's work and pages: replay by replay, one domain a page."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class RatingWork:
 
     @property
     def marks(self) -> dict[str, int]:
-        """Those of the present replay, by domain, in the order in which they were given."""
+        """The marks of the present replay, by domain, in the order in which they were given."""
         return self._marks[self.trial_id]
 
     @property
@@ -70,7 +70,7 @@ class RatingWork:
             self._tell(form, domain.name, mark)
 
     def undo(self) -> bool:
-        """Take back the mark of this replay that was given last; return whether there was one.
+        """Withdraw the last mark of this replay; return whether there was one.
 
         Raises:
             InputError: that cannot be stored.
@@ -92,7 +92,7 @@ class RatingWork:
         return False
 
     def go_back(self) -> None:
-        """Go to the replay before this one, to look at its marks or to correct them."""
+        """Go to the previous replay, to view its marks or to correct them."""
         self.place = max(0, self.place - 1)
 
     def _open_of(self, marks: dict[str, int]) -> tuple[RatingForm, RatingDomain] | None:
@@ -115,7 +115,7 @@ _SENTENCES = {LOWEST: "low", (LOWEST + HIGHEST) // 2: "middle", HIGHEST: "high"}
 
 
 class RatingActions(Protocol):
-    """What the pages need of the program."""
+    """What the pages need from the program."""
 
     work: RatingWork
     texts: Texts
@@ -128,7 +128,7 @@ class RatingActions(Protocol):
         """Load the present replay, and show it."""
 
     def rate(self) -> None:
-        """Open what is to be marked, or was."""
+        """Open the page for marking, or the marks."""
 
     def leave(self) -> None:
         """End the program."""
@@ -141,13 +141,13 @@ class RatingPage(Page):
         self.actions = actions
 
     def say(self, key: str, **values: object) -> str:
-        """Return a sentence in the chosen language, with the replay's place among all."""
+        """Return a sentence in the chosen language, with the replay's number among all."""
         work = self.actions.work
         place = {"number": work.place + 1, "count": len(work.trial_ids)}
         return self.actions.texts.say(key, **place, **values)
 
     def button(self, name: str, **others: Any) -> MenuItem:
-        """Return a button; its label is that of its name on all pages."""
+        """Return a button; its label is the same on all pages."""
         return MenuItem(name, self.say(f"rating.{name}"), **others)
 
     def back(self) -> None:
@@ -170,10 +170,10 @@ class RatingPage(Page):
 
 
 class DomainPage(RatingPage):
-    """Takes one mark, and leads to the next domain."""
+    """Accepts one mark, and leads to the next domain."""
 
     name = "rating"
-    # Not on a mark, which would be given more often than others.
+    # Not on a mark, which would then be given more often than others.
     first = "watch"
 
     def __init__(self, actions: RatingActions, form: RatingForm, domain: RatingDomain) -> None:
@@ -191,14 +191,14 @@ class DomainPage(RatingPage):
         return Menu(self.name, title, (text,), items=(*marks, *buttons))
 
     def accept(self, item: str) -> None:
-        """Take a mark, or do what every page offers."""
+        """Store a mark, or do what every page offers."""
         if item.startswith(_MARK):
             self._give(int(item.removeprefix(_MARK)))
         else:
             super().accept(item)
 
     def input_pressed(self, device: InputDevice, name: str) -> bool:
-        """Take a mark that is typed."""
+        """Store a typed mark."""
         if device is not InputDevice.KEYBOARD or name not in _KEYS:
             return False
         self._give(_KEYS[name])
@@ -222,7 +222,7 @@ class RatedPage(RatingPage):
     first = "next"
 
     def menu(self) -> Menu:
-        """Return the marks, and where one can go."""
+        """Return the marks, and where the rater can go."""
         work = self.actions.work
         marks = work.marks
         facts = tuple(
@@ -262,7 +262,7 @@ class LoadingPage(RatingPage):
         self._loading = loading
 
     def menu(self) -> Menu:
-        """Return what is waited for."""
+        """Return what the rater is waiting for."""
         problem = ""
         if self._loading.done():
             error = self._loading.exception()

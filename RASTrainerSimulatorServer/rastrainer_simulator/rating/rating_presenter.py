@@ -1,4 +1,4 @@
-"""What views show and take while a rater watches replays and marks them."""
+"""What views show and accept while a rater watches replays and marks them."""
 
 from __future__ import annotations
 
@@ -123,26 +123,26 @@ class RatingPresenter:
         return self._subscribers.add(listener)
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return where the picture of a state is looked from."""
+        """Return the viewpoint of the picture of a state."""
         return self._replay.pictures(now)
 
     def ghost(self, now: SimulationState) -> None:
-        """A recorded trial has none beside it."""
+        """Return None: a recorded trial has no ghost."""
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:
         """Return what is drawn of a trace."""
         return self._replay.trace_guidance(now)
 
     def seat(self) -> Seat:
-        """Nobody trains here."""
+        """Return an empty seat: no one trains here."""
         return Seat()
 
     def instruct(self, order: InstructorOrder, text: str) -> str:
-        """A recorded trial takes no orders."""
+        """Refuse: a recorded trial takes no orders."""
         return self._replay.instruct(order, text)
 
     def view_joined(self, view: int, hello: Hello) -> None:
-        """Take note of a view."""
+        """Register a view."""
 
     def view_left(self, view: int) -> None:
         """Forget a view."""
@@ -151,7 +151,7 @@ class RatingPresenter:
         self._replay.view_left(view)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:
-        """Take a key: of the page that is open, else of the replay.
+        """Process a key: for the open page, else for the replay.
 
         One that is held is taken once, or it would mark one domain after the other; only the
         arrows go on through the replay.
@@ -166,7 +166,7 @@ class RatingPresenter:
             self._do(lambda: self._page_pressed(InputDevice.KEYBOARD, code))
 
     def on_pad(self, view: int, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Take a gamepad: what is newly pressed is for the page that is open, else the replay."""
+        """Process a gamepad: what is newly pressed is for the open page, else for the replay."""
         now = _pressed(axes), _pressed(buttons)
         before = self._held.get(view, (frozenset(), frozenset()))
         self._held[view] = now
@@ -179,12 +179,12 @@ class RatingPresenter:
             names = [name for name, value in inputs.items() if value > _DOWN]
             self._do(lambda: self._pad_pressed(names))
             return
-        # Let go at once: a button that has led from the form back here is not pressed anew.
+        # Released at once: a button that has led from the form back here is not pressed again.
         self._replay.on_pad(view, axes, tapped)
         self._replay.on_pad(view, axes, ())
 
     def on_press(self, view: int, control: str) -> None:
-        """Take a button of an XR controller, or of a touch screen."""
+        """Process a button of an XR controller, or of a touch screen."""
         if self.pages.top is None:
             self._replay.on_press(view, control)
         elif control in ControlName._value2member_map_:
@@ -192,31 +192,31 @@ class RatingPresenter:
             self._do(lambda: self.pages.pressed(_IN_MENUS.get(name, name)))
 
     def on_sticks(self, view: int, *positions: object) -> None:
-        """Nobody drives."""
+        """Ignore it: no one drives."""
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:
         """Turn the view."""
         self._replay.on_orbit(view, around_deg, higher_deg, zoom)
 
     def on_item(self, view: int, name: str) -> None:  # noqa: ARG002
-        """Take a click on an item of the page, or on the hint that leads to the form."""
+        """Process a click on an item of the page, or on the hint that leads to the form."""
         if self.pages.top is None and name == RATE:
             self._do(self.rate)
         else:
             self._do(lambda: self.pages.choose(name))
 
     def on_text(self, view: int, name: str, value: str) -> None:
-        """There is nothing to be written."""
+        """Ignore it: there is no text item."""
 
     def on_frames(self, view: int, frames: Frames) -> None:
-        """Nothing is recorded."""
+        """Ignore it: nothing is recorded."""
 
     def on_visibility(self, view: int, is_visible: bool) -> None:
-        """Stand still while nobody looks."""
+        """Pause while no one is watching."""
         self._replay.on_visibility(view, is_visible)
 
     def on_silence(self, view: int) -> None:
-        """Stand still while nobody looks."""
+        """Pause while no one is watching."""
         self._replay.on_silence(view)
 
     def _watch(self, playback: Playback) -> None:
@@ -251,7 +251,7 @@ class RatingPresenter:
             self.pages.pressed(control)
 
     def _do(self, act: Callable[[], None]) -> None:
-        """Do what was asked for, and say what went wrong."""
+        """Carry out the request, and report failures."""
         self._problem = ""
         try:
             act()

@@ -61,7 +61,7 @@ class AbortedArchive:
         self._waiting[record.trial_id] = ArchivedAttempt(record), journal
 
     def add_interrupted(self, path: Path) -> None:
-        """Close the journal of an interrupted trial, and add the trial if it is kept.
+        """Close the journal of an interrupted trial, and add the trial if it is to be stored.
 
         Raises:
             InputError: the journal cannot be used.

@@ -47,7 +47,7 @@ class Journal:
     """
 
     def __init__(self, path: Path) -> None:
-        """Take a path of a new file, which the first `write` creates and never overwrites."""
+        """Prepare a new file, which the first `write` creates and never overwrites."""
         self.path = path
         self._descriptor: int | None = None
         self._count = 0
@@ -127,7 +127,7 @@ class Journal:
         return count, previous, b"".join(lines)
 
     def _cut_off(self) -> None:
-        """Leave no half line behind; where even that fails, the next `write` sees to it."""
+        """Leave no partial line behind; if even that fails, the next `write` does it."""
         if self._descriptor is not None:
             if self._size is not None:
                 with contextlib.suppress(OSError):
@@ -214,7 +214,7 @@ class RecordsFolder:
 
     @property
     def _or_elsewhere(self) -> str:
-        """What users who have started the simulator themselves can do instead."""
+        """Advice for users who have started the simulator themselves."""
         if self._holder.started_by:
             return ""
         return ", or choose another folder with --records"

@@ -1,4 +1,4 @@
-"""What is recorded beside a trial: its setup and versions, how it is seen, the tutorial before."""
+"""What is recorded beside a trial: its setup and versions, its display, the tutorial before it."""
 
 from __future__ import annotations
 
@@ -290,4 +290,4 @@ class GhostReport:
 
 
 NotedReport = DisplayReport | ViewReport | GuidanceReport | GhostReport | TutorialOutcome
-"""What is noted of how a trial is seen and prepared; the simulation does not depend on it."""
+"""Entries on how a trial is seen and prepared; the simulation does not depend on them."""

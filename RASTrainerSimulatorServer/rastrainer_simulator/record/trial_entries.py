@@ -126,7 +126,7 @@ class TrialEntries:
         since: float,
         dt: float,
     ) -> TrialEntries:
-        """Go on from a state of a trial that was interrupted.
+        """Continue from a state of a trial that was interrupted.
 
         `earlier` are its entries before; since their last one, at the simulated time `since` in s,
         the trial's time is stopped.
@@ -162,7 +162,7 @@ class TrialEntries:
     def add(
         self, simulation: Simulation, operator_input: OperatorInput, result: StepResult
     ) -> UnmeasuredRecord | None:
-        """Take note of one tick; return the trial's record when it has just been registered.
+        """Record one tick; return the trial's record when it has just been registered.
 
         It has to be measured before the entries are written.
         """
@@ -197,7 +197,7 @@ class TrialEntries:
         return UnmeasuredRecord(record, self._recording.trajectory(), registered)
 
     def add_display(self, report: NotedReport, state: SimulationState) -> None:
-        """Take note of what is seen, and how: it is recorded, but nothing follows from it."""
+        """Record what is seen, and how; nothing depends on it."""
         if isinstance(report, DisplayReport):
             self.records.display.add(report)
         elif isinstance(report, GuidanceReport):

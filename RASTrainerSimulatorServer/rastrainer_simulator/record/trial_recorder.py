@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rastrainer_simulator.core.simulation import Simulation
 
 FLUSH_TICKS = 50
-"""Number of ticks after which entries that nobody waits for are written."""
+"""Number of ticks after which entries that no client waits for are written."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class _OpenTrial(NamedTuple):
 
 
 class TrialRecorder:
-    """Keeps the journal of the present trial.
+    """Writes the journal of the present trial.
 
     `record` and `stop` belong to the control loop's thread and never touch the disk: the entries
     are formed there and written by `writer`, a pool of one thread.
@@ -157,7 +157,7 @@ class TrialRecorder:
     ) -> None:
         """Keep the entries that could not be written until the trainee resumes.
 
-        Of a trial whose start was refused nothing stays, also if later entries were written.
+        Nothing is left of a trial whose start was refused, even if later entries were written.
         """
         phase = result.state.training.phase
         if phase is Phase.IDLE:
@@ -193,7 +193,7 @@ class TrialRecorder:
         operator_input: OperatorInput,
         result: StepResult,
     ) -> Written:
-        """Keep the record of the aborted trial unless nothing was done in it.
+        """Store the record of the aborted trial unless nothing was done in it.
 
         It is offered even if it cannot be written: the journal writes it with the next entry.
         """

@@ -60,7 +60,7 @@ class TrialRecords:
         self._utc: dict[float, str] = {}
 
     def date(self, sim_time: float, utc: str) -> None:
-        """Take note when a point was touched or traced."""
+        """Note when a point was touched or traced."""
         self._utc[sim_time] = utc
 
     def aborted(self, before: SimulationState, reason: str, utc: str) -> AbortedTrial:
@@ -141,7 +141,7 @@ def _trace(training: TrainingState) -> tuple[TracePoint, ...]:
 
 @dataclass(frozen=True)
 class UnmeasuredRecord:
-    """What the tick of Register leaves to a thread that has time.
+    """Work that the tick of Register leaves to another thread.
 
     A long trial's motion metrics take longer than a tick.
     """
@@ -158,7 +158,7 @@ class UnmeasuredRecord:
 
 
 MEANINGFUL_MM = 0.05
-"""The way back after which a feed counts as reversed."""
+"""Distance back after which a feed counts as reversed."""
 _NAMES = {Phase.DRILLING.value: "drill", Phase.INSERTING.value: "instrument"}
 
 
@@ -170,7 +170,7 @@ class _Feeding:
     moving_s: float = 0.0
     fastest_mm_s: float = 0.0
     reversals: int = 0
-    # Since the last reversal: which way, and the farthest on it.
+    # Since the last reversal: the direction, and the farthest depth in it.
     way: float = 0.0
     farthest_mm: float = 0.0
 
@@ -224,7 +224,7 @@ class FeedRecording:
     def _add_sample(self, sim_time: float, depth_mm: float) -> None:
         feeding = self._feedings[self._trajectory, self._tool]
         if self._last is None:
-            # Another hole begins, or the same one after a pause: no way is reversed by that.
+            # Another hole begins, or the same one after a pause: that is no reversal.
             feeding.way = 0.0
         else:
             time, depth = self._last
@@ -309,7 +309,7 @@ def _times(parts: Iterable[Mapping[Phase, float]]) -> dict[str, float]:
 def procedure_after(
     before: ProcedureState, entry: Mapping[str, Any], time_s: float, plan: Procedure
 ) -> ProcedureState:
-    """Return how far a procedure is after an event of its trial.
+    """Return the progress of a procedure after an event of its trial.
 
     Args:
         before: the event.

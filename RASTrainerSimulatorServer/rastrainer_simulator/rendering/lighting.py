@@ -54,7 +54,7 @@ class Shadows(Enum):
 
 
 def light_room(renderer: vtkRenderer, shadows: Shadows = Shadows.FULL) -> None:
-    """Give a renderer its surroundings, lamps and smooth edges, and shadows where wanted."""
+    """Give a renderer its surroundings, lamps and smooth edges, and shadows if wanted."""
     _surround(renderer)
     for x, y in LAMP_CORNERS:
         lamp = _lamp(x * LAMP_RADIUS, y * LAMP_RADIUS)

@@ -139,7 +139,7 @@ class SceneMoment:
     proximity: Proximity = Proximity.FREE
 
     def poses(self, robot: RobotModel) -> dict[str, np.ndarray]:
-        """Return where each node is that moves, (4, 4) float, m."""
+        """Return the pose of each moving node, (4, 4) float, m."""
         first: dict[str, np.ndarray] = {}
         for link in robot.links:
             first.setdefault(link_node_name(link.joint), self.link_to_world[link.name])

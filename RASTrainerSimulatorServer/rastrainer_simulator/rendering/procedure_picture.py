@@ -35,13 +35,13 @@ MARGIN, ROW, SWATCH = 24, 34, (46, 8)
 """Pixels: to the edges, from row to row, and width and height of a line of the legend."""
 TEXT_SIZE, THICK = 22, 6
 LONGEST_BAR = 0.25
-"""Of a scale, as a share of the picture's height."""
+"""Largest length of a scale, as a share of the picture's height."""
 
 Legend = Sequence[tuple[Material, str]]
 
 
 def _write_legend(renderer: vtkRenderer, rows: Legend) -> None:
-    """Write what each color is into the lower left corner of a picture that is to be drawn."""
+    """Write the legend of the colors into the lower left corner of a picture before it is drawn."""
     for number, (_material, text) in enumerate(reversed(rows)):
         _write(renderer, text, MARGIN + SWATCH[0] + 14, MARGIN + number * ROW)
 
@@ -93,7 +93,7 @@ def _write(renderer: vtkRenderer, text: str, left: int, bottom: int) -> vtkTextA
 def _paint(
     pixels: np.ndarray, left: int, middle: int, long: int, thick: int, color: np.ndarray
 ) -> None:
-    """Paint a level bar, its middle so far above the lower edge."""
+    """Paint a level bar at a height above the lower edge."""
     row = pixels.shape[0] - middle
     pixels[row - thick // 2 : row - thick // 2 + thick, left : left + long] = color
 
@@ -146,7 +146,7 @@ def draw_procedure(
 
     The plan is green, the registered line yellow, the placed instrument blue, as the legend says.
     The corner shows the ends of the first three, magnified. Each picture has a bar of some mm: it
-    is true at the depth of what is looked at.
+    is true at the depth of the lines.
 
     Raises:
         InputError: the picture cannot be written, or a mesh cannot be used.
@@ -183,7 +183,7 @@ def _picture(
 
 
 def _line_nodes(lines: Sequence[tuple[Line, Line, Line]], thickness: float) -> list[Node]:
-    """Return all lines, so many times as thick as usual."""
+    """Return all lines, thickened by a factor."""
     return [
         _line_node(f"{material.name}_{number}", line, material, thickness)
         for number, three in enumerate(lines)
@@ -217,7 +217,7 @@ def _camera(lines: Sequence[tuple[Line, Line, Line]]) -> Camera:
 
 
 def _near_camera(place: np.ndarray, height_mm: float) -> Camera:
-    """Return a camera that sees so much about a place, from the same side."""
+    """Return a camera that sees a given height around a point, from the same side."""
     angle_deg = float(np.degrees(2.0 * np.arctan(0.5 * height_mm / AWAY_MM)))
     position = place + AWAY_MM * FROM / np.linalg.norm(FROM)
     return Camera(position, place, np.array([0.0, 0.0, 1.0]), angle_deg)

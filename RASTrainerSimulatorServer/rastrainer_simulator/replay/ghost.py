@@ -25,7 +25,7 @@ AFTER_S = 0.5
 class Ghost:
     """The last link and the tool of a recorded trial.
 
-    The head stands differently in each trial, and what counts is the way of the tip on the head:
+    The head stands differently in each trial, and what counts is the path of the tip on the head:
     all poses are moved as the head is. The base of the arm does not move with the head, so the
     links before the last are left out.
 
@@ -74,7 +74,7 @@ def _first_usable(
         try:
             return Ghost(read_track(journal, check), setup, head_to_world)
         except (InputError, KeyError, TypeError, ValueError, AttributeError, IndexError):
-            # Of another head, damaged, or deleted meanwhile: the next best is one, too.
+            # Of another head, damaged, or deleted meanwhile: try the next best.
             continue
     return None
 
@@ -104,7 +104,7 @@ class TrialGhost:
         setup: SimulationSetup,
         head_to_world: np.ndarray,
     ) -> None:
-        """Begin to load the first usable journal for a trial; HeadToWorld as of a `Ghost`."""
+        """Start loading the first usable journal for a trial; HeadToWorld as of a `Ghost`."""
         self.close()
         self._wanted, self._trial_id = rule, trial_id
         if rule is not GhostRule.OFF:
@@ -113,7 +113,7 @@ class TrialGhost:
             )
 
     def close(self) -> None:
-        """Show none."""
+        """Show no ghost."""
         if self._loading is not None:
             self._loading.cancel()
         self._loading = self._ghost = None

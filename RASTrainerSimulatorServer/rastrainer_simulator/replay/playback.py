@@ -1,4 +1,4 @@
-"""What the views show: the arm as it is, the tutorial's points on the head, or recorded trials."""
+"""What the views show: the live arm, the tutorial's points on the head, or recorded trials."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Playback:
         self._show(is_jump=True)
 
     def advance(self, seconds: float) -> None:
-        """Advance by so much wall time, s."""
+        """Advance by an amount of wall time, s."""
         if not self.is_playing:
             # For views that have just joined.
             self._publish(())
@@ -149,7 +149,7 @@ class PlaybackSwitch:
         return self._subscribers.add(callback)
 
     def show(self, playback: Playback | None) -> None:
-        """Show a playback from now on, or with None the arm as it is."""
+        """Show a playback from now on, or the live arm for None."""
         if playback is self._playback:
             return
         self._end_playback()

@@ -50,7 +50,7 @@ AFTER_S = 0.25
 
 @dataclass(frozen=True)
 class _Situation:
-    """What is seen besides the arm, from one event to the next."""
+    """What is visible besides the arm, from one event to the next."""
 
     training: TrainingState
     proximity: Proximity
@@ -127,7 +127,7 @@ class RecordedTrial:
         q = tuple(track.at(time_s, track.q).tolist())
         poses = self._kinematics.links(q)
         depth = trajectory.depth_mm
-        # What happened in the first tick is seen from the beginning.
+        # What happened in the first tick is visible from the beginning.
         now = self._situations[max(0, bisect.bisect_right(self._event_times, time_s) - 1)]
         clearance = float(track.at(time_s, trajectory.clearance_mm)) / MM_PER_M
         depth_m = 0.0 if depth is None else float(track.at(time_s, depth)) / MM_PER_M

@@ -1,4 +1,4 @@
-"""What the views show and take while a recorded trial is played."""
+"""What the views show and accept while a recorded trial is played."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ ACTIONS: Mapping[ControlName, PlayerAction] = {
     ControlName.BACK: PlayerAction.END,
     ControlName.MENU: PlayerAction.END,
 }
-"""What the controls do meanwhile."""
+"""What the controls do during a replay."""
 
 
 class Player:
@@ -205,23 +205,23 @@ class ReplayPresenter:
         playback.subscribe(self._move_view)
 
     def pictures(self, now: SimulationState) -> Pictures:
-        """Return where the picture of a state is looked from."""
+        """Return the viewpoint of the picture of a state."""
         self._view.use(now.camera)
         return Pictures(self._view.pose(self._playback.setup.scenario.cameras[now.camera]))
 
     def ghost(self, now: SimulationState) -> None:
-        """A recorded trial has none beside it."""
+        """Return None: a recorded trial has no ghost."""
 
     def trace_guidance(self, now: SimulationState) -> TraceGuidance:  # noqa: ARG002
-        """Nobody is guided: only what was traced is drawn."""
+        """Return no guidance: only what was traced is drawn."""
         return TraceGuidance()
 
     def seat(self) -> Seat:
-        """Nobody trains here."""
+        """Return an empty seat: no one trains here."""
         return Seat()
 
     def instruct(self, _order: InstructorOrder, _text: str) -> str:
-        """A recorded trial takes no orders."""
+        """Refuse: a recorded trial takes no orders."""
         return self._texts.say("instructor.nothing runs")
 
     def on_orbit(self, view: int, around_deg: float, higher_deg: float, zoom: float) -> None:  # noqa: ARG002
@@ -235,14 +235,14 @@ class ReplayPresenter:
         return self._subscribers.add(listener)
 
     def view_joined(self, view: int, hello: Hello) -> None:
-        """Take note of a view."""
+        """Register a view."""
 
     def view_left(self, view: int) -> None:
         """Forget a view."""
         self._held.pop(view, None)
 
     def on_key(self, view: int, code: str, is_down: bool, text: str) -> None:  # noqa: ARG002
-        """Take a key."""
+        """Process a key."""
         if is_down:
             self._do(_KEYS.get(code))
 
@@ -254,20 +254,20 @@ class ReplayPresenter:
         self._held[view] = held
 
     def on_press(self, view: int, control: str) -> None:  # noqa: ARG002
-        """Take a button of an XR controller."""
+        """Process a button of an XR controller."""
         self._do(_PRESSES.get(control))
 
     def on_sticks(self, view: int, *positions: object) -> None:
-        """Nobody drives."""
+        """Ignore it: no one drives."""
 
     def on_item(self, view: int, name: str) -> None:
-        """There is no menu."""
+        """Ignore it: there is no menu."""
 
     def on_text(self, view: int, name: str, value: str) -> None:
-        """There is no menu."""
+        """Ignore it: there is no menu."""
 
     def on_frames(self, view: int, frames: Frames) -> None:
-        """Nothing is recorded."""
+        """Ignore it: nothing is recorded."""
 
     def on_visibility(self, view: int, is_visible: bool) -> None:  # noqa: ARG002
         """Ignore it: nothing is missed."""
@@ -288,7 +288,7 @@ class ReplayPresenter:
             self._look_for_views()
 
     def _look_for_views(self) -> None:
-        """Begin to look for the best views in a thread: it takes seconds."""
+        """Start looking for the best views in a thread: it takes seconds."""
         playback = self._playback
         head_to_world = playback.latest.head_to_world.copy()
         head_to_world[:3, 3] *= MM_PER_M
@@ -296,7 +296,7 @@ class ReplayPresenter:
         self._is_looking_for_views = True
 
     def _move_view(self, result: StepResult) -> None:
-        """Go to the best view of the worst touch where that is wanted, as soon as it is known."""
+        """Go to the best view of the worst touch if that is wanted, as soon as it is known."""
         worst = self._playback.trial.worst
         view = self._best.of(worst[0]) if self._wants_worst and worst is not None else None
         camera = self._playback.setup.scenario.cameras[result.state.camera]

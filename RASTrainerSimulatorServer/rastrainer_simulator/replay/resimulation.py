@@ -53,7 +53,7 @@ _OF_THE_CLOCK = frozenset({"n", "previous", "sha256", "monotonic", "utc", "recor
 
 @dataclass(frozen=True)
 class ReplayReport:
-    """What a replay has found.
+    """The result of a replay.
 
     Attributes:
         trial_id: of the trial.
@@ -143,7 +143,7 @@ def _replay(
 
 
 def _parts(entries: Sequence[Mapping[str, Any]]) -> Iterator[tuple[int, int]]:
-    """Yield first and end of what each server has written: a trial may have been interrupted."""
+    """Yield start and end of the part that each server has written: a trial may be interrupted."""
     starts = [n for n, entry in enumerate(entries) if entry["kind"] == "continued"]
     return zip((0, *starts), (*starts, len(entries)), strict=True)
 

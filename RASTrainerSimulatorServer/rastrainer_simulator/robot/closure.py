@@ -1,4 +1,4 @@
-"""The exact closure: with wrist and tool given, where the elbow can be, and the joint angles there.
+"""The exact closure: for a given wrist and tool, the possible elbows, and the joint angles.
 
 With the wrist fixed the elbow moves on a circle about the line from shoulder to wrist. Each tilt
 limit cuts an arc out of it, each pan limit too, and the ends of all arcs have a closed form,

@@ -52,7 +52,7 @@ _ROUNDING = 1e-12
 
 
 class Fabrik:
-    """Inverse kinematics of one arm; without memory: the same question has the same answer."""
+    """Inverse kinematics of one arm; without memory: the same query has the same answer."""
 
     def __init__(self, model: RobotModel, settings: FabrikSettings | None = None) -> None:
         self.settings = settings or FabrikSettings()
@@ -174,7 +174,7 @@ def _predicted(
         columns, error = _equations(arm, links, target)
         theta, free = _step_inside_limits(arm, theta, columns, error)
         links = chain(theta)
-        # What a step leaves over is the closure's to remove; close to a singularity or a limit
+        # What a step leaves over is removed by the closure; close to a singularity or a limit
         # that little would still turn a pan far or leave the limits, so there it is refined.
         if (free and clear(theta)) or dist(tip(arm, links), target) < _EXACT:
             break
@@ -221,7 +221,7 @@ def _step(theta: Angles, columns: Columns, error: Vector) -> Angles:
     x = part * (ix * gx + iy * gy + iz * gz)
     y = part * (iy * gx + jy * gy + jz * gz)
     z = part * (iz * gx + jz * gy + kz * gz)
-    # The squared length of the step, but for the damping; a long one is not to be trusted.
+    # The squared length of the step, except for the damping; a long one cannot be trusted.
     square = gx * x + gy * y + gz * z
     if square > _LONGEST_STEP * _LONGEST_STEP:
         part = _LONGEST_STEP / sqrt(square)
@@ -261,7 +261,7 @@ def _step_inside_limits(
 
 
 _FLAT = 1e-6
-# A tilt (rad) below this has no first order to speak of.
+# A tilt (rad) below this has practically no first order.
 _LINED_UP = 1e-3
 
 
@@ -292,7 +292,7 @@ def _followed(arm: CanonicalArm, theta: Angles, links: Chain, goal: Goal) -> Ang
 def _elbow(
     arm: CanonicalArm, theta: Angles, links: Chain, wrist: Vector, goal: Goal
 ) -> Vector | None:
-    """Return about where the elbow goes, m, or None where joints line up.
+    """Return roughly where the elbow goes, m, or None where joints line up.
 
     `wrist` is the goal's, m.
     """

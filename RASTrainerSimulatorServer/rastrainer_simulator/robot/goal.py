@@ -1,4 +1,4 @@
-"""What FABRIK is asked and answers: goals and θ in the arm's frame, from World and q and back."""
+"""Queries and answers of FABRIK: goals and θ in the arm's frame, from World and q and back."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ BLOCKED = "No posture inside the joint limits holds the tool like that; the arm 
 
 @dataclass(frozen=True)
 class FabrikSettings:
-    """When a solution is good enough, and when the passes give up."""
+    """When a solution is good enough, and when the passes stop."""
 
     tolerance_m: float = 1e-9
     tolerance_rad: float = 1e-8
@@ -83,7 +83,7 @@ class Goal(NamedTuple):
         return self.tool
 
     def wrist(self, arm: CanonicalArm) -> Vector:
-        """Return where a wrist has to be that holds the tool's direction, m."""
+        """Return the wrist that holds the tool's direction, m."""
         (x, y, z), (tx, ty, tz), size = self.position, self.held_tool, arm.tool
         return x - size * tx, y - size * ty, z - size * tz
 

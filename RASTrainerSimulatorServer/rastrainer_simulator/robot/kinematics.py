@@ -143,6 +143,6 @@ class PinocchioKinematics:
     def links(self, q: Sequence[float]) -> dict[str, np.ndarray]:
         """Return LinkToWorld, (4, 4) float, of every link by its name."""
         self._pin.framesForwardKinematics(self._model, self._data, np.asarray(q, dtype=float))
-        # One by one they take ten times as long.
+        # Individually they take ten times as long.
         placements = self._data.oMf.tolist()
         return {name: placements[frame].homogeneous for name, frame in self._links.items()}

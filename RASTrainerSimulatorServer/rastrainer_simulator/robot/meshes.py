@@ -167,7 +167,7 @@ def _check_glb(data: bytes, what: str) -> None:
 
 
 def _numbers_shown(tree: Any) -> int:
-    """Return of how many numbers the meshes of all nodes are made, or more."""
+    """Return at least how many numbers the meshes of all nodes consist of."""
     counts = [whole(accessor["count"]) * _PARTS[accessor["type"]] for accessor in tree["accessors"]]
     meshes = [
         sum(
@@ -183,7 +183,7 @@ def _numbers_shown(tree: Any) -> int:
         for child in node.get("children", ()):
             parents[child] = parents.get(child, 0) + 1
     if len(nodes) > MAX_COPIES or any(count > 1 for count in parents.values()):
-        raise ValueError  # Where a node has two parents, it is no tree.
+        raise ValueError  # If a node has two parents, it is not a tree.
     shown = sum(meshes[node["mesh"]] for node in nodes if "mesh" in node)
     return max(shown, sum(counts))
 

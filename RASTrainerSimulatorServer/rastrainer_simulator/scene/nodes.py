@@ -65,7 +65,7 @@ ARROW = Material("arrow", (0.16, 0.22, 0.38), glowing=True)
 
 TRACED = Material("traced", (0.02, 0.13, 0.42), glowing=True)
 COVERED = Material("covered", (0.34, 0.71, 0.91), 0.55)
-"""Traced points, and the skin around them: blues that color-blind people tell from skin, too."""
+"""Traced points, and the skin around them: blues that color-blind people can tell from skin."""
 
 GHOST = Material("ghost", (0.50, 0.34, 0.90))
 GHOST_OPACITY = 0.45

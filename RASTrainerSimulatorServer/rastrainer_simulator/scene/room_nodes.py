@@ -140,7 +140,7 @@ def _monitor(x: Span, y: float, z: Span) -> list[Surface]:
 
 
 def _trace(left: float, width: float, y: float, middle: float, height: float) -> list[Surface]:
-    """Return the line of a heart that beats five times, as little bars."""
+    """Return the ECG line of five heartbeats, as little bars."""
     count = 60
     beat = np.arange(count) % 12
     level = np.where(beat == 5, 1.0, np.where(beat == 6, -0.35, np.where(beat == 9, 0.22, 0.0)))

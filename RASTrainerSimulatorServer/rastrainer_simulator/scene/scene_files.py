@@ -66,7 +66,7 @@ KEPT_FILES = 60
 
 
 def cache_folder() -> Path:
-    """Return the user's cache folder for scenes, made if need be; a passing one if it cannot."""
+    """Return the user's cache folder for scenes, made if needed; a temporary one if impossible."""
     folder = _users_caches() / "rastrainer" / "scenes"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -77,7 +77,7 @@ def cache_folder() -> Path:
 
 
 def forget_oldest(folder: Path) -> None:
-    """Delete scenes beyond the newest ones, and what a crash left half written."""
+    """Delete scenes beyond the newest ones, and partial files left by a crash."""
     with contextlib.suppress(OSError):
         files = [path for path in folder.iterdir() if path.suffix in (".glb", ".partial")]
         files.sort(key=lambda path: path.stat().st_mtime, reverse=True)
@@ -131,7 +131,7 @@ class SceneFiles:
     async def scene(self, setup: SimulationSetup, task: str) -> SceneFile:
         """Return the scene of a task, or the one without a task; building it takes seconds.
 
-        Who cancels the wait ends the building, too.
+        Canceling the wait ends the building, too.
 
         Raises:
             InputError: there is no such task, or it cannot be built.
@@ -163,7 +163,7 @@ class SceneFiles:
         return self._paths[1]
 
     async def _make(self, setup: SimulationSetup, task: str, path: Path) -> None:
-        """Take up the scene if it is in the folder already, else build it."""
+        """Use the scene if it is already in the folder, else build it."""
         if await self._take_up(path):
             return
         await self._build(setup, task, path)
@@ -228,7 +228,7 @@ def gzipped_scene(file: SceneFile) -> tuple[bytes, int]:
     """Return the content compressed, half as large, and how large it was; takes 0.2 s at first.
 
     Raises:
-        LookupError: the file is not any more what it was.
+        LookupError: the file has changed.
     """
     content = read_scene(file)
     if content is None:

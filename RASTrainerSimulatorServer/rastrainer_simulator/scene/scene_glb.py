@@ -105,7 +105,7 @@ PLAN = "plan"
 SLEEVE_LENGTH, SLEEVE_RADIUS, MOUTH_RADIUS = 0.075, 0.0065, 0.0035
 AXIS_LENGTH, AXIS_RADIUS = 0.2, 0.00035
 DRILL_RADIUS, ELECTRODE_RADIUS = 0.0016, 0.0011
-"""As they are drawn; an electrode is mostly thinner, and would hardly be seen."""
+"""As drawn; an electrode is mostly thinner, and would be hardly visible."""
 
 
 def _instrument_nodes() -> tuple[Node, ...]:
@@ -210,7 +210,7 @@ def _add_surface(
 
 def _material(material: Material) -> PBRMaterial:
     color = np.array(material.linear_color)
-    # What glows is black to lamps: it has its own color in any light.
+    # A glowing surface is black to lamps: it has its own color in any light.
     base, glow = (np.zeros(3), color) if material.glowing else (color, np.zeros(3))
     return PBRMaterial(
         name=material.name,

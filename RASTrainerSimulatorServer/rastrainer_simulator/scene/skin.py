@@ -1,4 +1,4 @@
-"""The head's skin, and what is laid on it: dots, rims, numbers and arrows that follow its curve."""
+"""The head's skin, and the marks on it: dots, rims, numbers and arrows that follow its curve."""
 
 from __future__ import annotations
 
@@ -157,13 +157,13 @@ STEP = 2.0
 """Length of a step, after which the ribbon is projected onto the skin again, mm."""
 GAP = 1.3
 LENGTHS = (26.0, 16.0, 10.0)
-"""How long arrows are at most; shorter where else numbers would find no room."""
+"""Greatest length of arrows; shorter where numbers would otherwise find no room."""
 SHORTEST = 6.0
 SHAFT_WIDTH = 2.0
 HEAD_WIDTH, HEAD_LENGTH = 5.4, 5.5
 APART = 1.5
 BERTH = 4.0
-"""How wide an arrow passes the rim of a fiducial that it does not lead to."""
+"""Margin by which an arrow passes the rim of a fiducial that it does not lead to."""
 TURNS = tuple(np.radians((0.0, 12.0, -12.0, 24.0, -24.0, 36.0, -36.0)))
 _ACROSS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
 
@@ -206,7 +206,7 @@ class Arrow:
 def arrows(skin: Skin, points: np.ndarray, longest: float = LENGTHS[0]) -> list[Arrow]:
     """Return the arrows between consecutive `points` (n, 3) float on the skin, to `longest` mm.
 
-    They keep away from all fiducials and from each other, and are shortened where need be.
+    They keep away from all fiducials and from each other, and are shortened where needed.
     """
     made = []
     for index in range(len(points) - 1):
@@ -289,7 +289,7 @@ def _walk(
 
 
 def _kept_apart(made: list[Arrow]) -> list[Arrow]:
-    """Shorten arrows until none comes near another; as short ones as that may still meet."""
+    """Shorten arrows until none comes near another; very short ones may still meet."""
     made = list(made)
     while True:
         close = [

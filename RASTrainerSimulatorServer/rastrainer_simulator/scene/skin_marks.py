@@ -31,7 +31,7 @@ NUMBERS_APART = 3.0
 OWN_SHARE = 0.8
 """Largest ratio of a number's distance to its own dot and to any other, so that it is clear."""
 ENOUGH = 16
-"""Places to choose from, after which none farther from the fiducial is looked at."""
+"""Candidate positions, after which none farther from the fiducial is considered."""
 MAX_TRIES = 20_000
 _COLUMNS, _ROWS = 7, 5
 _RELIEF = 0.3
@@ -40,7 +40,7 @@ _ROOM_ENOUGH = 6.0
 
 @dataclass(frozen=True)
 class Place:
-    """One possible place for a number.
+    """One possible position of a number.
 
     Attributes:
         middle: (3,) float, on the skin.
@@ -77,7 +77,7 @@ def _number_places(
 
 
 def _roomiest(places: list[Place], point: np.ndarray) -> np.ndarray:
-    """Return the middle of the place with the most room; the fiducial itself if there is none."""
+    """Return the middle of the roomiest position; the fiducial itself if there is none."""
     return max(places, key=lambda place: place.clearance).middle if places else point
 
 
@@ -89,7 +89,7 @@ def _choices(
     obstacles: np.ndarray,
     radii: np.ndarray,
 ) -> list[Place]:
-    """Return places around one fiducial, the best first; as far out as it takes to have enough."""
+    """Return positions around one fiducial, best first; as far out as it takes to have enough."""
     point = points[index]
     frame = skin.frame(point)
     others = np.delete(points, index, axis=0)
@@ -130,7 +130,7 @@ def _clearance(covers: np.ndarray, obstacles: np.ndarray, radii: np.ndarray) -> 
 
 
 def _chosen(choices: list[list[Place]], margin: float) -> list[Place] | None:
-    """Choose a place for each number so that all keep the margin; the fewest choices first."""
+    """Choose a position for each number so that all keep the margin; fewest choices first."""
     allowed = [[place for place in places if place.clearance >= margin] for places in choices]
     order = sorted(range(len(choices)), key=lambda index: len(allowed[index]))
     chosen: dict[int, Place] = {}
@@ -178,7 +178,7 @@ class SkinMark:
 
 @dataclass(frozen=True)
 class Placement:
-    """Where the marks of a task are.
+    """The positions of the marks of a task.
 
     Attributes:
         numbers: their flat shapes.

@@ -40,7 +40,7 @@ def show(
     """Show a journal's trial to views until the window is closed, Escape or Ctrl-C is pressed.
 
     Raises:
-        InputError: it cannot be shown, or the port cannot be listened on.
+        InputError: it cannot be shown, or the port cannot be used.
     """
     track = read_track(journal)
     setup = setup_of(track.header, scenario)
@@ -65,16 +65,16 @@ async def _show_until(
     has_window: bool,
     announce: Callable,
 ) -> None:
-    """Show what is played to views, and to a window of its own if wanted, until it shall stop.
+    """Show what is played to views, and in its own window if wanted, until it is to stop.
 
     Args:
-        stop: is set by whoever ends it: the presenter, the closed window, or a signal.
+        stop: is set by what ends it: the presenter, the closed window, or a signal.
         source: the states that are shown.
         presenter: what is read beside them.
         run: plays them until it is canceled.
         port: where views are served; None for the usual one.
         has_window: whether a window is opened.
-        announce: says where views are served.
+        announce: reports where views are served.
 
     Raises:
         InputError: the port cannot be listened on.
@@ -177,10 +177,10 @@ def serve_rating(
     has_window: bool,
     announce: Callable[[str], None],
 ) -> None:
-    """Show the replays of a rater to views, and take the marks, until the rater leaves.
+    """Show the replays of a rater to views, and accept the marks, until the rater leaves.
 
     Raises:
-        InputError: the first replay cannot be shown, or the port cannot be listened on.
+        InputError: the first replay cannot be shown, or the port cannot be used.
     """
     loader = ReplayLoader(records, scenario)
     with ThreadPoolExecutor(1, "replay") as worker:

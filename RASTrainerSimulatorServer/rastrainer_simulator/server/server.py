@@ -68,7 +68,7 @@ class ServerOptions:
         scenario: folder; None is the one that comes with RASTrainer.
         robot_meshes: folder of the robot's official meshes; None is our own.
         view_port: of the views; 0 is any free one, None the usual one or else any free one.
-        has_views: whether views are served at all, and a trainee can operate.
+        has_views: whether views are served, and a trainee can operate.
         has_network: whether views of other computers are served, too.
         has_gamepad: whether gamepads at this computer are read.
         has_desktop: whether a window is opened; the simulator ends when its user closes it.
@@ -196,14 +196,14 @@ class SimulatorServer:
                     await views.close()
                 if presenter is not None:
                     presenter.close()
-                # What was commanded is still answered, and then the connections are closed.
+                # Pending commands are still answered, and then the connections are closed.
                 await loop.run_in_executor(None, self._stop)
                 await link.server.close()
                 self._records.close()
                 _log.info("The simulator has ended.", extra={"data": self._health()})
 
     def _preferred_settings(self) -> SimulationSettings:
-        """Return how the trainee wants the simulation to behave; without views, as by default."""
+        """Return how the trainee wants the simulation to behave; without views, the default."""
         if not self._options.has_views:
             return SimulationSettings()
         try:
@@ -357,5 +357,5 @@ def _answered(answer: Answer) -> Future[Answer]:
 
 
 def _peers_host(options: ServerOptions) -> str:
-    """Return the address by which peers are met."""
+    """Return the address at which peers reach us."""
     return options.host if options.connect_to is None else options.connect_to[0]

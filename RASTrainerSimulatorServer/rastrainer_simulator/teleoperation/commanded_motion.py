@@ -80,7 +80,7 @@ class Jogging:
         return scale(accelerated(velocity, self._velocity, acceleration * dt), time)
 
     def outcome(self, dt: float, tip: Vector, direction: Vector) -> MotionOutcome | None:
-        """Return how the jog has ended, None while it lasts."""
+        """Return how the jog has ended, or None while it lasts."""
         del tip, direction
         return MotionOutcome.REACHED if self._remaining <= 1e-3 * dt else None
 
@@ -148,12 +148,12 @@ class FollowingPath:
 
     @property
     def direction(self) -> Vector | None:
-        """Of the tool at the waypoint that is next."""
+        """Direction of the tool at the next waypoint."""
         return self._moving.direction
 
     @property
     def goal(self) -> Vector:
-        """The waypoint that is next."""
+        """The next waypoint."""
         return self._moving.goal
 
     def displacement(self, dt: float, tip: Vector, velocity: Vector, acceleration: float) -> Vector:

@@ -163,7 +163,7 @@ class NearestSurface:
 
 
 class ToolSteering:
-    """Keeps the wanted direction of the tool."""
+    """Stores the wanted direction of the tool."""
 
     def __init__(self, settings: SteeringSettings) -> None:
         self._settings = settings

@@ -1,4 +1,4 @@
-"""Say a sentence in a language, and say it again in another.
+"""Say a sentence in a language, and repeat it in another.
 
 The sentences are in one JSON file a language, sorted into sections for translators
 (docs/how-to/translate.md). They are written with plain keys; the
@@ -49,7 +49,7 @@ ENGLISH: Mapping[str, str] = MappingProxyType(
 LANGUAGES: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {"en": ENGLISH} | {tag: MappingProxyType(_table(tag)) for tag in ("de", "fr", "es", "zh-Hans")}
 )
-"""BCP 47 tag → table. What a table lacks is said in English."""
+"""BCP 47 tag → table. Sentences missing from a table are said in English."""
 
 
 class LocalizedText(str):
@@ -64,7 +64,7 @@ class LocalizedText(str):
     values: Mapping[str, object]
 
     def __new__(cls, text: str, key: str, values: Mapping[str, object]) -> LocalizedText:
-        """Make one of the finished sentence."""
+        """Make one from the finished sentence."""
         said = super().__new__(cls, text)
         said.key = key
         said.values = values
@@ -108,7 +108,7 @@ class Texts:
         return LocalizedText(self._formatter.vformat(self._table[key], (), values), key, values)
 
     def listed(self, words: Iterable[str]) -> str:
-        """Return words one after the other, with the language's sign between them."""
+        """Return words one after the other, with the language's separator between them."""
         return self._table["list separator"].join(words)
 
     def again(self, sentence: str) -> str:
@@ -121,12 +121,12 @@ class Texts:
 
 
 def pair_label(first: str, second: str) -> str:
-    """Return what two inputs are called together, such as "Stick left / right"."""
+    """Return the common name of two inputs, such as "Stick left / right"."""
     shared, _, last = second.rpartition(" ")
     return f"{first} / {last if first.rpartition(' ')[0] == shared else second}"
 
 
 def input_label(texts: Texts, device: str, name: str) -> str:
-    """Return what an input of a device ("gamepad" or "keyboard") is called."""
+    """Return the name of an input of a device ("gamepad" or "keyboard")."""
     key = f"{device}.{name}"
     return texts.say(key) if key in texts else name.removeprefix("Key").removeprefix("Digit")

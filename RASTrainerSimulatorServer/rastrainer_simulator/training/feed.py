@@ -48,7 +48,7 @@ class ProcedureSettings:
 
 
 class FeedLayer(str, Enum):
-    """What the drill is cutting, or what the instrument meets: as a hand feels it.
+    """What the drill is cutting, or what the instrument meets, as a hand feels it.
 
     `THROUGH` is past the inner table, `BLOCKED` an instrument that stands on uncut bone.
     """
@@ -77,7 +77,7 @@ class HeadAhead:
     inner: float | None = None
 
     def to_json(self) -> dict[str, float | None]:
-        """Return what the journal keeps, mm."""
+        """Return what the journal records, mm."""
         named = {"skinMm": self.skin, "outerMm": self.outer, "innerMm": self.inner}
         return {name: None if m is None else MM_PER_M * m for name, m in named.items()}
 
@@ -103,7 +103,7 @@ class Feed:
 
     @property
     def is_through(self) -> bool:
-        """Whether no uncut bone is in the way of an instrument."""
+        """Whether no uncut bone blocks an instrument."""
         ahead = self.ahead
         return ahead.outer is None or (ahead.inner is not None and self.drilled >= ahead.inner)
 
@@ -142,7 +142,7 @@ NO_FEED = Feed()
 
 
 def recorded_feed(feed: Feed) -> dict[str, float]:
-    """Return what an event keeps of the feed at which it happened, mm; nothing where none is."""
+    """Return what an event records of the feed at which it happened, mm; nothing without one."""
     if feed.drilled <= 0.0:
         return {}
     return {"feedMm": MM_PER_M * feed.depth, "drilledMm": MM_PER_M * feed.drilled}
@@ -156,7 +156,7 @@ class FeedMotion(NamedTuple):
 
 
 class FeedDrive:
-    """Turns the stick, or a commanded feed, into the way of a tick."""
+    """Turns the stick, or a commanded feed, into the distance of a tick."""
 
     def __init__(self, settings: ProcedureSettings, response: StickResponse) -> None:
         """`response` is that of the sticks that move the arm."""

@@ -94,7 +94,7 @@ class Truth:
         }
 
     def to_json(self) -> dict[str, Any]:
-        """Return what the journal keeps, so that the truth outlives the server."""
+        """Return what the journal records, so that the truth outlives the server."""
         return {
             "headToWorld": [float(value) for value in self.head_to_world.ravel()],
             "target": [float(value) for value in self.target],

@@ -1,4 +1,4 @@
-"""The phases of a procedure: which command leads from which to which, and what it leaves behind.
+"""The phases of a procedure: which command leads from one to the next, and what it records.
 
 Nothing here knows where the head is. What the trainee sees and reads follows from their
 registration; the true distances at the moment of LockGuide only decide whether the guide may be
@@ -39,7 +39,7 @@ AT_EACH_STAGE: Mapping[Phase, str] = {
     Phase.DRILLING: "drill",
     Phase.INSERTING: "insert",
 }
-"""What is said when the trial continues there after a pause."""
+"""What the trainee reads when the trial continues there after a pause."""
 
 
 OF_A_PROCEDURE = (
@@ -68,12 +68,12 @@ class ProcedureMoment:
 
     @property
     def procedure(self) -> ProcedureState:
-        """How far the procedure is."""
+        """The progress of the procedure."""
         assert self.state.procedure is not None, "the phase has a procedure"
         return self.state.procedure
 
     def entering(self, phase: Phase, **changes: Any) -> TrainingState:
-        """Return the state in another phase, with changes to how far the procedure is."""
+        """Return the state in another phase, with changes to the procedure's progress."""
         entered = replace(self.procedure.entering(phase, self.elapsed), **changes)
         return replace(self.state, phase=phase, procedure=entered)
 
@@ -110,7 +110,7 @@ class ProcedurePhases:
     def step(
         self, command: OperatorCommand, state: TrainingState, now: TouchMoment, elapsed: float
     ) -> TrialStep | RefusedStep:
-        """Return what a command leads to that is allowed in the phase of a state."""
+        """Return the outcome of a command that is allowed in the phase of a state."""
         moment = ProcedureMoment(state, now, elapsed, command.arguments)
         return self._handlers[command.name](moment)
 
@@ -261,7 +261,7 @@ class ProcedurePhases:
         )
 
     def _retract(self, moment: ProcedureMoment) -> TrialStep | RefusedStep:
-        """Take the drill out and align again: only before it has cut bone."""
+        """Remove the drill and align again: only before it has cut bone."""
         if moment.now.feed.has_cut_bone:
             return RefusedStep(self._texts.say("bone is cut"))
         state = moment.entering(Phase.ALIGNING)
@@ -307,7 +307,7 @@ def _attempt(moment: ProcedureMoment) -> RegistrationAttempt:
 
 
 def _present(state: TrainingState) -> TrajectoryState:
-    """Return the trajectory at hand, also of a state that has just left its phases."""
+    """Return the current trajectory, also of a state that has just left its phases."""
     assert state.procedure is not None
     return state.procedure.trajectories[state.procedure.trajectory]
 

@@ -1,4 +1,4 @@
-"""What a command of a trial leads to, and the reply to it; what a registration reveals."""
+"""The outcome of a command of a trial, and the reply to it; what a registration reveals."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class RefusedStep:
 
 
 def summary(state: TrainingState) -> dict[str, Any]:
-    """Return where a trial stands."""
+    """Return the state of a trial."""
     data: dict[str, Any] = {
         "trialId": state.trial_id,
         "phase": state.phase.value,
@@ -84,7 +84,7 @@ def summary(state: TrainingState) -> dict[str, Any]:
 
 
 def given(state: TrainingState) -> dict[str, Any]:
-    """Return what a trial is registered by: its touches and its trace, in double precision."""
+    """Return the points that register a trial: its touches and its trace, in double precision."""
     trace = state.trace
     if trace is None:
         return {"touches": _touched(state)}
@@ -137,7 +137,7 @@ def take_registration(
 def take_score(
     arguments: Mapping[str, Any], state: TrainingState, truth: Truth, texts: Texts
 ) -> TrialStep | TrainingReply:
-    """Take the score of a registered trial; the same again changes nothing."""
+    """Accept the score of a registered trial; a repetition changes nothing."""
     registration, answered = state.registration, {"trialId": state.trial_id}
     if registration is None:
         return TrainingReply(False, texts.say("no registration"))

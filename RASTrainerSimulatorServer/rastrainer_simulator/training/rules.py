@@ -26,7 +26,7 @@ from rastrainer_simulator.training.feed import NO_FEED, Feed
 from rastrainer_simulator.vectors import ZERO, Vector, distance
 
 RECORDING_FAILED = "RecordingFailed"
-"""By it the control loop takes back what could not be written; clients cannot send it."""
+"""Used by the control loop to undo what could not be written; clients cannot send it."""
 
 INTERRUPTED = "Interrupted"
 """Pauses a trial that a server's end has cut short; clients cannot send it."""
@@ -105,7 +105,7 @@ REFUSALS: Mapping[str, Mapping[Phase, str]] = {
     RECORDING_FAILED: {},
     INTERRUPTED: dict.fromkeys((Phase.IDLE, *FINISHED_PHASES), "no trial"),
 }
-"""For each command of the simulation the phases that it is wrong in, and the sentence's key."""
+"""For each command of the simulation the phases in which it is wrong, and the sentence's key."""
 
 ENDING_A_TRIAL = (CommandName.SUBMIT_REGISTRATION, CommandName.TRIAL_SCORED)
 """Commands by which a client ends a registered trial: its registration, then its score."""
@@ -252,7 +252,7 @@ def refused_touch(
 
 _TOUCHING = (Phase.RUNNING, Phase.COMPLETE)
 TOO_DEEP_MM = 0.5
-"""How deep the tip may be pressed in before that is an error."""
+"""How deep the tip may be pressed in before it counts as an error."""
 
 
 def touch_stage(
@@ -263,13 +263,13 @@ def touch_stage(
     goal: Vector | None,
     settings: TrainingSettings,
 ) -> TouchStage:
-    """Return how the next touch is going.
+    """Return the state of the next touch.
 
     Args:
         now: where the tip is.
         proximity: of the tool to the head.
         obstacle: what stops the arm behind the tool, "" for nothing.
-        training: where the trial stands.
+        training: the state of the trial.
         goal: position of the next fiducial, World, m; None without one.
         settings: what counts as a touch.
     """

@@ -1,7 +1,7 @@
-"""Tracing: where the tip leaves a point, what ends a stroke, and what is said of it.
+"""Tracing: where the tip leaves a point, what ends a stroke, and the messages about it.
 
 A point is left where the tip is on the skin, a millimeter or more from the last one. That follows
-from the last point alone, so that a trial that was interrupted goes on exactly as it would have.
+from the last point alone, so that an interrupted trial continues exactly as it would have.
 """
 
 from __future__ import annotations

@@ -97,7 +97,7 @@ class Training:
         }
 
     def restart_from(self, revision: int) -> None:
-        """Count revisions on from another simulation's, before the first trial."""
+        """Continue the revisions of another simulation, before the first trial."""
         self.state = replace(self.state, revision=revision)
         self._kept.begin(self.state)
 
@@ -126,7 +126,7 @@ class Training:
         return self._head.fiducials.get(self.state.next_point or "")
 
     def handles(self, command: str) -> bool:
-        """Return whether a command is the trial's business."""
+        """Return whether a command concerns the trial."""
         return command in self._handlers
 
     def handle(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
@@ -176,7 +176,7 @@ class Training:
         return self._refused(step, now)
 
     def _taken(self, step: TrialStep, now: TouchMoment) -> TrainingReply:
-        """Take on the state of a step; what is no change of phase itself may lead to one."""
+        """Adopt the state of a step; a step without a change of phase may lead to one."""
         answer = {**step.data, **step.answered}
         if step.kind is EventKind.PHASE:
             event = self._enter(step.state, step.key, now, **step.values)
@@ -233,7 +233,7 @@ class Training:
         return self._taken(step, now)
 
     def _trace(self, command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        """Begin or end a stroke; a command that has come before changes nothing."""
+        """Begin or end a stroke; a repeated command changes nothing."""
         trace, on = self.state.trace, command.arguments["on"]
         assert trace is not None, "the method has a trace"
         if on == trace.is_on:
@@ -242,7 +242,7 @@ class Training:
         return self._taken(tracing.stroke(state), now)
 
     def _traced(self, _command: OperatorCommand, now: TouchMoment) -> TrainingReply:
-        """Add a point to the stroke, which ends with the last one that a trial takes."""
+        """Add a point to the stroke, which ends with the last point that a trial accepts."""
         elapsed = self._clock.elapsed(now.sim_time)
         self.state = tracing.with_point(self.state, now, self._head.measured(now.tip), elapsed)
         event, trace = tracing.point_event(self.state, now), self.state.trace
@@ -347,7 +347,7 @@ class Training:
         return Event(EventKind.PHASE, now.sim_time, data)
 
     def _keep(self, state: TrainingState, key: str, **values: object) -> None:
-        """Take on a state that must not be lost, with the instruction that goes with it."""
+        """Adopt a state that must not be lost, with its instruction."""
         words = {
             "trainee": state.trainee,
             "point": state.next_point,

@@ -69,7 +69,7 @@ class StartedTrial:
 
 
 class TrialStarter:
-    """Starts the trials of a session, each with an ID and a seed of its own."""
+    """Starts the trials of a session, each with its own ID and seed."""
 
     def __init__(
         self,
@@ -198,11 +198,11 @@ class KeptStates:
         self._feeds = {}
 
     def keep(self, state: TrainingState) -> None:
-        """Keep a state that the trial takes on."""
+        """Store a state that the trial adopts."""
         self._states[state.revision] = state
 
     def leave(self, revision: int, feed: Feed) -> None:
-        """Keep the feed at which the state of a revision is left."""
+        """Store the feed at which the state of a revision is left."""
         self._feeds[revision] = feed
 
     def find(self, revision: int) -> tuple[TrainingState, Feed | None] | None:

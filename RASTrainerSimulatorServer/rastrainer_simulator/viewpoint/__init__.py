@@ -1,1 +1,1 @@
-"""Where the picture is looked from: the view that the trainee moves, and the best for a touch."""
+"""Viewpoints of the picture: the view that the trainee moves, and the best for a touch."""

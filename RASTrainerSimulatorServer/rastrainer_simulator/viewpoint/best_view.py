@@ -1,4 +1,4 @@
-"""From where touches are seen best, and from where along the skin: rays, in order of merit."""
+"""Viewpoints from which touches are seen best, and along the skin: rays, in order of merit."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from rastrainer_simulator.vectors import (
 WIDEST_DEG = 60.0
 """Between the skin's normal and the line to the eye."""
 LEAST_OFF_TOOL_DEG = 20.0
-"""Between the tool and that line: more end-on its own holder hides the tip."""
+"""Between the tool and that line: seen more end-on, its own holder hides the tip."""
 LIKED_DEG = 30.0
 """Between normal and line where place and depth are both judged well."""
 LIKED_ELEVATION_DEG = 25.0
@@ -59,12 +59,12 @@ BESIDE_DEG = (82.0, 75.0, 65.0)
 
 OFF_SKIN_M = 0.002
 SHAFT_M = 0.012
-"""Behind the tip: so much of the tool is seen with it."""
+"""Length of the tool behind the tip that is seen with it."""
 
 
 @dataclass(frozen=True)
 class ViewedTouch:
-    """A touch to be looked at: World, m.
+    """A touch to be viewed: World, m.
 
     Attributes:
         fiducial: where the tip will be.
@@ -88,11 +88,11 @@ class ViewedTouch:
 
 @dataclass(frozen=True)
 class BestView:
-    """Where to look at a touch from: World, m.
+    """A viewpoint for a touch: World, m.
 
     Attributes:
         eye: from where target, number and tip are seen.
-        fiducial: what is looked at.
+        fiducial: the point in focus.
         normal: the skin's outward unit normal there.
         beside: an eye that looks along the skin; None where something is always in between.
     """
@@ -130,7 +130,7 @@ def is_seen(touch: ViewedTouch, sight: LineOfSight, eye: Vector, margin: float) 
 
 
 def _eyes(touch: ViewedTouch, front: Vector) -> list[Vector]:
-    """Return the places from which a touch may be looked at, the best first."""
+    """Return the positions from which a touch may be viewed, the best first."""
     ranked: list[tuple[float, Vector]] = []
     for elevation, azimuth in product(ELEVATIONS_DEG, AZIMUTHS_DEG):
         line = _direction(azimuth, elevation)
@@ -165,7 +165,7 @@ def _beside(touch: ViewedTouch, sight: LineOfSight, eye: Vector) -> Vector | Non
 def _along_skin(touch: ViewedTouch, eye: Vector) -> Iterator[Vector]:
     line = subtract(eye, touch.fiducial)
     across = reject(line, touch.normal)
-    # Looked at right along the normal, any side is across.
+    # Seen exactly along the normal, any side is across.
     start = unit(across if dot(across, across) > 1e-9 else reject((0.0, 0.0, 1.0), touch.normal))
     right = cross(touch.normal, start)
     for lean in BESIDE_DEG:
@@ -180,7 +180,7 @@ class TouchViews:
     """Looks for best views; it has its own collision shapes, so that a thread may use it alone."""
 
     def __init__(self, setup: SimulationSetup, head: HeadMesh | None = None) -> None:
-        """Take what a simulation is made from; the head is read where it is not given.
+        """Use what a simulation is made from; the head is read if it is not given.
 
         Raises:
             InputError: the head cannot be read.
@@ -251,7 +251,7 @@ class BestViews:
         self._views: tuple[SimulationSetup, TouchViews] | None = None
 
     def look(self, setup: SimulationSetup, task: str, head_to_world: np.ndarray) -> None:
-        """Begin to look for those of a trial; HeadToWorld is the trial's, (4, 4) float, mm."""
+        """Start looking for those of a trial; HeadToWorld is the trial's, (4, 4) float, mm."""
         found: dict[str, BestView] = {}
         self._found = found
         threading.Thread(
@@ -262,11 +262,11 @@ class BestViews:
         ).start()
 
     def of(self, label: str | None) -> BestView | None:
-        """Return the best view of a fiducial; None where it is not found yet, or there is none."""
+        """Return the best view of a fiducial; None if it is not found yet, or there is none."""
         return None if label is None else self._found.get(label)
 
     def forget(self) -> None:
-        """Look for no more."""
+        """Stop looking."""
         self._found = {}
 
     def _look(

@@ -65,7 +65,7 @@ class Orbit:
     shift: Vector = ZERO
 
     def toward(self, other: Orbit, share: float) -> Orbit:
-        """Return an orbit between this and another, the shorter way around."""
+        """Return an orbit between this and another, in the shorter direction."""
         turn = math.remainder(other.azimuth_deg - self.azimuth_deg, 360.0)
         rise = other.elevation_deg - self.elevation_deg
         way = subtract(other.shift, self.shift)
@@ -159,7 +159,7 @@ ZOOM_PER_S = 2.0
 """How fast held buttons move the view."""
 TRAVEL_DEG_S = 110.0
 SHORTEST_S = 0.5
-"""How fast the view goes to another place by itself, and how long it takes at least."""
+"""How fast the view moves to another position by itself, and how long it takes at least."""
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ STILL = ViewMotion()
 
 @dataclass
 class _Travel:
-    """A way from one orbit to another, `share` of which is done."""
+    """A move from one orbit to another, `share` of which is done."""
 
     start: Orbit
     goal: Orbit
@@ -205,7 +205,7 @@ class ViewControl:
     Attributes:
         camera: the scenario's camera that it starts from.
         orbit: how it differs from that.
-        is_automatic: whether the last change of place was by itself.
+        is_automatic: whether the last move was automatic.
     """
 
     def __init__(self) -> None:
@@ -216,23 +216,23 @@ class ViewControl:
 
     @property
     def is_moved(self) -> bool:
-        """Whether it is, or will be, elsewhere than the scenario's camera."""
+        """Whether it differs, or will differ, from the scenario's camera."""
         travel = self._travel
         return (self.orbit if travel is None else travel.goal) != FRONT
 
     @property
     def is_traveling(self) -> bool:
-        """Whether it is on its way to another place."""
+        """Whether it is moving to another position."""
         return self._travel is not None
 
     def use(self, camera: str) -> None:
-        """Start from a camera of the scenario, unless it is the one already."""
+        """Start from a camera of the scenario, unless it is already in use."""
         if camera != self.camera:
             self.camera = camera
             self.reset()
 
     def reset(self) -> None:
-        """Be the scenario's camera again."""
+        """Return to the scenario's camera."""
         self.orbit, self._travel, self.is_automatic = FRONT, None, False
 
     def turn(self, camera: Camera, around_deg: float, higher_deg: float, zoom: float) -> None:
@@ -252,7 +252,7 @@ class ViewControl:
         )
 
     def go(self, goal: Orbit, is_automatic: bool = False) -> None:
-        """Go to another place, gently."""
+        """Move gently to another orbit."""
         turn = math.remainder(goal.azimuth_deg - self.orbit.azimuth_deg, 360.0)
         degrees = math.hypot(turn, goal.elevation_deg - self.orbit.elevation_deg)
         seconds = max(SHORTEST_S, degrees / TRAVEL_DEG_S)
@@ -260,9 +260,9 @@ class ViewControl:
             self._travel = _Travel(self.orbit, goal, seconds, is_automatic)
 
     def advance(self, dt: float, camera: Camera, motion: ViewMotion, is_arm_still: bool) -> None:
-        """Move on by `dt` seconds: by what is held, else on the way.
+        """Advance by `dt` seconds: by what is held, else along the move.
 
-        A way that was set out on automatically waits while the arm is driven.
+        An automatic move waits while the arm is driven.
         """
         if motion != STILL:
             zoom = ZOOM_PER_S ** (-motion.nearer * dt)

@@ -40,7 +40,7 @@ from rastrainer_simulator.virtual.method_noise import PUBLISHED_NOISE, MethodNoi
 
 @dataclass(frozen=True, eq=False)
 class MethodPoints:
-    """What one method registers.
+    """The points that one method registers.
 
     Attributes:
         method: the method.
@@ -139,7 +139,7 @@ def register_by(
 
 
 def points_of_trial(given: GivenPoints, scenario: Scenario) -> tuple[MethodPoints, ...]:
-    """Return what a played trial gives to each method: its own, and those that need no more.
+    """Return the points of a played trial for each method that needs no more than it has.
 
     A trial by landmarks and surface is one by each of both, too; the surface alone starts from its
     first three landmarks.
@@ -188,7 +188,7 @@ def _rms(values: Sequence[float] | np.ndarray) -> float:
 TRACE_POINTS = 200
 SCREWS = 5
 SCREW_DEPTH_MM = 8.0
-"""Of a screw's head under the skin: about the thickness of a scalp."""
+"""Depth of a screw's head under the skin: about the thickness of a scalp."""
 LEAST_FOR_INTERVAL = 4
 METHODS = tuple(PUBLISHED_NOISE)
 
@@ -289,7 +289,7 @@ class MethodStudy:
             )
         shift = SkinShift(self.shift_mm, seed, self.indentation_mm)
         pose = self.scenario.perturbed_head_to_world(seed)
-        # The calibration of the tip is off alike at every touch of a trial.
+        # The calibration error of the tip is the same at every touch of a trial.
         tip = np.random.default_rng([seed, 0]).normal(0.0, COMMON_BIAS_SD_MM, 3)
         random = np.random.default_rng([seed, 1 + METHODS.index(method)])
         points = self._points(method, shift, random, tip)

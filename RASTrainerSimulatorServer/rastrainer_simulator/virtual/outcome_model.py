@@ -1,4 +1,4 @@
-"""A model of what trials give, without the physics: thousands of studies in a second.
+"""A model of the outcomes of trials, without the physics: thousands of studies in a second.
 
 Completion time and registration error of a trial are drawn from the distributions that the theory
 gives: times log-normal about task, trainee, mode and practice; errors as the FRE of fifteen points
@@ -29,7 +29,7 @@ DOF = 3 * FIDUCIAL_COUNT - 6
 REFERENCE_RMSE_MM, REFERENCE_TRE_MM = 1.4, 0.4
 """The published study's mean RMSE over fifteen fiducials, and what it means at their center."""
 REFERENCE_COMMON_BIAS_MM = 0.6
-"""What touches that scatter so seem to share on the tasks of Colin27, RMS."""
+"""Common bias that touches with this scatter seem to have on the tasks of Colin27, RMS."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def draw(
 def model_scores(model: OutcomeModel, times_s: np.ndarray, errors_mm: np.ndarray) -> np.ndarray:
     """Return the scores of drawn trials, in their shape (…, tasks).
 
-    The target error and the common bias are what the registration error means on average; nobody
+    The target error and the common bias are what the registration error means on average; no one
     touches the head but at the fiducials; the reference of a task is its own time.
     """
     scores = np.empty(times_s.shape)

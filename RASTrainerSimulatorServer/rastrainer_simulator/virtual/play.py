@@ -63,7 +63,7 @@ class UnfinishedTrialError(RASTrainerError):
 
 @dataclass(frozen=True)
 class VirtualTrial:
-    """What a played trial left behind, and the truth that only a simulation knows.
+    """The results of a played trial, and the truth that only a simulation knows.
 
     Attributes:
         touches_mm: (15, 3) float, World, mm, in the order of the task.

@@ -22,22 +22,22 @@ LIFT_MM = 35.0
 """How far the tip is lifted off the skin before it travels to the next fiducial."""
 
 PRESS_MM = 1.5
-"""How far below the skin the last aim is: the tip is to be felt touching it."""
+"""How far below the skin the last aim is: the touch of the tip should be felt."""
 
 LOWEST_DIP = np.radians(5.0)
-"""By how much the way around the head's center may lead lower than both of its ends."""
+"""By how much the path around the head's center may be lower than both of its ends."""
 
 DECISION_PERIOD_S = 0.05
 JOG_DURATION_S = 0.1
 STUCK_AFTER_S = 12.0
-"""Of aiming at a fiducial: after that, the trainee touches where the tip is."""
+"""Time limit of aiming at a fiducial: after that, the trainee touches where the tip is."""
 
 Action = tuple[str, dict[str, Any]]
 
 
 @dataclass(frozen=True)
 class Skill:
-    """What a trainee's hands are like.
+    """The properties of a trainee's hands.
 
     Attributes:
         speed_mm_s: fastest travel of the tip.
@@ -93,7 +93,7 @@ class ScriptedTrainee:
         normals: (n, 3) float, the skin's outward unit normals there, World.
         head_center_mm: (3,) float, around which the hand travels, World, mm.
         vertex_mm: (3,) float, the highest point of the head, World, mm.
-        skill: what the hands are like.
+        skill: the properties of the hands.
         seed: of the tremor and the aim.
     """
 
@@ -198,7 +198,7 @@ class ScriptedTrainee:
             return self._touch()
         is_aim = len(self._path) == 1
         if is_aim and np.isinf(self._gives_up_at_s):
-            # However far the way was.
+            # However long the path was.
             self._gives_up_at_s = observation.sim_time_s + STUCK_AFTER_S
         remaining = self._path[0] - observation.tip_mm
         gave_up = is_aim and observation.sim_time_s > self._gives_up_at_s
@@ -214,12 +214,12 @@ class ScriptedTrainee:
             self._acts_from_s = observation.sim_time_s + self._skill.dwell_s
             return None
         velocity = self._velocity(remaining, self._skill.speed_mm_s * (0.5 if is_aim else 1.0))
-        # In contact the hand does not push on: it only corrects along the skin.
+        # In contact the hand stops pushing: it only corrects along the skin.
         eases_off = is_aim and observation.is_in_contact
         return _jog(self._along_skin(velocity) if eases_off else velocity)
 
     def _is_over_aim(self, remaining: np.ndarray) -> bool:
-        """Return whether the tip is beside the aim by no more than it may, at any height."""
+        """Return whether the tip is close enough to the aim, at any height."""
         return bool(np.linalg.norm(self._along_skin(remaining)) < self._skill.settled_mm)
 
     def _along_skin(self, displacement: np.ndarray) -> np.ndarray:

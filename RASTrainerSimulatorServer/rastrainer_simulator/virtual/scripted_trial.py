@@ -150,7 +150,7 @@ def send(client: Client, name: str, arguments: dict[str, Any]) -> dict[str, Any]
 STAND_OFF_MM = 30.0
 ALIGNED_MM, ALIGNED_DEG = 0.05, 0.05
 PAST_INNER_MM = 1.0
-"""The drill goes so far past the inner table that is planned: the bone is not where it is shown."""
+"""The drill goes this far past the planned inner table: the bone is not where it is shown."""
 DRILL_MM_S, INSERT_MM_S, LONGEST_FEED_S = 5.0, 10.0, 2.0
 SLOW_FROM_MM, SLOW_MM_S = 2.0, 1.0
 NEAR_MM = 0.1
@@ -164,7 +164,7 @@ def play_procedure(
     trial_id: str,
     on_progress: Callable[[str], None] = lambda _done: None,
 ) -> TrialRecord:
-    """Carry the procedure of a registered trial out, and return the trial's record.
+    """Carry out the procedure of a registered trial, and return the trial's record.
 
     The touches are registered as Slicer's side does; the robot aligns the guide by itself. Depths
     are fed by the plan as the registration shows it. `on_progress` gets what was done, in words.

@@ -43,7 +43,7 @@ TIME_SD = 0.15
 
 @dataclass(frozen=True)
 class ProcedureHands:
-    """How exactly hands carry a procedure out; our own convention.
+    """How exactly hands carry out a procedure; our own convention.
 
     Attributes:
         entry_sd_mm: Of the guide's axis at the entry, along each of two axes.

@@ -21,7 +21,7 @@ from rastrainer.errors import InputError, RASTrainerError
 ATTEMPTS = 3
 """Number of processes that may die at one job."""
 AHEAD = 8
-"""Jobs per worker that may be done before their turn: results wait in memory."""
+"""Jobs per worker that may be done ahead of their turn: results wait in memory."""
 
 
 class WorkerDiedError(InputError):
@@ -150,7 +150,7 @@ class _Pool:
     def _replace(self, worker: _Worker, task: _Task) -> None:
         """Repeat the job of a process that died with another one."""
         self._workers.remove(worker)
-        # It closed its end: it is dead or about to be.
+        # It closed its end: it is dead or about to die.
         worker.process.join()
         exit_code = worker.end()
         if task.attempts < ATTEMPTS:

@@ -1,4 +1,4 @@
-"""What the trials of a study vary by: practice, tempo, trainees, modes, and chance.
+"""Sources of variation of a study's trials: practice, tempo, trainees, modes, and chance.
 
 The logarithm of a positive outcome is regressed on ln(n) of the trial's number n over all modes, on
 the tasks, and on one level for each trainee in each mode (least squares). The scatter of these

@@ -86,7 +86,7 @@ class PlatformLinks:
         self.path = study.with_name(f"{study.name}.lti.db")
 
     def pseudonym(self, issuer: str, subject: str) -> str | None:
-        """Return who a platform's user is in the study; None if nobody yet."""
+        """Return the trainee that a platform's user is in the study; None if none yet."""
         with self._opened() as database:
             query = "SELECT pseudonym FROM users WHERE issuer = ? AND subject = ?"
             row = database.execute(query, (issuer, subject)).fetchone()
@@ -98,7 +98,7 @@ class PlatformLinks:
             return {name for (name,) in database.execute("SELECT pseudonym FROM users")}
 
     def users(self, pseudonym: str) -> list[dict[str, str]]:
-        """Return by which platforms a trainee is known, and as whom."""
+        """Return the platforms and users by which a trainee is known."""
         if not self.path.exists():
             return []
         query = "SELECT issuer, subject FROM users WHERE pseudonym = ?"
@@ -112,7 +112,7 @@ class PlatformLinks:
             database.execute("INSERT INTO users VALUES (?, ?, ?)", (issuer, subject, pseudonym))
 
     def forget(self, pseudonym: str) -> None:
-        """Delete a trainee's user and assignments; one who has none is no error."""
+        """Delete a trainee's user and assignments; having none is no error."""
         if self.path.exists():
             with self._opened() as database:
                 database.execute("DELETE FROM users WHERE pseudonym = ?", (pseudonym,))
@@ -140,7 +140,7 @@ class PlatformLinks:
         return len(users)
 
     def put(self, assignment: LinkedAssignment) -> None:
-        """Remember an assignment of a linked user, or its new terms; what was sent is kept."""
+        """Store an assignment of a linked user, or its new terms; what was sent is kept."""
         with self._opened() as database:
             database.execute(
                 f"INSERT INTO assignments ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
@@ -177,7 +177,7 @@ class PlatformLinks:
                 os.close(open_private(self.path, os.O_RDWR | os.O_CREAT | os.O_EXCL))
             with contextlib.closing(sqlite3.connect(self.path, timeout=WAIT_S)) as database:
                 database.execute("PRAGMA trusted_schema = OFF")
-                # Who is deleted leaves no bytes behind.
+                # Deleted users leave no bytes behind.
                 database.execute("PRAGMA secure_delete = ON")
                 database.execute("PRAGMA foreign_keys = ON")
                 database.execute("PRAGMA synchronous = EXTRA")

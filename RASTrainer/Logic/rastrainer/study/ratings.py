@@ -1,4 +1,4 @@
-"""Blinded rating of replays: the forms, and what raters have marked in a study.
+"""Blinded rating of replays: the forms, and the raters' marks in a study.
 
 Each mark is stored once, none is overwritten, the latest count.
 """
@@ -139,10 +139,10 @@ class RatingStore:
     def assign(
         self, rater: str, trial_ids: Collection[str], count: int, chance: random.Random
     ) -> tuple[str, ...]:
-        """Give a rater the replays of so many trials; return their trials in the rater's order.
+        """Assign replays to a rater; return their trials in the rater's order.
 
         All raters get the same trials: those that somebody has, and more of `trial_ids`, drawn at
-        random, where these are too few. Each rater gets them in an order of their own. What a rater
+        random, where these are too few. Each rater gets them in their own order. What a rater
         has already keeps its place.
 
         Args:

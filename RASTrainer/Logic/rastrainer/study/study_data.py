@@ -77,7 +77,7 @@ class StudyData:
         has_order: Whether the order of the trials is known.
         gap: What is missing of an incomplete virtual cohort, as a sentence; else "".
         aborted: Aborted trials, including trial runs, by trainee in order.
-        standings: Where active trainees stand in their curricula, by pseudonym.
+        standings: Of active trainees in their curricula, by pseudonym.
         ratings: Forms that raters have filled in for replays of the trials.
     """
 

@@ -74,7 +74,7 @@ def write_histories(study: Study, path: Path | str) -> tuple[int, int]:
         The number of trials, and the number of trainees without consent, who are left out.
 
     Raises:
-        InputError: nobody consented, or the file cannot be written.
+        InputError: no trainee consented, or the file cannot be written.
     """
     everyone = (*study.trainees(), *study.trainees(archived=True))
     consenting = sorted(trainee.pseudonym for trainee in everyone if trainee.consent)

@@ -112,7 +112,7 @@ class Erasure:
 
 
 def erase_trainee(study: Study, pseudonym: str, records: Path | None) -> Erasure:
-    """Delete a trainee for good.
+    """Delete a trainee permanently.
 
     Journals and files of tutorials are deleted first: if one cannot be deleted, the trainee remains
     and the deletion can be repeated. Earlier exports must be deleted by the lab.

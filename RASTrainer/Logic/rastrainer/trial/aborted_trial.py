@@ -1,6 +1,6 @@
 """The record of an aborted trial, as delivered by the simulator and stored in the study.
 
-An aborted trial with touches counts as an attempt, so nobody passes by aborting bad trials.
+An aborted trial with touches counts as an attempt: aborting bad trials helps no one to pass.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class AbortedTrial:
 
     @property
     def is_kept(self) -> bool:
-        """Whether it is worth keeping: it has a touch, even a refused one, or took some time."""
+        """Whether it is worth storing: it has a touch, even a refused one, or took some time."""
         touches = len(self.points) + self.rejected_touches + self.undone_touches
         return touches > 0 or self.elapsed_s > MIN_ABORTED_S
 

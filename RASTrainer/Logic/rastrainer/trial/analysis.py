@@ -1,4 +1,4 @@
-"""From a trial's record to its numbers: registrations, target errors, scores, what is submitted."""
+"""From a trial's record to its numbers: registrations, target errors, scores and submissions."""
 
 from __future__ import annotations
 

@@ -243,7 +243,7 @@ def _worst_acceptable() -> float:
 
 @dataclass(frozen=True, eq=False)
 class ProcedureOutcome:
-    """What became of a procedure.
+    """The outcome of a procedure.
 
     Attributes:
         analysis: its errors.

@@ -189,7 +189,7 @@ REFERENCE_FLE_MM = PUBLISHED_RMSE_MM / np.sqrt(1 - 2 / FIDUCIAL_COUNT)
 
 
 REFERENCE_TRACE_MM, TRACE_SPEED_MM_S = 200.0, 15.0
-"""The way over the skin that a trace is expected to take, and how fast: our own convention."""
+"""Length of the path over the skin that a trace should take, and its speed: our own convention."""
 
 
 def score_reference(

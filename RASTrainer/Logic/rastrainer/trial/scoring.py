@@ -31,10 +31,10 @@ TIME_FLOOR = 0.04
 SCORE_VERSION = "3"
 """Changes with any change of a formula or a reference, so that scores stay comparable."""
 FIRST_SCORE_VERSION = "1"
-"""Scored time and the expected TRE at one target; such scores are read, and made no more. Version 2
+"""Scored time and the expected TRE at one target: such scores are only read. Version 2
 did not score the common bias of the touches."""
 PASS_MARK = 70.0
-"""Score to reach where a study's protocol has no mark of its own from contrasting groups."""
+"""Score to reach if a study's protocol has no mark from contrasting groups."""
 LONG_PAUSE_S = 30.0
 """Our own convention: what a sip of water or a word with the instructor takes."""
 LIMIT_MM = 1.5
@@ -46,7 +46,7 @@ COMMON_BIAS_POWER = 4
 little, and a true bias of 2 mm much. Half, power and limit are our own convention."""
 HALF_CONTACT_S, CONTACT_LIMIT_S = 4.0, 8.0
 """Unintended contact in a trial that halves the desirability, and the most that is acceptable: a
-brush of a second now and then, not the tool's way of traveling. Our own convention, as the next."""
+brush of a second now and then, not the tool's usual travel. Our own convention, as the next."""
 HALF_CONTACT_PATH_MM, CONTACT_PATH_LIMIT_MM = 80.0, 160.0
 HALF_DEPTH_MM = DEPTH_LIMIT_MM = 1.5
 MAX_MEASURE = 1e6
@@ -55,7 +55,7 @@ MAX_MEASURE = 1e6
 
 @dataclass(frozen=True)
 class ScoreReference:
-    """What a trial is measured against.
+    """The reference of a trial's score.
 
     Attributes:
         time_s: completion time of half the range of the time desirability.

@@ -55,7 +55,7 @@ from rastrainer.trial.wording import Sentence, say
 
 @dataclass(frozen=True)
 class GivenPoints:
-    """What a trial is registered by.
+    """The points that register a trial.
 
     Attributes:
         task: name of the trial's task.
@@ -177,7 +177,7 @@ class TraceFollower:
 
 
 def trace_guide(scenario: Scenario, mesh: HeadMesh) -> TraceGuide:
-    """Return the guidance on a scenario's head for who looks at it by the close-up camera."""
+    """Return the guidance on a scenario's head for a viewer at the close-up camera."""
     to_head = transforms.inverse(scenario.head_to_world)
     eye = transforms.apply(to_head, scenario.cameras["close-up"].position)
     return TraceGuide(mesh, scenario.target_position, eye)

@@ -1,4 +1,4 @@
-"""Feedback on one trial, and on it among the trainee's earlier ones: as data, and as sentences."""
+"""Feedback on one trial, alone and among the trainee's earlier ones: as data and as sentences."""
 
 from __future__ import annotations
 

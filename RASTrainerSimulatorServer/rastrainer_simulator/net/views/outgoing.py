@@ -132,7 +132,7 @@ def screen(now: Screen) -> str:
 
 
 def event(feedback: Feedback) -> str:
-    """Return something to be heard and felt."""
+    """Return a sound and a vibration."""
     return _text(
         EVENT,
         number=feedback.number,
@@ -295,7 +295,7 @@ def _in_head(places: Sequence[Sequence[float]], head_to_world: np.ndarray) -> li
 
 
 class Mirror:
-    """Keeps what the newest headset has sent; one that comes back is another view."""
+    """Keeps what the newest headset has sent; one that reconnects is another view."""
 
     def __init__(self) -> None:
         self._headsets: set[int] = set()
@@ -308,12 +308,12 @@ class Mirror:
         self.text = NOBODY
 
     def left(self, view: int) -> None:
-        """Forget a view; the one before it, if any, is followed again."""
+        """Forget a view; the previous one, if any, is followed again."""
         if view in self._headsets and view == max(self._headsets):
             self.text = NOBODY
         self._headsets.discard(view)
 
     def take(self, view: int, worn: Worn) -> None:
-        """Take what a headset sends; only the newest is followed."""
+        """Process what a headset sends; only the newest is followed."""
         if view == max(self._headsets, default=None):
             self.text = NOBODY if worn.eyes is None else wearer(worn)

@@ -1,4 +1,4 @@
-"""The HTTP server of views: page, scene, sounds, pictures and streams; how it starts."""
+"""The HTTP server of views: page, scene, sounds, pictures and streams; its start."""
 
 from __future__ import annotations
 
@@ -196,7 +196,7 @@ class ViewServer:
             compress=False,
             # Pings are answered by the view, where they count as any message does.
             autoping=False,
-            # Every message waits until the one before it has left: only so the latest is sent.
+            # Every message waits until the previous one has left: only then is the latest sent.
             writer_limit=0,
         )
         if stream.can_prepare(request).protocol != SUBPROTOCOL:
@@ -248,7 +248,7 @@ class ViewServer:
         if under_tls is None:
             transport.set_write_buffer_limits(high=0)
         else:
-            # With 0, asyncio's TLS holds every other message back until the view says something.
+            # With 0, asyncio's TLS holds back every other message until the view sends something.
             transport.set_write_buffer_limits(high=1)
             under_tls.set_write_buffer_limits(high=0)
         with contextlib.suppress(OSError):
@@ -257,7 +257,7 @@ class ViewServer:
 
 
 async def _send_role(request: web.Request) -> web.Response:
-    """Tell a browser, which cannot read its cookie, what it was paired for."""
+    """Return to a browser, which cannot read its cookie, the role it was paired for."""
     return web.json_response({"role": request[ROLE].value}, headers={"Cache-Control": "no-store"})
 
 

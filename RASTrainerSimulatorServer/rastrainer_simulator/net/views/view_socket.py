@@ -1,4 +1,4 @@
-"""One view's WebSocket: what waits to be sent to it, and what it holds down."""
+"""One view's WebSocket: outgoing messages, and the inputs that it holds down."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ NOT_TEXT = "Messages must be text."
 ONLY_WATCHES = f"A spectator drives nothing: it may send {incoming.ALIVE} and nothing else."
 MAX_KEYS = 32
 CLOSE_S = 3.0
-"""How long a view has to read what waits for it, and to agree that it ends."""
+"""How long a view has to read its pending messages, and to confirm the end."""
 _BEFORE_EVENTS = (WELCOME, SCENE, CONTROL, SCREEN, PAIRING, SEAT)
 
 
@@ -45,7 +45,7 @@ class ViewSocket:
 
     Attributes:
         number: of the view; none is used twice.
-        hello: what it says of itself.
+        hello: its description of itself.
         is_local: whether it is on this computer, as far as the network can tell.
         outbox: what waits to be sent to it.
         held: what it holds down.
@@ -149,7 +149,7 @@ class ViewSocket:
             return lambda *values: take(view, *values)
 
         def nothing(*_values: Any) -> None:
-            """A sign of life needs no more than to have arrived."""
+            """For a sign of life it is enough to have arrived."""
 
         if self.is_spectator:
             return {incoming.ALIVE: nothing}
@@ -199,7 +199,7 @@ class HeldInput:
         return bool(self._keys) or self._pad is not None or self._has_sticks
 
     def key(self, code: str, is_down: bool, text: str) -> None:
-        """Take a key; no hand holds more than a few, so further ones are passed over."""
+        """Process a key; no hand holds more than a few, so further ones are ignored."""
         if not is_down:
             self._keys.pop(code, None)
         elif code in self._keys or len(self._keys) < MAX_KEYS:
@@ -209,7 +209,7 @@ class HeldInput:
         self._presenter.on_key(self._view, code, is_down, text)
 
     def pad(self, axes: Sequence[float], buttons: Sequence[float]) -> None:
-        """Take a gamepad's position."""
+        """Process a gamepad's position."""
         self._pad = (len(axes), len(buttons)) if any(axes) or any(buttons) else None
         self._presenter.on_pad(self._view, axes, buttons)
 
@@ -220,7 +220,7 @@ class HeldInput:
         is_fine: bool,
         yaw_deg: float,
     ) -> None:
-        """Take the sticks of XR controllers."""
+        """Process the sticks of XR controllers."""
         self._has_sticks = any(translation) or any(rotation) or is_fine
         self._presenter.on_sticks(self._view, translation, rotation, is_fine, yaw_deg)
 
@@ -244,15 +244,15 @@ class Outbox:
         self._events: deque[str] = deque()
         self._is_filled = asyncio.Event()
         self.is_overfull = False
-        """Whether more events have come than may wait."""
+        """Whether more events are waiting than allowed."""
 
     def put_latest(self, kind: str, text: str) -> None:
-        """Have a text sent, in place of one of its kind that still waits."""
+        """Have a text sent, in place of one of its kind that is still waiting."""
         self._latest[kind] = text
         self._is_filled.set()
 
     def put_event(self, text: str) -> None:
-        """Have a text sent after those before it, and none of them left out."""
+        """Have a text sent after the previous ones, none of them left out."""
         if len(self._events) >= self._most_events:
             self.is_overfull = True
         else:

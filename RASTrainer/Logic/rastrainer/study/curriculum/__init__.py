@@ -1,1 +1,1 @@
-"""Curricula: what trainees are to reach, in which order, and how far each has come."""
+"""Curricula: what trainees should reach, in which order, and the progress of each."""

@@ -80,7 +80,7 @@ class Assignment:
 
 @dataclass(frozen=True)
 class Curriculum:
-    """What a trainee is to reach.
+    """What a trainee should reach.
 
     Attributes:
         name: Short; `title` is for people.

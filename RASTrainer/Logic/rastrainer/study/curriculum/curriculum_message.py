@@ -1,4 +1,4 @@
-"""Where a trainee stands in a curriculum, as Slicer tells the simulator (`Curriculum`)."""
+"""A trainee's standing in a curriculum, as Slicer sends it to the simulator (`Curriculum`)."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class AssignmentMessage:
 
     @property
     def is_locked(self) -> bool:
-        """Whether others have to be reached before."""
+        """Whether others have to be reached first."""
         return self.state == AssignmentState.LOCKED.value
 
     @property
@@ -98,7 +98,7 @@ class CurriculumMessage:
 
     @classmethod
     def of(cls, trainee: str, standing: CurriculumStanding | None) -> CurriculumMessage:
-        """Return the message about where a trainee stands."""
+        """Return the message about a trainee's standing."""
         if standing is None:
             return cls(trainee)
         best = standing.next_best
@@ -111,7 +111,7 @@ class CurriculumMessage:
 
     @classmethod
     def from_arguments(cls, arguments: Mapping[str, Any]) -> CurriculumMessage:
-        """Return what checked command arguments tell."""
+        """Return the message in checked command arguments."""
         assignments = tuple(AssignmentMessage(**each) for each in arguments["assignments"])
         return cls(**{**arguments, "assignments": assignments})
 

@@ -1,4 +1,4 @@
-"""Which curriculum each trainee of a study follows, and which trials count for where they stand.
+"""Which curriculum each trainee of a study follows, and which trials count for their standing.
 
 Each choice is stored, the last one counts. Scored trials count, and aborted ones as failures.
 """
@@ -43,7 +43,7 @@ _STAMPS = """
 
 @dataclass(frozen=True)
 class CurriculumChoice:
-    """What was chosen once.
+    """One choice of a curriculum.
 
     Attributes:
         trainee: Pseudonym; "" for everybody.
@@ -63,7 +63,7 @@ class CurriculumStore:
         self._study = study
 
     def choose(self, curriculum: Curriculum | None, pseudonym: str = "") -> None:
-        """Have a trainee, or by "" everybody, also who comes later, follow a curriculum or none.
+        """Have a trainee, or by "" all present and future ones, follow a curriculum or none.
 
         What was chosen last counts: a choice for everybody ends those for single trainees.
 
@@ -93,7 +93,7 @@ class CurriculumStore:
             )
 
     def choices(self) -> tuple[CurriculumChoice, ...]:
-        """Return all choices, the first one first."""
+        """Return all choices, oldest first."""
         with self._study.database.reading() as connection:
             rows = connection.execute(
                 "SELECT coalesce(pseudonym, ''), curriculum_json, curriculum_choices.stored_utc "
@@ -103,7 +103,7 @@ class CurriculumStore:
         return tuple(CurriculumChoice(name, _read(text), utc) for name, text, utc in rows)
 
     def standing(self, pseudonym: str) -> CurriculumStanding | None:
-        """Return where a trainee stands; None without a curriculum.
+        """Return the standing of a trainee; None without a curriculum.
 
         Raises:
             InputError: an unknown trainee.
@@ -120,7 +120,7 @@ class CurriculumStore:
         return {name: tuple(numbers) for name, *numbers in rows}
 
     def standings(self) -> dict[str, CurriculumStanding]:
-        """Return where each active trainee with a curriculum stands, by pseudonym."""
+        """Return the standing of each active trainee with a curriculum, by pseudonym."""
         protocol = StudyProgress(self._study).protocol()
         names = [trainee.pseudonym for trainee in self._study.trainees()]
         found = {name: self._standing(name, protocol) for name in names}

@@ -1,4 +1,4 @@
-"""Where a trainee stands in a curriculum, which assignment should come next, and that in English.
+"""A trainee's standing in a curriculum, the assignment that should come next, and both in words.
 
 Everything follows from the curriculum and the trainee's trials, so that nothing more is stored.
 Scores of different versions are not compared: a goal is reached by trials of one version, and stays
@@ -24,7 +24,7 @@ from rastrainer.trial.trial_feedback import competence_of
 PassMarkOf = Callable[[str], "float | None"]
 """From a version of the score to the mark that passes; None where there is none."""
 RECENT = 3
-"""How many of the latest trials of an assignment it is compared with others by."""
+"""How many of its latest trials an assignment is compared by."""
 WHOLE_WAY = 100
 
 
@@ -72,7 +72,7 @@ class CountedTrial:
 
 @dataclass(frozen=True)
 class AssignmentStanding:
-    """Where a trainee stands with an assignment.
+    """A trainee's standing in an assignment.
 
     Attributes:
         assignment: That is meant.
@@ -115,7 +115,7 @@ class AssignmentStanding:
 
 @dataclass(frozen=True)
 class CurriculumStanding:
-    """Where a trainee stands in a curriculum.
+    """A trainee's standing in a curriculum.
 
     Attributes:
         curriculum: That is meant.
@@ -146,7 +146,7 @@ class CurriculumStanding:
 def by_curriculum(
     standings: Mapping[str, CurriculumStanding],
 ) -> dict[Curriculum, dict[str, CurriculumStanding]]:
-    """Return the standings of trainees, by name, for each curriculum that somebody follows."""
+    """Return the standings of trainees, by name, for each curriculum that is followed."""
     groups: dict[Curriculum, dict[str, CurriculumStanding]] = {}
     for name, standing in standings.items():
         groups.setdefault(standing.curriculum, {})[name] = standing
@@ -161,7 +161,7 @@ def standing_in(
     Args:
         curriculum: That is meant.
         trials: Of the trainee, in order of starting.
-        pass_mark_of: The study's pass mark, for goals without a mark of their own.
+        pass_mark_of: The study's pass mark, for goals without their own mark.
     """
     reached: dict[str, str] = {}
     standings = []
@@ -242,7 +242,7 @@ def _progress(
     if assignment.goal is GoalKind.COMPETENT:
         chart = competence_of([not each for each in passed])
         share = chart.scores[-1] / chart.limit if chart.scores else 0.0
-        # Rounded down: the whole way is shown only at competence.
+        # Rounded down: 100 % is shown only at competence.
         done = min(int(WHOLE_WAY * share), WHOLE_WAY - 1)
         return None if chart.competent_at is None else trials[chart.competent_at - 1], done
     reaching, row = None, 0
@@ -284,13 +284,13 @@ PARTS = {
 
 
 def title_of(assignment: Assignment) -> str:
-    """Return what people call an assignment, such as "Task 3 by a trace over the skin"."""
+    """Return the title of an assignment, such as "Task 3 by a trace over the skin"."""
     title = trial_title(assignment.task, assignment.mode, assignment.method, assignment.procedure)
     return f"{title} on {assignment.scenario}" if assignment.scenario else title
 
 
 def progress_of_assignment(standing: AssignmentStanding) -> str:
-    """Return how far a trainee is, such as "1 of 3 trials in a row at 70 or more"."""
+    """Return the progress of a trainee, such as "1 of 3 trials in a row at 70 or more"."""
     if standing.mark is not None and standing.assignment.goal is GoalKind.COMPETENT:
         return f"{standing.done} % of the way to {goal_of(standing)}"
     done = "" if standing.mark is None else f"{standing.done} of "
@@ -309,7 +309,7 @@ def goal_of(standing: AssignmentStanding) -> str:
 
 
 def short_progress_of(standing: AssignmentStanding) -> str:
-    """Return the state for a narrow column: of a reached one the day (UTC), of an open how far."""
+    """Return the state for a narrow column: the day (UTC) if reached, the progress if open."""
     if standing.state is not AssignmentState.OPEN:
         return f"{standing.state.value} {day_of(standing.reached_utc)}".rstrip()
     if standing.assignment.goal is GoalKind.COMPETENT:

@@ -1,4 +1,4 @@
-"""A study's database, whichever it is: where it is, its transactions, and how long they wait.
+"""A study's database of either kind: its place, its transactions, and how long they wait.
 
 An address of PostgreSQL never holds a password: libpq finds it in the user's own `~/.pgpass`, or in
 PGPASSFILE or PGPASSWORD. So none gets into settings, histories of shells, lists of processes or
@@ -24,9 +24,9 @@ from rastrainer.files.writing import make_folder
 SCHEMES = ("postgresql://", "postgres://")
 EXAMPLE = "postgresql://USER@HOST/DATABASE"
 OPTIONS = ("sslmode", "sslrootcert", "sslcert", "sslkey", "passfile", "host", "port")
-"""What an address may say after its question mark."""
+"""Options that an address may have after its question mark."""
 SAFE_MODES = ("verify-full", "verify-ca")
-"""Values of `sslmode` by which nobody between two computers can read along or answer instead."""
+"""Values of `sslmode` that prevent eavesdropping and impersonation between two computers."""
 _HERE = ("localhost", "127.0.0.1", "::1")
 _MAX_LENGTH = 1000
 
@@ -193,7 +193,7 @@ class Connection(Protocol):
 
 
 class LockWait:
-    """How long to wait for a lock; after a timeout, not at all for a while.
+    """How long to wait for a lock; for some time after a timeout, not at all.
 
     A panel queries a study ten times in a row: if another program holds a lock, it waits once, not
     ten times. Several connections may share one.

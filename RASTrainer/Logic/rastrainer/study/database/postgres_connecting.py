@@ -28,10 +28,10 @@ from rastrainer.study.database.database import (
 )
 
 _folders: list[Path] = []
-"""In which Psycopg is searched where this Python has none of its own."""
+"""Folder in which Psycopg is searched if this Python has none."""
 CONNECT_TIMEOUT_S = 10
 SILENCE_S = 10
-"""After which a connection is given up if the other side no longer acknowledges what it gets."""
+"""Time after which a connection is given up if the other side no longer acknowledges data."""
 INTERACTIVE_SILENCE_S = 2
 ANSWER_S = 75
 """After which one is given up that confirms everything and answers nothing, as a server that hangs.
@@ -39,7 +39,7 @@ ANSWER_S = 75
 Longer than `statement_timeout`.
 """
 INTERACTIVE_PATIENCE_S = 0.5
-"""Of a window; the attempt goes on without it."""
+"""Limit for a window; the attempt continues without it."""
 _SESSION = """
     SET search_path = public;
     SET timezone = 'UTC';
@@ -50,7 +50,7 @@ _SESSION = """
     SET tcp_keepalives_interval = 5;
     SET tcp_keepalives_count = 3;
 """
-"""A committed change survives a power failure, and a seat that has vanished blocks nobody."""
+"""A committed change survives a power failure, and a vanished seat blocks no one."""
 _NETWORK = {"keepalives_idle": 10, "keepalives_interval": 5}
 _Waiting = Generator[Any, int, Any]
 _attempts: dict[str, Future[Any]] = {}
@@ -58,9 +58,9 @@ _attempts: dict[str, Future[Any]] = {}
 _LOCKED = ("55P03", "57014", "40P01", "40001")
 """A lock, or a statement, that took too long; two that wait for each other."""
 _LEFT = "25P03"
-"""The server has ended a change that this program did not go on with, such as a computer asleep."""
+"""The server has ended a change that this program had stalled, such as a computer asleep."""
 _OURS = ("23", "42")
-"""Classes of errors that only a mistake of ours makes."""
+"""Classes of errors that only our own bugs cause."""
 _MAX_WORDS = 200
 
 _BY_STATE = {
@@ -104,7 +104,7 @@ _BY_WORDS = {
 
 
 def find_driver_in(folder: Path) -> None:
-    """Load the package from a private folder where this Python has none of its own."""
+    """Load the package from a private folder if this Python has none."""
     if folder not in _folders:
         _folders.append(folder)
 
@@ -164,7 +164,7 @@ def connected(
 
 
 def connected_within(patience_s: float, address: PostgresAddress) -> Any:
-    """Return a connection, or raise `TimeoutError` soon: the next call gets it where it came."""
+    """Return a connection, or raise `TimeoutError` soon: the next call gets it if it has come."""
     key = str(address)
     if key not in _attempts:
         _attempts[key] = _begun(address)
@@ -214,7 +214,7 @@ def _impatient(driver: ModuleType, answer_s: float) -> Any:
 
 
 def postgres_error(error: Any, address: PostgresAddress) -> InputError | None:
-    """Return what to tell the user of an error of psycopg; None where the mistake is ours."""
+    """Return what to tell the user of an error of psycopg; None if it is a bug of ours."""
     state, text = error.sqlstate or "", str(error).lower()
     if state in _LOCKED:
         return StudyBusyError(

@@ -4,7 +4,7 @@ A reader sees one state of the study, however long it reads. A writer first chan
 `rastrainer_study` and so waits for all writers before it, as those of an SQLite file do; the
 number in that row tells the others that something has changed.
 
-The next transaction reconnects if the connection was lost. If that was during a COMMIT, nobody
+The next transaction reconnects if the connection was lost. If that was during a COMMIT, no one
 knows whether the change was stored. That is safe: trials, marks and truths are stored once by their
 UUID and offered again until they are acknowledged, and steps are stored once by their name.
 """
@@ -43,7 +43,7 @@ from rastrainer.study.database.schema import (
 )
 
 LOCKED = "UPDATE rastrainer_study SET changes = changes + 1"
-"""By which a writer waits for the one before it, and tells others of its change."""
+"""By which a writer waits for the previous one, and informs others of its change."""
 _TABLES = """
     SELECT count(*) FROM pg_class WHERE relnamespace = 'public'::regnamespace AND relkind = 'r'
 """
@@ -173,7 +173,7 @@ class PostgresStatements:
 
 @functools.cache
 def portable_to_postgres(sql: str) -> str:
-    """Return a statement with PostgreSQL's marks of parameters and way into JSON."""
+    """Return a statement with PostgreSQL's parameter markers and JSON path syntax."""
     sql = _JSON_EXTRACT.sub(
         lambda found: f"({found[1]}::json #>> '{{{found[2].replace('.', ',')}}}')", sql
     )
@@ -185,7 +185,7 @@ _READ = """
     SET LOCAL idle_in_transaction_session_timeout = 0;
     SET LOCAL statement_timeout = 0
 """
-"""Who reads holds up nobody, and may take long, as for a copy of the whole study."""
+"""Readers block no one, and may take long, as for a copy of the whole study."""
 
 
 class PostgresDatabase(StudyDatabase):
@@ -274,7 +274,7 @@ class PostgresDatabase(StudyDatabase):
         self._connection.execute(begin)
 
     def _begin_waiting(self) -> str:
-        # 0 would be for ever.
+        # 0 would be forever.
         timeout_ms = max(1, round(1000 * self._lock_wait.timeout_s))
         return f"BEGIN; SET LOCAL lock_timeout = {timeout_ms}"
 

@@ -72,7 +72,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
     ),
     (
         # So that a simulator that offers a deleted trial again does not bring its trainee back.
-        # A hash, not the UUID: it can be recognized but leads to nobody.
+        # A hash, not the UUID: it can be recognized but identifies no one.
         "CREATE TABLE deleted_trials (trial_sha256 TEXT PRIMARY KEY NOT NULL) WITHOUT ROWID",
         """
         CREATE TABLE motions (
@@ -83,7 +83,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         """,
     ),
     (
-        # What the protocol asks of each trainee, and what became of it.
+        # What the protocol requires of each trainee, and the outcome.
         """
         CREATE TABLE study_protocol (
             id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -122,7 +122,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         """,
     ),
     (
-        # A virtual cohort: what is planned, when it was finished, and who never got through.
+        # A virtual cohort: what is planned, when it was finished, and the trials that got stuck.
         """
         CREATE TABLE cohort (
             id INTEGER PRIMARY KEY CHECK (id = 1),

@@ -19,7 +19,7 @@ class DeletedTrialError(InputError):
 def mark_deleted(connection: Connection, trial_ids: Iterable[str]) -> None:
     """Remember that these trials are deleted.
 
-    Only hashes of the random UUIDs are kept: without the record, nobody can learn that a trial
+    Only hashes of the random UUIDs are stored: without the record, no one can learn that a trial
     existed.
     """
     connection.executemany(

@@ -1,1 +1,1 @@
-"""The steps of a study, and how far each trainee has come."""
+"""The steps of a study, and the progress of each trainee."""

@@ -84,7 +84,7 @@ class Step:
 
 
 def trial_title(task: str, mode: str, method: str, procedure: str) -> str:
-    """Return what people call such a trial, such as "Task 3 by a trace over the skin"; "" is any.
+    """Return the title of such a trial, such as "Task 3 by a trace over the skin"; "" is any.
 
     Args:
         task: Its name.
