@@ -1,4 +1,4 @@
-"""How the tests are run: in which order, and when what they leave is collected."""
+"""How the tests are run: their order, and when their garbage is collected."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def pytest_configure():
 
 
 class ContainedFailures(logging.Handler):
-    """Keeps what failed where the rest goes on; see `rastrainer.slicer.signal`."""
+    """Records failures after which the rest continues; see `rastrainer.slicer.signal`."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -57,7 +57,7 @@ class ContainedFailures(logging.Handler):
 
 @pytest.fixture(autouse=True)
 def contained_failures():
-    """What has failed and was contained; a test that wants it so clears the list."""
+    """The contained failures; a test that expects them clears the list."""
     handler, logger = ContainedFailures(), logging.getLogger("rastrainer.error_guard")
     logger.addHandler(handler)
     yield handler.texts
@@ -108,7 +108,7 @@ def _shuffled(files, seed):
 
 
 def _spread(files):
-    """Return after which share of the run each file of tests comes."""
+    """Return the share of the run after which each file of tests comes."""
     waiting = [path for path in files if path.relative_to(HERE).parts[0] in WAITING]
     others = [path for path in files if path not in set(waiting)]
     share = {path: number / len(others) for number, path in enumerate(others)}

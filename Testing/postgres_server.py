@@ -1,4 +1,4 @@
-"""A PostgreSQL server of the tests' own: from nothing in a folder, killed and gone in the end."""
+"""The tests' own PostgreSQL server: made in a folder, and killed and removed at the end."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from Testing.free_port import free_port
 PROGRAMS = sorted(Path("/usr/lib/postgresql").glob("*/bin"), key=lambda path: float(path.parts[-2]))
 """Debian's, by version."""
 USER = "nobody"
-"""Who runs it where the tests run as root, which PostgreSQL refuses."""
+"""User of the server if the tests run as root, which PostgreSQL refuses."""
 TIMEOUT_S = 60.0
 
 
@@ -93,7 +93,7 @@ class PostgresServer:
         self._process.wait()
         self._process = None
         give_up = time.monotonic() + TIMEOUT_S
-        # A new one starts only when the shared memory of the old one is let go.
+        # A new one starts only when the shared memory of the old one is released.
         while any(Path(f"/proc/{pid}").exists() and _is_alive(pid) for pid in children):
             assert time.monotonic() < give_up
             time.sleep(0.01)
@@ -115,13 +115,13 @@ class PostgresServer:
         return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
 
     def ask_for_passwords(self) -> None:
-        """Let nobody in without one from now on, but the administrator through the socket."""
+        """Require a password from now on, except of the administrator through the socket."""
         rules = "local all tester trust\nhost all tester 127.0.0.1/32 trust\n"
         (self._data / "pg_hba.conf").write_text(f"{rules}host all all 0.0.0.0/0 scram-sha-256\n")
         self.execute("SELECT pg_reload_conf()")
 
     def offer_tls(self, folder: Path, name: str) -> Path:
-        """Offer TLS with a certificate of its own for a number; return what clients trust."""
+        """Offer TLS with a certificate of its own for an IP address; return what clients trust."""
         issuer = trustme.CA()
         key = self._data / "server.key"
         issued = issuer.issue_cert(name)

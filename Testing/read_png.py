@@ -1,4 +1,4 @@
-"""Pictures that were kept as files, as the tests look at them."""
+"""Pictures that were saved as files, for the tests to inspect."""
 
 from __future__ import annotations
 

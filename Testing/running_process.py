@@ -1,4 +1,4 @@
-"""Whether a process runs, and which it has started; on Linux."""
+"""Whether a process runs, and which processes it has started; on Linux."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def runs(pid: int) -> bool:
-    """Return whether a process runs; one that only waits to be noticed by its parent does not."""
+    """Return whether a process runs; one that only waits to be reaped by its parent does not."""
     fields = _fields(Path("/proc", str(pid)))
     return bool(fields) and fields[0] != "Z"
 
@@ -23,7 +23,7 @@ def started_by(pid: int) -> list[int]:
 
 
 def _fields(place: Path) -> list[str]:
-    """Return what /proc says of a process from its state on; nothing where it has gone."""
+    """Return what /proc says about a process from its state on; nothing if it has gone."""
     try:
         return (place / "stat").read_text().rpartition(")")[2].split()
     except (FileNotFoundError, ProcessLookupError):

@@ -87,7 +87,7 @@ class VirtualGamepad:
 
     @property
     def is_plugged_in(self) -> bool:
-        """Whether it is there."""
+        """Whether it is plugged in."""
         return self._joystick is not None
 
     def plug_in(self) -> None:
@@ -127,16 +127,16 @@ class VirtualGamepad:
             self._sdl.SDL_JoystickSetVirtualAxis(self._joystick, AXES.index(name), value)
 
     def press(self, name: str, is_down: bool = True) -> None:
-        """Press a button by SDL's name, or let it go."""
+        """Press a button by SDL's name, or release it."""
         number = BUTTONS.index(name)
         self._sdl.SDL_JoystickSetVirtualButton(self._joystick, number, int(is_down))
 
     def tap(self, name: str, seconds: float = 0.0) -> None:
-        """Press a button and let it go, each until SDL, in another thread, has looked at it."""
+        """Press a button and release it, each until SDL, in another thread, has polled it."""
         for is_down in (True, False):
             self.press(name, is_down)
             time.sleep(seconds)
-            # The second look has begun: the first is over.
+            # The second poll has begun: the first is over.
             seen = self._updates + 2
             while self._updates < seen and self._joystick is not None:
                 time.sleep(0.001)

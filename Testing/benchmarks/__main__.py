@@ -40,7 +40,7 @@ def main() -> None:
         for row in chain.from_iterable(measure() for measure in measures):
             rows.append({column: row[column] for column in COLUMNS})
             print(_line(rows[-1].values()), flush=True)
-        # Half an hour's numbers are not lost to the last benchmark's failure.
+        # A failure of the last benchmark should not lose half an hour's numbers.
         arguments.output.write_text(json.dumps(rows, indent=2) + "\n")
     print(f"Written to {arguments.output}.")
 

@@ -1,4 +1,4 @@
-"""The table of a class: read anew after a trial, and read where nothing has changed."""
+"""The table of a class: read again after a trial, and read when nothing has changed."""
 
 import tempfile
 import time

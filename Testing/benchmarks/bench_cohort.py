@@ -25,7 +25,7 @@ def rows(quick: bool) -> list[dict]:
     jobs = list(trial_jobs(protocol, Population(), 1 if quick else 6, 0))
     play = functools.partial(play_job, settings=PlaySettings())
     for job in jobs[: len(tasks)]:
-        # The ways over the head are computed once a process and task.
+        # The paths over the head are computed once per process and task.
         play(job)
     played, seconds = zip(*(_timed(play, job) for job in jobs), strict=True)
     finished = [trial for trial in played if trial.analysis is not None]

@@ -31,7 +31,7 @@ _THIN = 1e-6
 
 
 class Bench:
-    """The default scenario's robot and head, where it stands."""
+    """The default scenario's robot and head, in its nominal pose."""
 
     def __init__(self) -> None:
         setup = load_setup()
@@ -75,8 +75,10 @@ def _tour(bench: Bench, collision: Collision) -> Iterator[np.ndarray]:
         over = bench.fabrik.solve(place + 0.05 * normal, touch.direction, q_start=touch.q)
         q = np.array(over.q) if q is None else q
         for goal in (over.q, touch.q, over.q):
-            way = np.linalg.norm(bench.kinematics.tip(goal)[:3, 3] - bench.kinematics.tip(q)[:3, 3])
-            ticks = max(1, int(way / (TOUR_SPEED * TICK)))
+            length = np.linalg.norm(
+                bench.kinematics.tip(goal)[:3, 3] - bench.kinematics.tip(q)[:3, 3]
+            )
+            ticks = max(1, int(length / (TOUR_SPEED * TICK)))
             yield from np.linspace(q, goal, ticks)
             q = np.array(goal)
 

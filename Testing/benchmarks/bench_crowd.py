@@ -108,7 +108,7 @@ async def _serve(
 
 
 class _Client(asyncio.Protocol):
-    """Reads all it is sent, looking at no more than a fast client would."""
+    """Reads all it is sent, parsing no more than a fast client would."""
 
     def __init__(self, number: int) -> None:
         self._buffer = bytearray()
@@ -201,7 +201,7 @@ def rows(quick: bool) -> list[dict]:
     ):
         begin = multiprocessing.get_context("spawn")
         results = begin.Queue()
-        # The crowd is a process of its own: it must not wait for its own measurement.
+        # The crowd is a separate process: it must not wait for its own measurement.
         crowd = begin.Process(
             target=serve_crowd, args=(simulator.port, simulator.view_port, key, seconds, results)
         )

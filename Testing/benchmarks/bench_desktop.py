@@ -29,10 +29,10 @@ REST_S = (0.4, 0.6)
 MIDDLE_M = 0.6
 """Above it the stick is pushed down, below it up."""
 LOOK_S = 0.2
-"""Between two looks at where the arm is."""
+"""Time between two checks of the arm's position."""
 TIMEOUT_S = 20.0
 SETTLED_PICTURES = 2 * TRIED_FRAMES
-"""Of one quality in a row: by then the window has lowered it as far as it will."""
+"""Pictures of one quality in a row: by then the window has lowered it as far as it will."""
 
 
 class Delay(NamedTuple):

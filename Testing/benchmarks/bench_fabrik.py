@@ -44,7 +44,7 @@ class Solver(Protocol):
     name: str
 
     def question(self, target: pin.SE3, mode: str) -> tuple:
-        """Put a target as this solver takes it; not part of its time."""
+        """Convert a target as this solver needs it; not part of its time."""
 
     def solve(self, question: tuple, q_start: Sequence[float]) -> Sequence[float] | None:
         """Return joint angles, or None."""

@@ -33,7 +33,7 @@ TRAINEE, TASK, SEED = "T-001", "task-1", 3
 TRIAL_S = 300.0
 EARLIER_TRIALS = 40
 OWN = "without waits for a CPU"
-"""That other programs have: stalls can be compared by it where the machine is busy."""
+"""Priority of other programs, by which stalls can be compared on a busy machine."""
 JOURNALS_DELETED = 10
 LARGER_STUDY = 40, 10
 """Trainees, and trials of each."""

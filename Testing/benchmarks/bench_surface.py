@@ -10,7 +10,7 @@ from Testing.domain.registration.traces import coarse_start, colin27, head_pose,
 
 
 def rows(quick: bool) -> list[dict]:
-    """Return the row `surface.match`, in ms; the search tree is there already."""
+    """Return the row `surface.match`, in ms; the search tree already exists."""
     head, seconds = colin27(), []
     face = places(head, "face")
     for seed in range(6 if quick else 60):

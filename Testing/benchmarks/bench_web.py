@@ -1,4 +1,4 @@
-"""What the browser page costs: bytes, triangles, draw calls, memory, and the way to the pixel."""
+"""What the browser page costs: bytes, triangles, draw calls, memory, and the delay to the pixel."""
 
 import tempfile
 import time
@@ -21,11 +21,11 @@ HEADSET = "metaQuest2"
 KB = 1024.0
 WARM_UP_S = 60
 LONG_S = 600
-# The browser goes on compiling what runs often for minutes, and what it compiles is in the heap,
+# The browser continues to compile what runs often for minutes, and what it compiles is in the heap,
 # too; without that, what grows is the page's own.
 UNCOMPILED = "--js-flags=--no-sparkplug --no-maglev --no-opt"
 SAMPLES = 11
-# The page goes on while one looks: the least of several looks is nearest to what it keeps.
+# The page continues meanwhile: the least of several samples is nearest to what it retains.
 LOOKS = 5
 # The state is drawn one and a half periods of the stream after it has come, to be smooth.
 WAIT_FOR_CAMERA = """(camera) => new Promise((done) => {
@@ -89,7 +89,7 @@ def rows(quick: bool) -> list[dict]:
 
 
 def long_rows() -> list[dict]:
-    """Return what takes minutes to find out: whether the heap grows."""
+    """Return what takes minutes to measure: whether the heap grows."""
     with sync_playwright() as playwright:
         return _heaps(playwright, LONG_S)
 
@@ -98,7 +98,7 @@ def long_rows() -> list[dict]:
 def _page(
     playwright: Playwright, headset: str = "", *arguments: str
 ) -> Iterator[tuple[Place, Page]]:
-    """Open the page in a browser and at a simulator of its own, in a trial."""
+    """Open the page in a browser, at its own simulator, in a trial."""
     with tempfile.TemporaryDirectory() as folder:
         browser = launch(playwright, *arguments)
         with (

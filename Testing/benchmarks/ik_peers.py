@@ -1,4 +1,4 @@
-"""What users would pick instead of FABRIK, set up to solve the same questions."""
+"""What users would pick instead of FABRIK, set up to solve the same problems."""
 
 import numpy as np
 import pink

@@ -60,7 +60,7 @@ def between(earlier: LoopStatistics, later: LoopStatistics) -> LoopStatistics:
 
 
 def punctuality(healths: Sequence[LoopStatistics]) -> Punctuality:
-    """Return what several heartbeats in a row tell."""
+    """Return the punctuality between several heartbeats in a row."""
     return _of_parts([between(earlier, later) for earlier, later in pairwise(healths)])
 
 

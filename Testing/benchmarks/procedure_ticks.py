@@ -78,7 +78,7 @@ class _Operation:
             self._do(CommandName.START_INSERTION)
             self._feed()
             self._do(CommandName.RELEASE_INSTRUMENT)
-        # What is registered needs no Abort: the next StartTask begins anew.
+        # A registered trial needs no Abort: the next StartTask starts a new one.
         fed = [*self._times[Phase.DRILLING], *self._times[Phase.INSERTING]]
         return self._times[Phase.ALIGNING], fed
 

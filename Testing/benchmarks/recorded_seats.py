@@ -21,7 +21,7 @@ Recording = Sequence[tuple[float, str]]
 
 
 async def recorded(simulator: ViewedSimulator, seconds: float) -> Recording:
-    """Return what a real simulator tells a board within so many seconds."""
+    """Return what a real simulator sends to a board within some seconds."""
     async with aiohttp.ClientSession() as session:
         body = {"code": simulator.code, "role": "board"}
         answer = await session.post(f"{simulator.url}/pair", json=body)
@@ -45,7 +45,7 @@ async def recorded(simulator: ViewedSimulator, seconds: float) -> Recording:
 
 
 def repeat(count: int, recording: Recording, pipe: Connection) -> None:
-    """Serve so many seats; tell the ports, and at the end when each message was sent.
+    """Serve a number of seats; report the ports, and at the end when each message was sent.
 
     Each message has its number as `rejected`; times are `time.time`, s, by seat and number.
     """

@@ -1,4 +1,4 @@
-"""What the bench says of the control loop is said of the right seconds."""
+"""What the bench reports about the control loop belongs to the right seconds."""
 
 import numpy as np
 import pytest

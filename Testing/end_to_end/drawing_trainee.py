@@ -17,7 +17,7 @@ CENTER_M = np.array([0.001, -0.012, 0.016])
 """Of the head, RAS."""
 COARSE = LANDMARKS[:3]
 SEEN_OFF_MM = 0.3
-"""So far above the skin, the tip is seen to have left it."""
+"""Height above the skin at which the tip has visibly left it."""
 TURN_BACK_M = 0.006
 STROKE_POINTS = 12
 TRACING = "over parts that face different ways"
@@ -58,7 +58,7 @@ class DrawingTrainee(StreamTrainee):
         return self._in_world(CENTER_M)
 
     def choose_method(self, method: str) -> None:
-        """Choose in the experiment menu by what is registered."""
+        """Choose the method of registration in the experiment menu."""
         self.focus("method")
         while (before := self.value("method")) != method:
             self.press("right", lambda b=before: self.value("method") != b, "another method")
@@ -78,7 +78,7 @@ class DrawingTrainee(StreamTrainee):
             self.press_on(landmark.name)
 
     def draw_until(self, count: int) -> list[dict]:
-        """Draw strokes where the ring is until so many points are traced; return the rings."""
+        """Draw strokes where the ring is until enough points are traced; return the rings."""
         rings = []
         while self.traced < count:
             self.until(lambda: self.view.trace["next"] is not None, "a ring")
@@ -122,7 +122,7 @@ class DrawingTrainee(StreamTrainee):
         self.steer_to(place + LIFT_M * outward, 0.01)
 
     def _go_above(self, place: np.ndarray) -> None:
-        """Carry the tip over the head to a place, on a way that stays off the skin."""
+        """Carry the tip over the head to a place, on a path that stays off the skin."""
         center = self.head_center
         start, end = self.tip - center, place - center
         height = LIFT_M + max(np.linalg.norm(start), np.linalg.norm(end))
@@ -133,7 +133,7 @@ class DrawingTrainee(StreamTrainee):
             self.steer_to(center + height * between / np.linalg.norm(between), 0.02)
 
     def _draw_about(self, place: np.ndarray, outward: np.ndarray) -> None:
-        """Draw to and fro across a place, on the skin by what is seen of the height."""
+        """Draw back and forth across a place, on the skin as far as the visible height shows."""
         along = np.cross(outward, (0.0, 0.0, 1.0))
         along /= np.linalg.norm(along)
         wanted, give_up = self.traced + STROKE_POINTS, self.view.state["time"] + 30.0

@@ -30,7 +30,7 @@ HOST = "127.0.0.1"
 
 @dataclass(frozen=True)
 class Fault:
-    """What becomes of one connection.
+    """The fate of one connection.
 
     Attributes:
         after_bytes: of both directions together.
@@ -66,7 +66,7 @@ class FaultyProxy:
     """
 
     def __init__(self, target: int, rng: random.Random, longest_s: float, at_least: int = 0):
-        """Before so many faults have struck, no connection is long enough for a whole trial."""
+        """Until so many faults have struck, no connection is long enough for a whole trial."""
         self.target = target
         self.faults: dict[str, int] = {}
         self._rng = rng
@@ -80,7 +80,7 @@ class FaultyProxy:
         self._threads[0].start()
 
     def stop_faults(self) -> None:
-        """Cut nothing from now on: what is left to deliver can be."""
+        """Cut nothing from now on, so that the rest can be delivered."""
         self._is_fault_free.set()
 
     def close(self) -> None:
@@ -119,7 +119,7 @@ class FaultyProxy:
                     self._strike(client, server, fault, late)
 
     def _pass_on(self, client: socket.socket, server: socket.socket, fault: Fault) -> bytes | None:
-        """Carry bytes both ways; None where a peer has left.
+        """Carry bytes in both directions; None if a peer has left.
 
         Once the fault strikes, in the middle of a message as a rule, return what the client had
         sent and the server has not got.
@@ -154,7 +154,7 @@ class FaultyProxy:
             client.close()
             self._is_closed.wait(fault.lasts_s)
             server.sendall(late)
-            # The server still answers, to nobody.
+            # The server still answers, but no one listens.
             self._is_closed.wait(0.05)
         if fault.kind == "reset":
             for peer in (client, server):

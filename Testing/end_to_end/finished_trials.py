@@ -1,4 +1,4 @@
-"""Folders of finished trials, as a simulator leaves them that nobody was connected to."""
+"""Folders of finished trials, as left by a simulator without a connection."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a trainee works the simulator with: a gamepad, or the keyboard of the window."""
+"""The input devices of a trainee: a gamepad, or the keyboard of the window."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class GamepadHands:
 
 
 class KeyHands:
-    """The keys of the window, which knows no half way: what is worth most is held."""
+    """The keys of the window, which are pressed or not: the largest deflections are held."""
 
     def __init__(self, keyboard: VirtualKeyboard):
         self.keyboard = keyboard

@@ -23,7 +23,7 @@ from Testing.simulator.net.views.served import ViewClient
 SLICER = (sys.executable, "-m", "rastrainer_headless.main")
 TIMEOUT_S = 600
 PATIENT = {"views": {"silent_s": 10, "lost_s": TIMEOUT_S}}
-"""A machine that is too busy to draw neither lets go of what is held nor pauses the trial."""
+"""A machine that is too busy to draw neither releases what is held nor pauses the trial."""
 VIEWS = "RASTrainer simulator serves views on "
 
 
@@ -94,7 +94,7 @@ class SlicerProcess:
     """Slicer's side, headless."""
 
     def __init__(self, *arguments: str, errors: IO[str] | None = None):
-        """Start it; what it says on stderr goes to `errors`, or where our own goes."""
+        """Start it; its stderr goes to `errors`, or where our own goes."""
         self._process = subprocess.Popen(
             [*SLICER, *arguments], stdout=subprocess.PIPE, stderr=errors, text=True
         )

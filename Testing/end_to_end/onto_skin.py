@@ -16,7 +16,7 @@ TIMEOUT_S = 120.0
 
 
 def lowered(place: np.ndarray, center: np.ndarray) -> list[float]:
-    """Return where the tip is sent to for a place on the skin, World, mm."""
+    """Return where to send the tip for a place on the skin, World, mm."""
     inward = (center - place) / np.linalg.norm(center - place)
     return (place + SINK_MM * inward).tolist()
 

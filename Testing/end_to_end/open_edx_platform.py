@@ -77,7 +77,7 @@ def course() -> LtiConfiguration:
 
 
 def registration(_request):
-    """What the tool's settings must say."""
+    """The required settings of the tool."""
     found = course()
     passport = found.lti_1p3_passport
     return JsonResponse(

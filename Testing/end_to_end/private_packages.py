@@ -22,7 +22,7 @@ SIMULATOR, TRIMMER = "rastrainer_simulator.cli.main", "rastrainer.slicer.program
 def fill(folder: Path, wheel: Path) -> None:
     """Put the wheel and what the simulator's lock names into a folder, as pip would.
 
-    Files of this Python's packages are linked, not copied; whoever removes one removes the link.
+    Files of this Python's packages are linked, not copied; removing one removes the link.
     """
     words = ["--no-deps", "--no-index", "--no-cache-dir", "-q", "--target", str(folder)]
     subprocess.run([sys.executable, "-m", "pip", "install", *words, str(wheel)], check=True)
@@ -39,7 +39,7 @@ def fill(folder: Path, wheel: Path) -> None:
 
 
 def trim(folder: Path) -> tuple[dict[str, int], str]:
-    """Trim a folder as a set-up does; return the sizes that it notes, and what it said."""
+    """Trim a folder as a set-up does; return the sizes that it notes, and its output."""
     command = private_command(Path(sys.executable), folder, TRIMMER, str(folder))
     done = subprocess.run(command, capture_output=True, text=True, env=without_packages())
     assert done.returncode == 0, done.stderr

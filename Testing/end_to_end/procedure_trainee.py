@@ -1,4 +1,4 @@
-"""A trainee who carries a procedure out by what every view draws, and by input devices alone."""
+"""A trainee who carries out a procedure by what every view draws, and by input devices alone."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from rastrainer_simulator.presentation.screen import DepthRuler, ErrorArrow, Ton
 from Testing.end_to_end.stream_trainee import Hands, StreamTrainee
 
 ALIGNED_MM, ALIGNED_DEG = 0.8, 0.8
-"""What a hand brings the guide to."""
+"""The accuracy to which a hand brings the guide."""
 BEFORE_ENTRY_M = 0.03
 FAR_M = 0.02
 FULL_TURN_DEG = 8.0
-"""From so far the stick is pushed fully to turn the guide."""
+"""Angle from which the stick is pushed fully to turn the guide."""
 LEAST_TURN = 0.45
 LONGEST_ALIGNMENT_S = 120.0
 

@@ -1,4 +1,4 @@
-"""Programs as processes of their own that have imported everything already: many can be killed.
+"""Programs as separate processes that have already imported everything: many can be killed.
 
 A nursery is a process that imports a program's modules and then forks. What it forks runs the
 program's `main` and is a process like any other: with its own sockets, files and threads.
@@ -112,7 +112,7 @@ class Forked:
         return self._output.readline().strip()
 
     def drain_output(self) -> None:
-        """Read what it prints from now on: with its pipe full it would wait for a reader."""
+        """Read its output from now on: with a full pipe it would wait for a reader."""
         self._reader = threading.Thread(target=self._output.read, daemon=True)
         self._reader.start()
 

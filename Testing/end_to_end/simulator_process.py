@@ -24,7 +24,7 @@ class SimulatorProcess:
     """`rastrainer simulator` on a free port; ended by the `with` statement.
 
     Attributes:
-        ready: the line by which it says where it is ready.
+        ready: the line that says where it is ready.
         port: where it listens; 0 where it connects.
         pid: of the process.
         command: that starts it.
@@ -37,7 +37,7 @@ class SimulatorProcess:
         skip_tutorial(config)
         _keep_views(config)
         settings = ["--port", "0", "--records", str(records), "--config", str(config)]
-        # A pipe that nobody reads would be full after some minutes.
+        # A pipe that no one reads would be full after some minutes.
         self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self._process = subprocess.Popen(
             [*self.command, *settings, *arguments],
@@ -65,7 +65,7 @@ class SimulatorProcess:
         return self._process.stdout.readline().strip()
 
     def stop(self, number: int = signal.SIGTERM) -> tuple[int, str]:
-        """Ask it to stop; return its exit status and what it has said on stderr."""
+        """Ask it to stop; return its exit status and its stderr."""
         self._process.send_signal(number)
         return self.wait()
 
@@ -75,7 +75,7 @@ class SimulatorProcess:
         self._process.communicate()
 
     def wait(self) -> tuple[int, str]:
-        """Wait until it has ended of itself; return its exit status and what it said on stderr."""
+        """Wait until it has ended by itself; return its exit status and its stderr."""
         self._process.communicate(timeout=300)
         return self._process.returncode, self._captured_output()
 
@@ -85,7 +85,7 @@ class SimulatorProcess:
 
 
 def _keep_views(config: Path) -> None:
-    """Have no view count as gone where a busy machine lets it wait, unless the limits say when."""
+    """Let no view count as gone because a busy machine is slow, unless the limits say when."""
     path = config / LIMITS_FILE
     limits = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     views = {"gone_s": GONE_S, **limits.get("views", {})}

@@ -29,20 +29,20 @@ LONGEST_WAY_S = 4.0
 SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 ON_POINT_M, NEAR_M = 0.002, 0.008
-"""Where the tip is stopped, and how far from there it may come to rest."""
+"""Distance at which the tip is stopped, and how far from there it may come to rest."""
 HOVER_M = 0.032
 OFF_FIDUCIALS_M = 0.018
-"""A place that far from every fiducial is clearly none, whatever the skin's slope there."""
+"""A point this far from every fiducial is clearly not one, whatever the skin's slope there."""
 ASIDE_M = (0.03, 0.04, 0.05)
-"""How far from the tip such a place is looked for."""
+"""How far from the tip to look for such a point."""
 LONGEST_TOUCH_S = 600.0
-"""A try that fails is made again, as often as that allows: a busy machine's are clumsy."""
+"""Number of attempts: on a busy machine they are clumsy."""
 STILL_STATES = 10
 """The arm is at rest after this number of equal states in a row."""
 
 
 class Hands(Protocol):
-    """What a trainee works the simulator with."""
+    """The input device of a trainee."""
 
     def tap(self, control: str) -> None:
         """Press a control for a moment."""
@@ -110,7 +110,7 @@ class StreamTrainee:
 
     Attributes:
         view: what the trainee sees.
-        hands: what the simulator is worked with.
+        hands: the input device.
         again_s: after which a press without an effect is made again, for hands whose presses may
             be missed. A press that is only slow would count twice.
     """
@@ -213,11 +213,11 @@ class StreamTrainee:
         """Move the focus to an item."""
         names = [each.name for each in self.menu.items if each.kind != "axis"]
         assert item in names, f"{self.menu.name} has {names}"
-        # A menu that has opened by itself takes nothing for a moment.
+        # A menu that has opened by itself ignores input for a moment.
         self.until(lambda: self.menu.focus, "a focus")
         while (before := self.menu.focus) != item:
-            way = "down" if names.index(item) > names.index(before) else "up"
-            self.press(way, lambda b=before: self.menu.focus != b, "another focus")
+            direction = "down" if names.index(item) > names.index(before) else "up"
+            self.press(direction, lambda b=before: self.menu.focus != b, "another focus")
 
     def value(self, item: str) -> str:
         """Return what an item shows."""
@@ -235,7 +235,7 @@ class StreamTrainee:
         return np.mean(places, axis=0)
 
     def begin_task(self, task: str) -> None:
-        """Choose a task in the experiment's menu, and wait until its scene is there.
+        """Choose a task in the experiment's menu, and wait until its scene is loaded.
 
         It is built while the trial has begun, the first time on a machine.
         """
@@ -244,7 +244,7 @@ class StreamTrainee:
         self.until(lambda: self.view.scene["task"] == task, f"the scene of {task}")
 
     def press_away_from_fiducials(self) -> None:
-        """Push the tip against the skin where no fiducial is, as an error, and let go."""
+        """Push the tip against the skin where no fiducial is, as an error, and release."""
         place, center = self._bare_place(), self.head_center
         outward = (place - center) / np.linalg.norm(place - center)
         self.steer_to(self.tip + LIFT_M * outward, 0.01)
@@ -304,7 +304,7 @@ class StreamTrainee:
         self.press_on(label)
 
     def press_on(self, label: str) -> None:
-        """Record the fiducial under the tip; after a miss, approach from above once more."""
+        """Record the fiducial under the tip; after a miss, approach from above again."""
         kept, give_up = self.touched, time.monotonic() + LONGEST_TOUCH_S
         while time.monotonic() < give_up:
             if self.lower_onto(label):

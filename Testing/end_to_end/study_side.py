@@ -24,7 +24,7 @@ PERIOD_S = 0.05
 def run(folder: Path, port: int, address: str = "") -> None:
     """Lead the trainees of the study in a folder, or at an address. Never returns.
 
-    Nobody is chosen.
+    No trainee is chosen.
     """
     place = study_place(address) if address else None
     places = ModulePaths(

@@ -1,4 +1,4 @@
-"""A trainee over OpenIGTLink who notes what was acknowledged and comes back after every crash."""
+"""A trainee over OpenIGTLink who notes what was acknowledged and returns after every crash."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ Touch = tuple[str, tuple[float, ...]]
 
 
 class Killing:
-    """When somebody is to die: at the server's n-th message, or while it carries out a command."""
+    """When to kill a process: at the server's n-th message, or while it carries out a command."""
 
     def __init__(self, rng: random.Random, kill: Callable[[], None], at_commands: bool = True):
         """Kill by `kill`; `at_commands` is for the server's own death alone."""
         self._kill = kill
         self._messages = rng.randrange(1, 500)
-        # One in three dies with a command on its way: at the disk, or before or after.
+        # One in three dies with a command in transit: at the disk, or before or after.
         self._command = rng.choice([None, None, rng.randrange(1, 12)]) if at_commands else None
         self._delay_s = rng.uniform(0.0, 0.006)
         self.is_done = False
@@ -47,14 +47,14 @@ class Killing:
             self.now()
 
     def is_due(self) -> bool:
-        """Return whether the command that is about to be sent is the one to die with."""
+        """Return whether to kill during the command that is about to be sent."""
         if self._command is None:
             return False
         self._command -= 1
         return self._command == 0
 
     def while_it_works(self) -> None:
-        """Die a moment after a command has been sent."""
+        """Kill a moment after a command has been sent."""
         time.sleep(self._delay_s)
         self.now()
 
@@ -143,7 +143,7 @@ class SurvivingPlayer:
         self.resumed += 1
 
     def _play_on(self, client: Client, killing: Killing | None) -> None:
-        """Do the next thing of a trial."""
+        """Do the next step of a trial."""
         if not self.trial_id:
             self._seed = self._rng.randrange(2**31)
             start = {"task": self.task, "trainee": self.trainee, "seed": self._seed}
@@ -188,7 +188,7 @@ class SurvivingPlayer:
         self._in_flight = ""
 
     def _send(self, client: Client, name: str, killing: Killing | None, **arguments) -> dict:
-        """Carry out a command; what is on its way when the server dies may count or not."""
+        """Carry out a command; what is in transit when the server dies may count or not."""
         self._in_flight = name
         if killing is not None and killing.is_due():
             body = json.dumps(arguments)

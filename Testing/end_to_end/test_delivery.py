@@ -1,4 +1,4 @@
-"""Finished trials reach the study exactly once, whatever becomes of connections and both ends.
+"""Finished trials reach the study exactly once, whatever happens to connections and both ends.
 
 The server's part is the control loop, the link and the offers as they run in the simulator; the
 other side's is Slicer's link, trial logic and study. Between them are real sockets and a proxy that

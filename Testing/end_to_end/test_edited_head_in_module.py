@@ -1,4 +1,4 @@
-"""A head is found, edited and made into a scenario in the module; and what Cancel leaves."""
+"""A head is found, edited and made into a scenario in the module; Cancel leaves nothing."""
 
 from __future__ import annotations
 

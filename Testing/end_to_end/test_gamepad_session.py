@@ -1,6 +1,6 @@
 """From the start menu to the result by a gamepad alone, seen in the window and scored in Slicer.
 
-Within the trial Slicer's side crashes and comes back; in the next one the gamepad is unplugged.
+During the trial Slicer's side crashes and returns; in the next one the gamepad is unplugged.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from Testing.end_to_end.stream_trainee import StreamTrainee
 from Testing.end_to_end.window_process import BYTES_A_SECOND, WindowProcess, times_heard, wait_until
 from Testing.read_png import read_png
 
-# A window that the processor draws wants the machine for itself.
+# A window that the processor draws needs the machine to itself.
 pytestmark = pytest.mark.soak
 
 WIDTH, HEIGHT = 960, 540
@@ -40,7 +40,7 @@ SOUNDS = ("touch", "proximity", "contact", "error", "finish")
 
 
 class Photographer:
-    """Has the window keep pictures, and waits for it."""
+    """Has the window save pictures, and waits for it."""
 
     def __init__(self, lab: Lab, window):
         self._lab, self._window = lab, window
@@ -68,8 +68,8 @@ def type_by_gamepad(trainee: StreamTrainee, text: str) -> None:
         trainee.focus(row)
         while not is_chosen(trainee, row, letter):
             before = trainee.value(row)
-            way = "right" if before.index("[") < before.index(letter) else "left"
-            trainee.press(way, lambda r=row, b=before: trainee.value(r) != b, letter)
+            direction = "right" if before.index("[") < before.index(letter) else "left"
+            trainee.press(direction, lambda r=row, b=before: trainee.value(r) != b, letter)
         wanted = f"{text[:typed]}_"
         trainee.press("accept", lambda w=wanted: trainee.menu.facts[0].value == w, letter)
     trainee.choose("done")
@@ -86,7 +86,7 @@ def is_chosen(trainee: StreamTrainee, row: str, letter: str) -> bool:
 
 @pytest.fixture(scope="module")
 def session(tmp_path_factory) -> dict:
-    """Play the whole flow; return what came of it."""
+    """Play the whole flow; return the results."""
     folder = tmp_path_factory.mktemp("gamepad")
     with Lab(folder, "--speed", SPEED, "--seed", "7") as lab:
         slicer = lab.start_slicer()
@@ -100,7 +100,7 @@ def session(tmp_path_factory) -> dict:
         slicer.kill()
         photographer.catch_up()
         crash = report_crash(trainee, str(CRASH_AFTER + 1))
-        # It waits for one trial more, so that it is still there while the result is shown.
+        # It waits for one more trial, so that it is still running while the result is shown.
         slicer = lab.start_slicer(trials=2)
         play(trainee, photographer, range(CRASH_AFTER + 2, 16))
         trainee.until_not_warned(LOST)
@@ -174,7 +174,7 @@ def report_crash(trainee: StreamTrainee, label: str) -> dict:
 
 
 def unplug_and_resume(lab: Lab, trainee: StreamTrainee, photographer: Photographer) -> dict:
-    """Lose the gamepad in the next task while its stick is pushed; return what came of it."""
+    """Lose the gamepad in the next task while its stick is pushed; return the results."""
     trainee.choose("next")
     trainee.until_menu("experiment")
     trainee.begin_task("task-2")

@@ -9,11 +9,11 @@ from Testing.end_to_end.hands import KeyHands
 from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.stream_trainee import StreamTrainee
 
-# A window that the processor draws wants the machine for itself.
+# A window that the processor draws needs the machine to itself.
 pytestmark = pytest.mark.soak
 
 SPEED = "0.4"
-"""Simulated seconds in a second: a key is let go of in time, however late a picture is."""
+"""Simulated seconds per second: a key is released in time, however late a picture is."""
 SMALL = ("--size", "640x360", "--quality", "low")
 TRAINEE = "p07"
 KILLED_AFTER = 5
@@ -21,7 +21,7 @@ KILLED_AFTER = 5
 
 @pytest.fixture(scope="module")
 def session(tmp_path_factory) -> dict:
-    """Play the whole flow; return what came of it."""
+    """Play the whole flow; return the results."""
     folder = tmp_path_factory.mktemp("keyboard")
     with Lab(folder, "--speed", SPEED, "--seed", "8", "--no-gamepad") as lab:
         slicer = lab.start_slicer()
@@ -61,7 +61,7 @@ def to_task(trainee: StreamTrainee) -> None:
 
 
 def kill_while_moving(lab: Lab, trainee: StreamTrainee, window) -> dict:
-    """Kill the window while a key is held; return what became of the arm and the trial."""
+    """Kill the window while a key is held; return what happened to the arm and the trial."""
     lab.keyboard.hold("KeyR", True)
     trainee.until_moved()
     window.kill()

@@ -40,7 +40,7 @@ def slicer_sides(tmp_path_factory):
 
 
 class Lab:
-    """A folder of records and one of Slicer's side, and the processes that come and go there."""
+    """A folder of records and one of Slicer's side, and their processes."""
 
     def __init__(self, folder, nursery, slicer_nursery=None, speed=10):
         self.records, self.output = folder / "records", folder / "slicer"
@@ -134,7 +134,7 @@ def check_records(lab, player):
 
 
 def check_offers(lab, player, replayed):
-    """What no Slicer's side has fetched is offered, and some of it can be played again."""
+    """Trials that Slicer's side has not fetched are offered, and some can be replayed."""
     offered = {record.trial_id for record in TrialArchive(lab.records).unacknowledged()}
     assert offered >= player.registered
     chosen = [path for path in lab.journals if path.stem.partition("_")[2] in player.registered]
@@ -203,7 +203,7 @@ def deliver_the_rest(lab, slicer, trials):
 
 
 def wait_for_study(lab, is_complete):
-    """Wait for what is stored; patience ends only where nothing more arrives."""
+    """Wait for what is stored; patience ends only if nothing more arrives."""
     stored, give_up = None, 0.0
     while not is_complete(now := lab.stored()):
         if now != stored:

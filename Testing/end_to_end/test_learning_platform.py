@@ -26,7 +26,7 @@ from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.free_port import free_port
 from Testing.web.chromium import PATIENCE_MS, launch
 
-# Open edX has an environment of its own, which `make soak` makes.
+# Open edX has its own environment, which `make soak` makes.
 pytestmark = pytest.mark.soak
 
 PYTHON = Path(sys.prefix) / "openedx" / "bin" / "python"
@@ -36,7 +36,7 @@ WITHIN_S = 300.0
 
 
 class Started:
-    """A program that is started again and again."""
+    """A program that is started repeatedly."""
 
     def __init__(self, *command: object, ready: str, home: Path):
         self._command, self._ready = [str(word) for word in command], ready

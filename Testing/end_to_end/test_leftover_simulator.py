@@ -22,11 +22,11 @@ def story(tmp_path):
 
 @pytest.fixture
 def left(story):
-    """A simulator that another Slicer has started, which is gone."""
+    """A simulator that another Slicer, now gone, has started."""
     story.write_program()
     words = ["simulator", "--port", str(free_port()), "--records", str(story.records)]
     child = ChildProcess([story.program, *words])
-    # It says so after it has left word in its folder of where it listens.
+    # It says so after it has written into its folder where it listens.
     said = "computes the robot's kinematics"
     wait_until(lambda: any(said in line for line in child.takeLines()), lambda: None)
     yield child

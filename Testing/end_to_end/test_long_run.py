@@ -35,7 +35,7 @@ pytestmark = pytest.mark.skipif(
 TROUBLE = re.compile(r"error|traceback|critical", re.IGNORECASE)
 KEY = "the-views-key-of-this-long-run-only"
 MAX_GROWTH_MB = 8.0
-"""Between the first fifth and the last, of either process: what caches and studies grow by."""
+"""Growth of either process between the first fifth and the last: that of caches and studies."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Usage:
 
 @dataclass(frozen=True)
 class Run:
-    """What a long run left.
+    """The results of a long run.
 
     Attributes:
         simulator, slicer: use of each process after every trial.

@@ -51,7 +51,7 @@ PROTOCOL = {
     "questionnaires": [{"name": "sus", "when": "after-mode", "modes": []}],
 }
 PATIENCE_S = 600.0
-"""For what does not change any more."""
+"""Patience for what does not change any more."""
 
 
 class Seat:
@@ -148,7 +148,7 @@ class Lab:
             time.sleep(0.2)
 
     def asked(self, ask):
-        """Return what a function returns as soon as the database is there."""
+        """Return what a function returns, as soon as the database is reachable."""
         give_up = time.monotonic() + PATIENCE_S
         while True:
             try:
@@ -293,7 +293,7 @@ def check_trials(lab):
 
 
 def check_progress(lab):
-    """Everybody has done all steps in their order, each once, at two seats."""
+    """All trainees have done all steps in order, each once, at two seats."""
     with Study.open(lab.place) as study:
         progress = StudyProgress(study)
         for name in TRAINEES:

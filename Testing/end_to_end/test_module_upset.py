@@ -24,7 +24,7 @@ def story(tmp_path):
 
 
 def upset(story, delete_nodes):
-    """Do to the scene and the module what users do, then see that all is well."""
+    """Do to the scene and the module what users do, then check that all is well."""
     host = story.host
     host.leave()
     host.clear_scene()

@@ -21,12 +21,12 @@ from Testing.end_to_end.stream_trainee import StreamTrainee
 from Testing.end_to_end.virtual_display import VirtualMouse
 from Testing.end_to_end.window_process import TIMEOUT_S, wait_until
 
-# A window that the processor draws wants the machine for itself.
+# A window that the processor draws needs the machine to itself.
 pytestmark = pytest.mark.soak
 
 SIZE = (960, 540)
 SPEED = "0.4"
-"""Simulated seconds in a second: a stick is let go of in time, however late a picture is."""
+"""Simulated seconds per second: a stick is released in time, however late a picture is."""
 GRID_PX, HINTS_PX = 10, 100
 
 
@@ -140,7 +140,7 @@ def begin(lab, window, trainee, task):
     """Click on a task, and have the sticks shown once the window shows it."""
     trainee.choose(task)
     trainee.until(lambda: lab.view.scene["task"] == task, "the scene")
-    # Until the window has loaded the scene, it shows the menu before.
+    # Until the window has loaded the scene, it shows the previous menu.
     window.wait_for_tick(lab.view.state["tick"])
     trainee.show_sticks()
 

@@ -21,7 +21,7 @@ from Testing.slicer.host.sample_data import SampleDataLogic
 SAMPLE_SHAPE, SAMPLE_SPACING = (256, 256, 112), (0.9375, 0.9375, 1.4)
 """Of MRBrainTumor1."""
 SIZE = 0.75
-"""Of the head in the other volume: a small one is sooner made."""
+"""Size of the head in the other volume: a small one is faster to make."""
 
 
 class Clicks:
@@ -57,7 +57,7 @@ class Clicks:
 
 @pytest.fixture
 def session_under_way(host, tmp_path):
-    """A session under way: the simulator runs, and a trainee is chosen."""
+    """A running session: the simulator runs, and a trainee is chosen."""
     story = Story(host, tmp_path, ("--no-views", "--no-gamepad"))
     story.choose_own_program()
     story.start_simulator()
@@ -128,9 +128,9 @@ def test_five_clicks_start_training_on_a_loaded_volume_with_placed_fiducials(hos
     def shown_images():
         return findNode(host.scene, "vtkMRMLScalarVolumeNode", Role.HEAD_VOLUME)
 
-    # The node of the head before may still be there when the trial runs.
+    # The node of the previous head may still exist when the trial runs.
     host.wait_until(
-        # Those of the scenario before are shown until the new ones are read.
+        # Those of the previous scenario are shown until the new ones are read.
         lambda: shown_images() and shown_images().GetName() == "Ms X",
         "its images are shown",
     )

@@ -93,7 +93,7 @@ def ended(tmp_path_factory):
         with contextlib.suppress(urllib.error.HTTPError):
             urllib.request.urlopen(pairing, timeout=60)
         with socket.create_connection(("127.0.0.1", simulator.port)) as stranger:
-            # It may be sent away before it has said all.
+            # It may be closed before it has sent everything.
             with contextlib.suppress(OSError):
                 stranger.sendall(b"no message at all" * 10_000)
             assert do(client, "StartTask", task="task-1", trainee=TRAINEE).ok
@@ -123,7 +123,7 @@ def test_the_log_covers_the_whole_run_in_json_lines(ended):
     assert messages[0] == "The simulator has started."
     assert "The trial is running." in messages
     asked = messages.index("The simulator ends by SIGTERM.")
-    # The view is closed then; where a tick is left, the trial that nobody sees any more is paused.
+    # The view is closed then; if a tick is left, the trial that no one sees any more is paused.
     assert messages[asked + 1 :] in (
         ["The simulator has ended."],
         ["The trial is paused.", "The simulator has ended."],
@@ -168,7 +168,7 @@ def test_a_view_port_in_use_exits_with_a_one_sentence_error_and_status_2(tmp_pat
 
 @pytest.fixture
 def terminal():
-    """What is started hears of the terminal's end, even where these tests run under nohup."""
+    """The started program gets the hang-up of its terminal, even if these tests run under nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
     yield
     signal.signal(signal.SIGHUP, before)

@@ -61,7 +61,7 @@ def cohort():
 
 
 class Alone:
-    """A folder of trials that nobody was connected for, scored as the simulator does."""
+    """A folder of trials without a connected client, scored as the simulator does."""
 
     def __init__(self, folder, count, scenario):
         folder.mkdir()
@@ -157,7 +157,7 @@ def test_slicer_connecting_later_stores_the_trial_and_its_score_replaces_the_ide
         assert registered["matrix"] == analysis.rigid.matrix.ravel().tolist()
         own, slicers = alone.entries(trial, "scored")
         assert OWN_SCORE not in slicers["details"]
-        # Many trials come out of their order, and are compared with those that are there already.
+        # Many trials arrive out of order, and are compared with those already stored.
         for entry in (own, slicers):
             del entry["details"]["feedback"]
         assert without_its_mark(own) == slicers

@@ -38,7 +38,7 @@ def slicer(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """What a set-up makes of a checkout: packages in one folder, and a file that leads to ours."""
+    """A set-up from a checkout: packages in one folder, and one file leading to ours."""
     target = tmp_path_factory.mktemp("private") / "simulator"
     target.mkdir()
     for place in filter(Path.is_dir, map(Path, site.getsitepackages())):
@@ -66,7 +66,7 @@ def from_slicer(slicer, monkeypatch):
 
 
 def run(words):
-    """Return what a program of the private folder has said."""
+    """Return the output of a program of the private folder."""
     child, lines = ChildProcess(words), []
     wait_until(lambda: lines.extend(child.takeLines()) or child.poll(), lambda: None, LONG_S)
     return [*lines, *child.takeLines()]
@@ -127,11 +127,11 @@ def test_the_simulator_and_its_window_use_nothing_from_slicers_folder_and_end_to
                 LONG_S,
             )
             for pid in pids:
-                # What one of them has started for a moment may have ended.
+                # Short-lived processes that one of them has started may have ended.
                 with contextlib.suppress(FileNotFoundError, ProcessLookupError):
                     assert str(slicer) not in Path(f"/proc/{pid}/maps").read_text()
                     assert str(slicer).encode() not in Path(f"/proc/{pid}/environ").read_bytes()
-            # The real Python is the first; who kills it takes the window along.
+            # The real Python is the first; killing it ends the window, too.
             os.kill(pids[0], signal.SIGKILL)
             wait_until(child.poll, lambda: None, LONG_S)
             # Their ends of the output are closed a moment before they are gone.

@@ -74,7 +74,7 @@ class PageKeyboard:
 
 @pytest.fixture(scope="module", params=["gamepad", "keyboard"])
 def operated(tmp_path_factory, request) -> dict:
-    """Carry the biopsy out; return what came of it."""
+    """Carry out the biopsy; return the results."""
     device = request.param
     folder = tmp_path_factory.mktemp(device)
     options = () if device == "gamepad" else ("--no-gamepad",)

@@ -50,7 +50,7 @@ class Leader:
         self.place = folder, port
 
     def lost(self) -> Leader:
-        """Break off without any word, as a process that is killed, and return a new Leader."""
+        """Break off without notice, like a killed process, and return a new Leader."""
         self.session.link.connector.Stop()
         other = Leader(*self.place)
         other.until(lambda: other.session.link.isOpen and other.status.name)

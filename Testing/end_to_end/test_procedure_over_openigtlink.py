@@ -21,7 +21,7 @@ from Testing.end_to_end.simulator_process import SimulatorProcess
 from Testing.end_to_end.test_trial_over_openigtlink import SPEED, Player, play
 from Testing.simulator.planned_procedures import write_scenario
 
-# Slicer and the journal are tested so in each phase, too, which takes less.
+# Slicer and the journal are also tested like this in each phase, which takes less time.
 pytestmark = pytest.mark.soak
 
 STAND_OFF_MM = 25.0
@@ -30,11 +30,11 @@ PLACED_MM = 70.0
 ROUNDED_MM = 0.001
 """States and the journal are rounded."""
 FED_MM = 20.0
-"""At most what one command feeds."""
+"""Most that one command feeds."""
 
 
 class Surgeon:
-    """A client that carries a procedure out; the server is killed and started again beneath it."""
+    """A client that carries out a procedure; the server is killed and started again meanwhile."""
 
     def __init__(self, folder: Path):
         self.records = folder / "records"
@@ -83,7 +83,7 @@ class Surgeon:
         return samples[-1].get("feedMm", 0.0) if samples else 0.0
 
     def feed(self, tool: str, to_mm: float, velocity_mm_s: float) -> None:
-        """Feed a tool again and again until the state reports the depth."""
+        """Feed a tool repeatedly until the state reports the depth."""
         while (before := self.depth(tool)) < to_mm:
             self.player.do("Feed", velocityMmS=velocity_mm_s, durationS=2.0)
             self.depth(tool, before)

@@ -53,7 +53,7 @@ class KilledSlicer:
         self._start()
 
     def touches_reported(self, count: int) -> list[str]:
-        """Return the labels of so many touches, as soon as they are reported."""
+        """Return the labels of a number of touches, as soon as they are reported."""
         return [self.process.events_until("point")[-1]["label"] for _ in range(count)]
 
 
@@ -81,7 +81,7 @@ class Interrupted(Player):
         return json.loads(found.content.text)
 
     def feed(self, to_mm: float) -> None:
-        """Feed what is in the guide until it is so deep."""
+        """Feed what is in the guide to a depth."""
         while (depth := self.state(bool)["procedure"]["feedMm"]) < to_mm:
             self.do("Feed", velocityMmS=5.0, durationS=2.0)
             self.state(lambda state, before=depth: state["procedure"]["feedMm"] > before)

@@ -45,7 +45,7 @@ def test_a_real_head_becomes_a_sound_scenario(request, tmp_path, volume, kind):
     assert scenario.is_skull_approximate == (kind == "approximation")
     extent = np.ptp(mesh.vertices, axis=0)
     assert (extent > [130, 160, 120]).all()
-    # Upright: the widest place is nearer to the base than the crown is.
+    # Upright: the widest part is nearer to the base than the crown is.
     widest = mesh.vertices[np.abs(mesh.vertices[:, 0] - mesh.centroid[0]).argmax(), 2]
     assert widest < mesh.centroid[2] + 0.25 * extent[2]
     assert len(scenario.tasks) == 6

@@ -27,7 +27,7 @@ from rastrainer_simulator.net.record_store import (
 from Testing.domain.trial.trial_records import gentle_score, make_record
 from Testing.free_port import free_port
 
-# Ralph has an environment of its own, which `make soak` makes.
+# Ralph has its own environment, which `make soak` makes.
 pytestmark = pytest.mark.soak
 
 RALPH = Path(sys.prefix) / "ralph"
@@ -46,7 +46,7 @@ WITHIN_S = 60.0
 
 
 class Ralph:
-    """The server, on a port of its own; what it has taken stays when it is killed."""
+    """The server, on its own port; what it has accepted stays when it is killed."""
 
     def __init__(self, folder: Path):
         self._folder = folder

@@ -34,13 +34,13 @@ class Arm:
         assert reply.ok, f"{name}: {reply.error}"
 
     def move(self):
-        """Begin to move, up or down, for a while."""
+        """Start moving, up or down, for some time."""
         self.do("Jog", velocityMmS=[0, 0, 20.0 * self._direction], durationS=STROKE_S)
         self._direction = -self._direction
         self._moves_until = time.monotonic() + STROKE_S
 
     def keep_moving(self):
-        """Begin to move again once the last move is over."""
+        """Start moving again once the last move is over."""
         if time.monotonic() > self._moves_until:
             self.move()
 
@@ -75,7 +75,7 @@ def renders_in_a_while(host):  # noqa: F811
 
 
 def wait_until_idle(host):  # noqa: F811
-    """Wait until what has been asked for before is drawn, however slow the machine is."""
+    """Wait until all earlier requests are drawn, however slow the machine is."""
     session = host.widget.logic.session
     # When the first is answered, the module has asked for the poses that it wants now; those that
     # the simulator sends at once, at its next tick, come before its answer to the third.

@@ -61,7 +61,7 @@ def slicer(simulator):
 
 
 class GhostWatch(WatchingView):
-    """Keeps every ghost that it is shown: one has ended where a busy machine looks late."""
+    """Records every ghost that it is shown: one may have ended if a busy machine looks late."""
 
     def __init__(self, client):
         self.ghosts = []

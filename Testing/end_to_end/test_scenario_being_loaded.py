@@ -1,4 +1,4 @@
-"""While the simulator loads a head or settings, nobody begins a trial on what is about to go."""
+"""While the simulator loads a head or settings, no trial starts on what is about to be replaced."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Menu:
         self._view.send({"type": "text", "name": name, "value": value})
 
     def until(self, is_wanted):
-        """Return the items of the next menu that is as wanted, by their names."""
+        """Return the items of the next menu that meets a condition, by their names."""
         while True:
             menu = self._view.next("screen")["screen"].get("menu")
             if menu and is_wanted(menu):

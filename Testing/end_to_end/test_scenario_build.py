@@ -26,7 +26,7 @@ RASTRAINER = [sys.executable, "-m", "rastrainer_simulator.cli.main"]
 
 
 class CanceledError(Exception):
-    """Nobody wants the scenario any more."""
+    """The scenario is no longer wanted."""
 
 
 @pytest.fixture(scope="module")
@@ -101,7 +101,7 @@ def test_a_terminated_build_leaves_nothing(ct, tmp_path, temporary):
         assert list(temporary.iterdir())
         build.terminate()
     assert build.returncode == 128 + signal.SIGTERM
-    # It goes only after the process that works in it.
+    # It is removed only after the process that works in it has ended.
     assert not list(temporary.iterdir())
     assert [path.name for path in tmp_path.iterdir()] == ["temporary"]
 
@@ -149,5 +149,5 @@ def test_a_canceled_build_leaves_nothing(tmp_path):
         planScenario(
             lambda _tell: (draft, []), tmp_path / "made", (), RASTRAINER, progress=progress
         )
-    # The process that plans clears away what it has half made, and ends.
+    # The planning process removes its partial results, and ends.
     wait_until(lambda: not list(tmp_path.iterdir()), lambda: None, 60.0)

@@ -1,4 +1,4 @@
-"""A scenario of one's own in a running simulator: listed, loaded over OpenIGTLink, trained on."""
+"""A user's own scenario in a running simulator: listed, loaded over OpenIGTLink, trained on."""
 
 from __future__ import annotations
 

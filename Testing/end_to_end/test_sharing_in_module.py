@@ -50,7 +50,7 @@ def test_face_and_names_are_kept_on_request(host, tmp_path):
 
 
 def read_scenario(folder):
-    """Return what the file holds."""
+    """Return the content of the file."""
     return load_scenario(unpack(folder / "out.zip", folder / "library"))
 
 

@@ -1,4 +1,4 @@
-"""The simulator's process: how it starts, how it ends, and what it says when it cannot start."""
+"""The simulator's process: its start, its end, and its errors if it cannot start."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ def move_to(client, place):
 
 @pytest.fixture(scope="module")
 def slicer_side(tmp_path_factory):
-    """What Slicer's side has seen of a trial whose simulator crashed before it was kept."""
+    """What Slicer's side has seen of a trial whose simulator crashed before it was stored."""
     folder = tmp_path_factory.mktemp("lab")
     side = SlicerSide(folder / "study.db")
     port = ("--port", str(free_port()))

@@ -29,7 +29,7 @@ def go_to(view, item, menu):
 
 
 def screen_where(view, is_wanted):
-    """Return the next screen with a menu that is as wanted."""
+    """Return the next screen with a menu that meets a condition."""
     while True:
         screen = view.next("screen")["screen"]
         if screen.get("menu") and is_wanted(screen):

@@ -39,7 +39,7 @@ SHORT = {
 
 
 class Lab:
-    """The folder of a study, and the simulator and Slicer's side that come and go there."""
+    """The folder of a study, and the processes of simulator and Slicer's side."""
 
     def __init__(self, folder, thread):
         self.folder, self.port = folder, free_port()
@@ -58,7 +58,7 @@ class Lab:
         self.simulator.kill()
 
     def start_simulator(self):
-        """Start it on the port of the one before."""
+        """Start it on the port of the previous one."""
         words = ("--speed", "10", "--port", str(self.port))
         self.simulator = ViewedSimulator(self.folder / RECORDS, *words, key=self._key)
         self.port = self.simulator.port
@@ -83,7 +83,7 @@ class Lab:
 
 
 class View(ViewClient):
-    """What the trainee sees and clicks; to be read all the time, as a view is."""
+    """What the trainee sees and clicks; it must be read all the time, like a view."""
 
     def __enter__(self):
         self.join(kind="desktop")
@@ -94,7 +94,7 @@ class View(ViewClient):
         return self.until(lambda screen: name_of(screen) == menu)
 
     def enter(self):
-        """Come to the experiment menu, and say who trains."""
+        """Go to the experiment menu, and enter the trainee's ID."""
         self.choose("train", "introduction")
         self.choose("skip", "controls")
         self.choose("next", "experiment")

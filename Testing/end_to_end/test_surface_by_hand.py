@@ -15,11 +15,11 @@ from Testing.end_to_end.lab import Lab
 from Testing.end_to_end.test_gamepad_session import type_by_gamepad
 from Testing.simulator.landmarked import write_landmarked
 
-# A window that the processor draws wants the machine for itself, and drawing takes minutes.
+# A window that the processor draws needs the machine to itself, and drawing takes minutes.
 pytestmark = pytest.mark.soak
 
 SPEEDS = {"gamepad": "2", "keyboard": "0.4"}
-"""Simulated seconds in a second: a key is let go of in time, however late a picture is."""
+"""Simulated seconds per second: a key is released in time, however late a picture is."""
 SMALL = ("--size", "640x360", "--quality", "low")
 TRAINEE = "P7"
 POINTS = 70
@@ -27,7 +27,7 @@ POINTS = 70
 
 @pytest.fixture(scope="module", params=["gamepad", "keyboard"])
 def drawn(tmp_path_factory, request) -> dict:
-    """Choose the method, touch landmarks, draw, accept the match; return what came of it."""
+    """Choose the method, touch landmarks, draw, accept the match; return the results."""
     device = request.param
     folder = tmp_path_factory.mktemp(device)
     options = ["--scenario", str(write_landmarked(folder / "scenario"))]

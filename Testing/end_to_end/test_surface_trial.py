@@ -61,7 +61,7 @@ def seen(tmp_path_factory) -> dict:
                 trainee.trace(corners)
             player.do("Register")
             seen["offer"] = player.next_offer()
-        # Nobody is connected any longer: the simulator registers and scores the trial itself.
+        # No client is connected any longer: the simulator registers and scores the trial itself.
         (seen["journal"],) = records.glob("*.journal")
         wait_until(lambda: read_journal(seen["journal"]).of_kind("scored"), "its own score")
         reading = read_journal(seen["journal"])

@@ -16,7 +16,7 @@ SCREEN_HEIGHT = 730
 
 @pytest.fixture
 def options(host, tmp_path):  # noqa: ARG001 (the settings are the host's)
-    # The usual port may be another test's, which runs beside this one.
+    # The usual port may be in use by another test that runs beside this one.
     slicer.app.settings().setValue(PORT.key, free_port())
     return (*FAST, "--records", str(tmp_path / "trials"))
 

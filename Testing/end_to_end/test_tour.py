@@ -17,7 +17,7 @@ TOUR = Path(__file__).parents[1] / "slicer" / "real" / "tour.py"
 
 
 QUIET = ("--no-views", "--no-gamepad")
-"""The options of a simulator in which nobody plays."""
+"""The options of a simulator in which no one plays."""
 
 
 WITHOUT_A_TRIAL = (
@@ -47,7 +47,7 @@ def tour(host, tmp_path, options, *words):
     """Take the tour with a simulator that is installed elsewhere; return its steps, all good."""
     program = write_program(tmp_path / "rastrainer", tmp_path / "simulator.pid", options)
     slicer.app.settings().setValue(PROGRAM.key, str(program))
-    # The usual port may be another test's, which runs beside this one.
+    # The usual port may be in use by another test that runs beside this one.
     slicer.app.settings().setValue(PORT.key, free_port())
     status = host.run_script(TOUR, "--", "--output", str(tmp_path / "tour"), *words)
     content = json.loads((tmp_path / "tour" / "tour.json").read_text())

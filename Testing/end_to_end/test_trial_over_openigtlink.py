@@ -28,7 +28,7 @@ NEAR_MM = 1.5
 
 
 class Player(Client):
-    """A client that greets, and keeps the trials that it is offered."""
+    """A client that says hello, and collects the trials that it is offered."""
 
     def __init__(self, port: int):
         self.offers: list[dict] = []
@@ -96,7 +96,7 @@ def scenario() -> Scenario:
 
 @pytest.fixture(scope="module")
 def trial(scenario, tmp_path_factory) -> dict:
-    """What clients saw of a trial whose simulator crashes twice before it is put away."""
+    """What clients saw of a trial whose simulator crashes twice before it is acknowledged."""
     records = tmp_path_factory.mktemp("records")
     with (
         SimulatorProcess(records, "--no-views", "--speed", SPEED) as simulator,

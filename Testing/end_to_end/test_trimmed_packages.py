@@ -28,7 +28,7 @@ NEVER_IMPORTED = ("matplotlib", "embreex", "fontTools", "scipy", "networkx", "PI
 
 @pytest.fixture(scope="module")
 def trimmed(built_wheel, tmp_path_factory):
-    """A filled and trimmed folder, the sizes that were noted, and what was said."""
+    """A filled and trimmed folder, the sizes that were noted, and the output."""
     folder = tmp_path_factory.mktemp("private") / "simulator"
     fill(folder, built_wheel)
     return folder, *trim(folder)

@@ -1,4 +1,4 @@
-"""Volumes given to `rastrainer scenario build`: the broken get a sentence, the odd a right head."""
+"""Volumes for `rastrainer scenario build`: broken ones are refused, unusual ones read correctly."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from Testing.slicer.head.placed import fiducials
 from Testing.slicer.head.volume_file import write_volume
 
 SIZE = 0.75
-"""Of the heads: small ones are sooner found."""
+"""Size of the heads: small ones are found faster."""
 NOTHING_SCANNED_BELOW = 5.0
 """Height (S) above which no phantom here lacks a part of its head, mm."""
 

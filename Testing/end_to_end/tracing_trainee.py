@@ -48,7 +48,7 @@ class TracingTrainee:
         return started["trialId"]
 
     def trace(self, corners, ends: bool = True) -> None:
-        """Draw a stroke over the skin; without its end, the tip stays where it comes to."""
+        """Draw a stroke over the skin; without its end, the tip stays where it arrives."""
         places = on_skin(self._head, corners)
         self._land(places[0])
         self.player.do("Trace", on=True)
@@ -70,7 +70,7 @@ class TracingTrainee:
         return json.loads(found.content.text)
 
     def _land(self, place) -> None:
-        """Lower the tip onto a place; where the tool meets the skin beside it, lean it anew."""
+        """Lower the tip onto a place; where the tool meets the skin beside it, lean it again."""
         for lean in LEANS:
             self._lean = np.array(lean)
             self._go(place, ABOVE_MM, 400)

@@ -9,7 +9,7 @@ from Testing.end_to_end.window_process import wait_until
 
 
 class ViewLearner:
-    """Does what `TutorialPlayer` asks for, but for turning the view."""
+    """Does what `TutorialPlayer` asks for, except turning the view."""
 
     def __init__(self, trainee: StreamTrainee):
         self.trainee = trainee

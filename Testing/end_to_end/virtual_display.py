@@ -12,7 +12,7 @@ import pytest
 
 SIZE = (1920, 1080)
 HELD_S = 0.03
-# What is on the keys of an American keyboard, as X names it; letters and digits name themselves.
+# X names of the keys of an American keyboard; letters and digits name themselves.
 KEYSYMS = {
     "Enter": "Return",
     "Escape": "Escape",
@@ -59,7 +59,7 @@ class VirtualDisplay:
 
 
 class _Device:
-    """What works a display by XTEST."""
+    """Base of devices that operate a display by XTEST."""
 
     def __init__(self, display: VirtualDisplay):
         self._x = ctypes.CDLL("libX11.so.6")
@@ -84,12 +84,12 @@ class VirtualMouse(_Device):
         self._x.XFlush(self._display)
 
     def hold(self, is_down: bool) -> None:
-        """Press the left button, or let it go."""
+        """Press the left button, or release it."""
         self._test.XTestFakeButtonEvent(self._display, 1, int(is_down), 0)
         self._x.XFlush(self._display)
 
     def window_corner(self, width: int) -> tuple[int, int]:
-        """Return where the window that is so many pixels wide begins."""
+        """Return the left edge of the window of this width, in pixels."""
         root = ctypes.c_ulong(self._x.XDefaultRootWindow(self._display))
         parent, count = ctypes.c_ulong(), ctypes.c_uint()
         others, children = ctypes.c_ulong(), ctypes.POINTER(ctypes.c_ulong)()
@@ -110,7 +110,7 @@ class VirtualKeyboard(_Device):
     """Presses keys on a display, for whichever window has the focus."""
 
     def hold(self, code: str, is_down: bool) -> None:
-        """Press a key by its W3C code, or let it go."""
+        """Press a key by its W3C code, or release it."""
         symbol = KEYSYMS.get(code, code.removeprefix("Key").removeprefix("Digit").lower())
         keysym = self._x.XStringToKeysym((KEYSYMS.get(code) or symbol).encode())
         key = self._x.XKeysymToKeycode(self._display, ctypes.c_ulong(keysym))

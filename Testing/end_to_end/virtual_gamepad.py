@@ -27,7 +27,7 @@ REPOSITORY = Path(__file__).parents[2]
 class SimulatorWithGamepad(SimulatorProcess):
     """`rastrainer simulator` with a gamepad.
 
-    Every move is on its way when the call returns, and they are made in their order. `tap` holds
+    Every move has been sent when the call returns, and they are made in order. `tap` holds
     its button until the simulator has looked at it, however busy the computer is.
     """
 
@@ -56,7 +56,7 @@ class SimulatorWithGamepad(SimulatorProcess):
         self._send({"move": positions})
 
     def press(self, button: str, is_down: bool = True) -> None:
-        """Press a button by SDL's name ("a", "dpdown", …), or let it go."""
+        """Press a button by SDL's name ("a", "dpdown", …), or release it."""
         self._send({"press": button, "isDown": is_down})
 
     def tap(self, button: str, seconds: float = 0.0) -> None:
@@ -73,7 +73,7 @@ class SimulatorWithGamepad(SimulatorProcess):
 
 
 class Plug:
-    """Plugs the gamepad in and out in the thread that looks at gamepads, before it looks.
+    """Plugs the gamepad in and out in the thread that polls gamepads, before it polls.
 
     In any other thread SDL would call back to Python while the one that looks holds what both
     need: each would wait for the other.

@@ -29,17 +29,17 @@ DRAWN_S = 600.0
 SEED = 9
 TRAINEE = "P7"
 TOUCHED = 6
-"""So many points are touched where the head is seen from near."""
+"""Number of points touched in the close-up of the head."""
 
 
 class Photographer:
-    """Has the window keep pictures in the best light."""
+    """Has the window save pictures in the best quality."""
 
     def __init__(self, lab: Lab, window: WindowProcess):
         self._lab, self._window = lab, window
 
     def keep(self, name: str) -> None:
-        """Keep what is shown, once the view has arrived."""
+        """Save what is shown, once the view has arrived."""
         if self._lab.view.screen.menu is None:
             # Beside a menu nothing changes, and nothing is drawn again.
             self._window.wait_for_tick(self._lab.view.state["tick"])
@@ -64,7 +64,7 @@ def main() -> None:
             keep_menus(trainee, photographer, lab.keyboard)
             keep_views(trainee, photographer)
             trainee.go_home()
-            # It waits for one trial more, so that it is still there while the result is shown.
+            # It waits for one more trial, so that it is still running while the result is shown.
             slicer = lab.start_slicer(trials=2)
             scenario = load_scenario(asset_path(*DEFAULT_SCENARIO))
             play_trial(client, scenario, "task-1", TRAINEE, SEED)

@@ -32,7 +32,7 @@ class WindowProcess:
         self.folder = folder
         self.folder.mkdir(parents=True, exist_ok=True)
         self._log = folder / "frames.jsonl"
-        # A pipe that nobody reads would be full after some minutes.
+        # A pipe that no one reads would be full after some minutes.
         self._said = tempfile.TemporaryFile("w+")  # noqa: SIM115
         self._process = subprocess.Popen(
             [
@@ -91,7 +91,7 @@ class WindowProcess:
             self._process.wait()
 
     def stop(self) -> tuple[int, str]:
-        """Wait for its end; return its exit status and what it has said."""
+        """Wait for its end; return its exit status and output."""
         status = self._process.wait(TIMEOUT_S)
         self._said.seek(0)
         return status, self._said.read()

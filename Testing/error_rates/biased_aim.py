@@ -1,4 +1,4 @@
-"""What aiming beside every fiducial pays, in every direction: by simulated registrations.
+"""What aiming beside every fiducial gains, in every direction: by simulated registrations.
 
 Playing one trial takes seconds, and chance may hide what a direction pays. So the errors of the
 touches are drawn here: those of honest hands, and a common bias that the skin leaves of 2 mm in one

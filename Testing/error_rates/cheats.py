@@ -1,4 +1,4 @@
-"""What cheating pays: scores, aborted bad trials, and the throughput of touches with an offset."""
+"""What cheating gains: scores, aborted bad trials, and the throughput of touches with an offset."""
 
 from __future__ import annotations
 

@@ -115,7 +115,7 @@ def recovered(_sets: int = 0) -> list[PlayedParameter]:
 def asked_for() -> dict[str, float]:
     """Return the true values, by the names of `truths`.
 
-    Left out is what no option sets: the time that a lapse takes, and what hands and arm add to the
+    Omitted is what no option sets: the time that a lapse takes, and what hands and arm add to the
     errors from trial to trial. The RMSE with the headset grows not only by the scatter: touches
     stay on the skin, so that no rigid motion explains the whole bias of a view.
     """

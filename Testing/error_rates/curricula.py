@@ -1,4 +1,4 @@
-"""How often a curriculum calls a goal reached, and how well it says what to practice next."""
+"""How often a curriculum calls a goal reached, and how well it chooses what to practice next."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def in_rotation(standing: CurriculumStanding, _random: np.random.Generator) -> A
 
 
 def at_random(standing: CurriculumStanding, random: np.random.Generator) -> AssignmentStanding:
-    """Choose any."""
+    """Choose at random."""
     is_open = _open(standing)
     return is_open[random.integers(len(is_open))]
 
@@ -148,7 +148,7 @@ def weakest(sets: int) -> list[Measured]:
 
 @dataclass(frozen=True)
 class Course:
-    """What became of a simulated learner.
+    """The outcome of a simulated learner.
 
     Attributes:
         trials: Until all goals were reached, or `MOST_TRIALS`.
@@ -160,7 +160,7 @@ class Course:
 
 
 def course(choose: Choice, seed: int) -> Course:
-    """Return the course of a learner with weak tasks of their own."""
+    """Return the course of a learner with their own weak tasks."""
     random = np.random.default_rng((6, seed))
     skill = _skill(random)
     played: list[CountedTrial] = []
@@ -180,7 +180,7 @@ def course(choose: Choice, seed: int) -> Course:
 
 
 def choices(sets: int) -> list[Measured]:
-    """Return how each way of choosing does with the same learners."""
+    """Return how well each strategy of choosing does with the same learners."""
     found = []
     for name, choose in CHOICES.items():
         courses = [course(choose, seed) for seed in range(sets)]

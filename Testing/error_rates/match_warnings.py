@@ -153,7 +153,7 @@ def play(
 
 
 def keys(chunks: int) -> Iterator[tuple[str, str, int, float, int]]:
-    """Yield head, trace, number of points, shift and chunk of so many chunks for each case."""
+    """Yield head, trace, number of points, shift and chunk of several chunks for each case."""
     for chunk in range(chunks):
         for case in CASES:
             for name in HEADS:

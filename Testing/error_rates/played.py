@@ -58,11 +58,11 @@ WAYS: dict[str, Play] = {
 OBLIQUE_WAYS = tuple(f"aim beside, {name}" for name in list(AXES)[3:])
 COLIN27 = HEADS[0]
 FEW = {"hover": 2, "hover 2 mm": 1, "drag": 2, "press": 2}
-"""Trials of each task; three of the other ways."""
+"""Number of trials of each task; three for the other strategies."""
 
 
 def seeds(way: str) -> range:
-    """Return the seeds, of the head's pose and of the hands, with which a way is played."""
+    """Return the seeds, of the head's pose and of the hands, with which a strategy is played."""
     return range(1, FEW.get(way, 3) + 1)
 
 
@@ -128,7 +128,7 @@ def stored() -> tuple[Played, ...]:
 
 
 def all_keys() -> Iterator[tuple[str, str, int]]:
-    """Yield way, task and seed of all trials that the file is to hold."""
+    """Yield strategy, task and seed of all trials that the file should hold."""
     for way in WAYS:
         yield from ((way, task, seed) for seed in seeds(way) for task in TASKS)
 

@@ -129,7 +129,7 @@ def test_a_larger_aiming_bias_lowers_the_mean_score(task):
     errors = errors_along_skin(normals, 1.0, 200, random)
     means = []
     for size_mm in (0.0, 0.25, 0.5, 1.0, 1.5, 2.0):
-        biases = [size_mm * along @ way for way in (*np.eye(3), *-np.eye(3))]
+        biases = [size_mm * along @ axis for axis in (*np.eye(3), *-np.eye(3))]
         scores = [scored("colin27", task, errors + bias)[0] for bias in biases]
         means.append(np.mean(scores))
     assert np.all(np.diff(means) < 0.0)

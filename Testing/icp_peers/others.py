@@ -16,7 +16,7 @@ import small_gicp
 SPACING_MM = 1.0
 """Of the points on the skin."""
 REACH_MM = 60.0
-"""No point of a trace is so far off."""
+"""No point of a trace is this far off."""
 STEPS = 500
 
 

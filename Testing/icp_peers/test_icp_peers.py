@@ -1,4 +1,4 @@
-"""The surface match beside VTK, Open3D and small_gicp: what the documentation tells, and again."""
+"""The surface match beside VTK, Open3D and small_gicp: the documented figures, and new ones."""
 
 from pathlib import Path
 

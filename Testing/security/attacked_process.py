@@ -1,4 +1,4 @@
-"""What an attack costs the process that is attacked: memory, descriptors, punctuality."""
+"""The cost of an attack to the attacked process: memory, descriptors, punctuality."""
 
 import re
 import time
@@ -12,7 +12,7 @@ from Testing.benchmarks.row import resident_mb
 from Testing.benchmarks.watched_loop import WatchedLoop
 
 MAX_GROWTH_MB = 8.0
-"""What an attack leaves behind after another like it has warmed the process up."""
+"""What an attack leaves behind after a similar one has warmed up the process."""
 MAX_MORE_DESCRIPTORS = 4
 """An attack may have started a trial, whose journal is then open."""
 MAX_MORE_MISSED = 0.5

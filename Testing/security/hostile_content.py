@@ -1,4 +1,4 @@
-"""What an input file may hold that is made to do harm."""
+"""What a malicious input file may hold."""
 
 import json
 import random
@@ -89,21 +89,21 @@ HOSTILE_GLB = {
 
 
 def mutations(content: bytes, count: int, seed: int) -> Iterator[bytes]:
-    """Give `count` variations of a file: bytes changed, cut, doubled, and numbers made strange."""
+    """Yield `count` variations of a file: bytes changed, cut, doubled, and numbers made strange."""
     generator = random.Random(seed)
     strange = (b"NaN", b"1e999", b"-1", b"0", b"999999999999", b"", b"{}", b'"\\u0000"', b"true")
     for _ in range(count):
         data = bytearray(content)
         for _ in range(generator.randint(1, 4)):
             place = generator.randrange(len(data)) if data else 0
-            way = generator.randrange(5)
-            if way == 0 and data:
+            kind = generator.randrange(5)
+            if kind == 0 and data:
                 data[place] = generator.randrange(256)
-            elif way == 1:
+            elif kind == 1:
                 del data[place : place + generator.randint(1, 40)]
-            elif way == 2:
+            elif kind == 2:
                 data[place:place] = data[place : place + generator.randint(1, 200)]
-            elif way == 3:
+            elif kind == 3:
                 data[place : place + generator.randint(0, 6)] = generator.choice(strange)
             else:
                 del data[place:]

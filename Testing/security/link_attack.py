@@ -1,4 +1,4 @@
-"""Many clients at once that send what they should not, to a simulator in its own process."""
+"""Many clients at once that send invalid messages, to a simulator in its own process."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MESSAGES_A_CONNECTION = 200
 PIECE = 8
 CONNECTIONS_PER_COLLECTION = 20
 SWALLOWED = 3
-"""So many messages in a row that complete nothing are taken for the body of one before them."""
+"""This many messages in a row that complete nothing are taken for the body of an earlier one."""
 TIMEOUT_S = 120.0
 
 
@@ -94,7 +94,7 @@ class LinkAttack:
             if next(self._seeds) % 4 == 0:
                 writer.write(messages.fatal())
             writer.write_eof()
-        except OSError:  # It was ended on the other side.
+        except OSError:  # The other side has ended it.
             self.ended += 1
 
     async def _read(self, reader: asyncio.StreamReader, is_policed: bool) -> None:

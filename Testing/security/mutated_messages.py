@@ -1,4 +1,4 @@
-"""OpenIGTLink messages that are not quite what they should be, drawn from a seed."""
+"""OpenIGTLink messages that are not quite valid, drawn from a seed."""
 
 import json
 import random
@@ -169,10 +169,10 @@ class MutatedMessages:
         return _sealed(data[:HEADER_BYTES], bytes(body[:cut]) + other[cut // 2 :])
 
     def _with_a_bad_body(self, data: bytearray) -> bytes:
-        """Change what the body says, and let the checksum be right."""
+        """Change the content of the body, with the right checksum."""
         body = data[HEADER_BYTES:]
         for _ in range(self._random.randint(1, 6)):
-            # The sizes stand at the beginning; they are worth more tries than the rest.
+            # The sizes are at the beginning; they are worth more tries than the rest.
             reach = self._random.choice([min(16, len(body)), len(body)])
             body[self._random.randrange(reach)] = self._random.choice(
                 [0, 1, 2, 12, 0x7F, 0xFF, self._random.randrange(256)]
@@ -186,7 +186,7 @@ class MutatedMessages:
         return bytes(data)
 
     def _with_other_arguments(self, _data: bytearray) -> bytes:
-        """Return a command, whole on the wire, with other arguments than it should have."""
+        """Return a command, intact on the wire, with wrong arguments."""
         name = self._random.choice(list(COMMANDS))
         arguments = dict(COMMANDS[name])
         if arguments and self._random.random() < 0.8:

@@ -1,4 +1,4 @@
-"""Views that send what they should not: mutated messages in mutated WebSocket frames."""
+"""Views that send invalid messages: mutated ones in mutated WebSocket frames."""
 
 import json
 import random
@@ -63,11 +63,11 @@ class StreamAttack:
         self.good = self.mutated = self.closed = 0
 
     def run(self, count: int) -> None:
-        """Send so many damaged messages, each to a view of its own: many end theirs."""
+        """Send a number of damaged messages, each on a separate view: many end theirs."""
         for _ in range(count):
             with socket.create_connection((HOST, self._port), TIMEOUT_S) as peer:
                 self._join(peer)
-                with suppress(OSError):  # It was ended on the other side.
+                with suppress(OSError):  # The other side has ended it.
                     while self._random.random() < 0.7:
                         peer.sendall(frame(TEXT, self._random.choice(self._good[1:])))
                         self.good += 1
@@ -98,7 +98,7 @@ class StreamAttack:
             peer.sendall(frame(TEXT, self._good[0]))
 
     def _bad(self) -> bytes:
-        """Return a frame or several of which something is wrong, most often."""
+        """Return one frame or several, most often with an error."""
         good = self._random.choice(self._good)
         way = self._random.randrange(8)
         if way < 3:

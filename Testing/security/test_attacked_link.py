@@ -26,7 +26,7 @@ PROBE = Message("Probe", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 4, 5, 6)))
 
 
 def attack(folder, warm_up: int, count: int, policed: int, capsys) -> WatchedLoop:
-    """Attack a simulator, and check that it is none the worse for it."""
+    """Attack a simulator, and check that it is unharmed."""
     with (
         SimulatorProcess(folder, "--no-views", "--seed", "1") as simulator,
         Client(port=simulator.port) as good,

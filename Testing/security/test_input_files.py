@@ -1,4 +1,4 @@
-"""Input files that are made to do harm are refused with a sentence, whichever loader gets them."""
+"""Malicious input files are refused with a sentence, whichever loader gets them."""
 
 import json
 import os

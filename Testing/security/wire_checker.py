@@ -31,7 +31,7 @@ class WireChecker:
         self.names: set[bytes] = set()
 
     def feed(self, data: bytes) -> None:
-        """Look at further bytes.
+        """Check further bytes.
 
         Raises:
             OffenseError: they hold a message that harms.

@@ -1,4 +1,4 @@
-"""What else goes on beside a simulation's steps, done within them."""
+"""Work that usually runs beside a simulation's steps, done within them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A head with landmarks, and the way of a trace over its face, both RAS, mm."""
+"""A head with landmarks, and the path of a trace over its face, both RAS, mm."""
 
 import itertools
 import json

@@ -36,12 +36,12 @@ class TurningControllers(Controllers):
 
 
 class HeadsetSurgeon(ProcedureTrainee, Trainee):
-    """Carries the procedure out by what is drawn, and waits for rare pictures as a trainee does."""
+    """Carries out the procedure by what is drawn, and waits for rare pictures as a trainee does."""
 
 
 @pytest.fixture(scope="module")
 def operated(tmp_path_factory, browser) -> dict:
-    """Carry the biopsy out; return what came of it."""
+    """Carry out the biopsy; return the results."""
     folder = tmp_path_factory.mktemp("operated")
     with Place(folder, "--speed", SLOW, limits=WITHOUT_GRAPHICS) as place:
         url, code = place.simulator.url, place.simulator.code

@@ -19,7 +19,7 @@ from Testing.web.tapping_trainee import PHONE, SteeringTrainee, TappingTrainee
 
 SIZE = {"width": 1280, "height": 720}
 SLOW, SLOWEST = "0.5", "0.25"
-"""Simulated seconds in a second, so that a stick is let go of in time on a busy machine."""
+"""Simulated seconds per second, so that a stick is released in time on a busy machine."""
 
 
 class ClickingTrainee(OnPage, Trainee):

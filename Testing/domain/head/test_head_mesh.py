@@ -149,8 +149,8 @@ def test_visibility_agrees_with_trimesh():
     mesh, eye = sphere_mesh(3), np.array([100.0, 400.0, 300.0])
     points = rng.uniform(-140, 140, (200, 3))
     other = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
-    ways = points - eye
-    hits, rays, _ = other.ray.intersects_location(np.tile(eye, (200, 1)), ways)
-    before = np.linalg.norm(hits - eye, axis=1) < np.linalg.norm(ways, axis=1)[rays] - 1.0
+    directions = points - eye
+    hits, rays, _ = other.ray.intersects_location(np.tile(eye, (200, 1)), directions)
+    before = np.linalg.norm(hits - eye, axis=1) < np.linalg.norm(directions, axis=1)[rays] - 1.0
     expected = np.isin(np.arange(200), rays[before])
     assert [hides(mesh, eye, point) for point in points] == expected.tolist()

@@ -37,7 +37,7 @@ def test_tracked_points_have_the_same_nearest_points_as_a_new_search(head):
     for step, size in enumerate((20.0, 3.0, 0.8, 0.5, 0.3, 0.01)):
         moves = random.normal(0.0, size, points.shape)
         points = points + moves
-        # Some move farther than was foretold.
+        # Some move farther than predicted.
         found = followed.move(points, 0.7 * np.linalg.norm(moves, axis=1))
         again = head.tree.nearest(points)
         assert np.allclose(found.distances, again.distances, atol=1e-12)

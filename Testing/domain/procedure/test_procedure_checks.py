@@ -1,4 +1,4 @@
-"""What is wrong with a planned procedure is said in one sentence, by the names of its parts."""
+"""Each error of a planned procedure is reported in one sentence that names its parts."""
 
 import numpy as np
 import pytest

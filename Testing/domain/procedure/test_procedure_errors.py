@@ -1,4 +1,4 @@
-"""The errors of a procedure against the truth, and whose they are."""
+"""The errors of a procedure against the truth, and their causes."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Procedures in a scenario's files: what is written is read again, and what is wrong is said."""
+"""Procedures in a scenario's files: what is written is read again, and errors are reported."""
 
 import json
 import shutil

@@ -1,4 +1,4 @@
-"""Virtual trainees who trace Colin27 by what is drawn, or at will, and what their traces tell."""
+"""Virtual trainees who trace Colin27 with guidance or at will, and what their traces reveal."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from rastrainer.registration.surface_error import (
 
 TARGET = np.array([0.7815, -16.9395, 1.432])
 EYE = np.array([0.8, 583.1, 221.4])
-"""Of the scenario, RAS mm: the target, and from where its close-up is looked."""
+"""Of the scenario, RAS mm: the target, and the eye of its close-up."""
 AIMED_MM = 3.0
 """Standard deviation, on each axis, of where a hand begins that aims at the ring."""
 EACH_LOOK = 4
-"""Points that are drawn between two looks at the ring."""
+"""Points that are drawn between two glances at the ring."""
 
 
 def draw_by_guidance(head: HeadMesh, guide: TraceGuide, seed: int, count: int) -> np.ndarray:
@@ -40,7 +40,7 @@ def draw_by_guidance(head: HeadMesh, guide: TraceGuide, seed: int, count: int) -
                 at = head.skin.tree.nearest(at[None]).positions[0]
                 places = np.concatenate([places, at[None]])
                 heading = _along_skin(head, at, heading)
-                # Back toward the ring, where the way has led past it.
+                # Back toward the ring, if the path has passed it.
                 heading = heading if np.linalg.norm(at - ring.position) < 0.8 * DAB else -heading
                 at = at + heading
             shown = guide.next_place(places, is_drawing=True)

@@ -164,7 +164,7 @@ def nothing():
 
 
 def around(place, count, away_mm=2.0):
-    """So many points near a place."""
+    """A number of points near a place."""
     return place + np.linspace(-away_mm, away_mm, count)[:, None] * np.ones(3) / np.sqrt(3.0)
 
 

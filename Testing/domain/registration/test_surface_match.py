@@ -1,4 +1,4 @@
-"""A trace over the skin is registered to the head's surface, and what it cannot tell is said."""
+"""A trace over the skin is registered to the head's surface, and its limits are reported."""
 
 import numpy as np
 import pytest

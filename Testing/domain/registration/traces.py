@@ -74,7 +74,7 @@ def error_at_center(matrix: np.ndarray, head_to_world: np.ndarray, mesh: HeadMes
 def random_walk(
     mesh: HeadMesh, allowed: np.ndarray, random: np.random.Generator, count: int
 ) -> np.ndarray:
-    """Vertices along a way over the skin that turns at will, like somebody who draws at random."""
+    """Vertices along a path over the skin that turns at will, like somebody who draws at random."""
     neighbors: dict[int, list[int]] = {}
     for a, b in mesh.edges[allowed[mesh.edges].all(axis=1)].tolist():
         neighbors.setdefault(a, []).append(b)
@@ -84,8 +84,8 @@ def random_walk(
     while len(rows) < count:
         heading = heading + 0.5 * random.normal(size=3)
         heading /= np.linalg.norm(heading)
-        ways = mesh.vertices[neighbors[rows[-1]]] - mesh.vertices[rows[-1]]
-        along = ways @ heading
+        steps = mesh.vertices[neighbors[rows[-1]]] - mesh.vertices[rows[-1]]
+        along = steps @ heading
         if along.max() <= 0.0:
             heading = -heading
         rows.append(neighbors[rows[-1]][int(along.argmax())])

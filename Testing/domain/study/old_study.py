@@ -1,4 +1,4 @@
-"""A study's file as an earlier RASTrainer has left it."""
+"""A study's file as an earlier RASTrainer left it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rastrainer.study.database.schema import APPLICATION_ID, MIGRATIONS
 
 
 def write_old_study(path: Path, version: int, *statements: str) -> None:
-    """Write a study of a format that is no more, with what statements put into it."""
+    """Write a study in a former format, with the rows that statements insert."""
     connection = sqlite3.connect(path)
     for statement in itertools.chain(*MIGRATIONS[:version], statements):
         connection.execute(statement)

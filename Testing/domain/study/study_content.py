@@ -1,4 +1,4 @@
-"""All that is in a study, and all that is written from it, to compare two places of it."""
+"""All content of a study, and all files written from it, to compare two copies of it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def rows_of(place: StudyPlace) -> dict[str, list[tuple]]:
 
 
 def written_files(place: StudyPlace, folder: Path) -> dict[str, bytes]:
-    """Return all files of report and exports by name, but for when they were made."""
+    """Return all files of report and exports by name, except for the time when they were made."""
     assert main(["report", str(place), "-o", str(folder / "report")]) == 0
     assert main(["export", str(place), "-o", str(folder / "export")]) == 0
     files = [path for path in folder.rglob("*") if path.is_file()]

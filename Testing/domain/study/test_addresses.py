@@ -146,7 +146,7 @@ def test_a_studys_files_lie_beside_it_or_in_a_private_folder_for_its_address(tmp
 
 @pytest.fixture
 def silent_server():
-    """The port of a server that takes connections and never says a word."""
+    """The port of a server that accepts connections and never sends anything."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         yield server
 
@@ -188,7 +188,7 @@ class RefusalError(Exception):
 
 
 class OperationalError(RefusalError):
-    """Of the same name as psycopg's."""
+    """With the same name as psycopg's."""
 
 
 @pytest.mark.parametrize(

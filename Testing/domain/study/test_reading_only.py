@@ -1,4 +1,4 @@
-"""Reading a study changes neither its rows nor its bytes nor its time."""
+"""Reading a study changes neither its rows nor its bytes nor its modification time."""
 
 import os
 import shutil

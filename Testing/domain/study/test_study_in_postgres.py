@@ -163,7 +163,7 @@ def test_a_seat_that_holds_the_lock_is_reported_and_waited_for_only_once(place, 
                 with pytest.raises(StudyBusyError, match="Another program has locked the study"):
                     study.create_trainee("a")
                 assert lock_wait.timeout_s == 0.0
-                # Readers wait for nobody.
+                # Readers wait for no one.
                 assert study.trainees() == ()
             study.create_trainee("a")
 
@@ -188,7 +188,7 @@ def test_a_slow_reader_is_not_cut_off_but_a_slow_holder_of_the_lock_is(place, mo
 
 
 class HastyClock:
-    """Stands for `time`: at each look, so many more seconds have passed."""
+    """Stands in for `time`: each reading is some seconds later."""
 
     def __init__(self):
         self.step_s = self._ahead_s = 0.0
@@ -208,7 +208,7 @@ def test_windows_and_waiting_commands_give_up_on_a_server_that_hangs(lock_wait, 
         clock.step_s = 20.0
         give_up = time.monotonic() + 60.0
         try:
-            # Without an end, the first question would wait until the server goes on.
+            # Without an end, the first query would wait until the server continues.
             while study.database.version() is None:
                 assert time.monotonic() < give_up
             assert study.database._connection.info.backend_pid != process

@@ -1,4 +1,4 @@
-"""What a shift of the skin did to a trial is said after it, stored, exported and reported."""
+"""The effect of a skin shift on a trial is shown after it, stored, exported and reported."""
 
 from dataclasses import replace
 

@@ -22,7 +22,7 @@ from Testing.simulator.landmarked import LANDMARKS, OVER_THE_FACE, on_skin, with
 
 SURFACE = RegistrationMethod.SURFACE
 SLIP_MM = 4.0
-"""How far the landmarks are missed."""
+"""The distance by which the landmarks are missed."""
 
 
 @pytest.fixture(scope="module")

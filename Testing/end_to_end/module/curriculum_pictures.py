@@ -48,7 +48,7 @@ def play(path: Path) -> None:
 
 
 def keep_panel(folder: Path) -> CurriculumMessage:
-    """Keep the section of the module; return what it tells the simulator of the first trainee."""
+    """Save a picture of the module's section; return its message about the first trainee."""
     host = Host(folder)
     host.open()
     path = Path(host.find("studyPathLineEdit").currentPath)
@@ -74,7 +74,7 @@ def keep_panel(folder: Path) -> CurriculumMessage:
 
 
 def keep_seat(folder: Path, message: CurriculumMessage) -> None:
-    """Keep a picture of a simulator's page that shows this curriculum."""
+    """Save a picture of a simulator's page that shows this curriculum."""
     config = folder / "records-config"
     config.mkdir()
     (config / "preferences.json").write_text(json.dumps({"order": "any"}))

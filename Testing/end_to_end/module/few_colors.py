@@ -1,4 +1,4 @@
-"""Pictures of the documentation in few colors: the repository is to stay small."""
+"""Pictures of the documentation in few colors, to keep the repository small."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ GRAY_WITHIN = 6
 
 
 def reduce_colors(path: Path) -> None:
-    """Write a picture once more, with a palette of its own and without dithering."""
+    """Write a picture again, with its own palette and without dithering."""
     with Image.open(path) as opened:
         picture = opened.convert("RGB")
     pixels = np.asarray(picture).reshape(-1, 3)

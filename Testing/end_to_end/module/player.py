@@ -1,4 +1,4 @@
-"""A trainee who plays the trial that the instructor has started, over a link of their own."""
+"""A trainee who plays the trial that the instructor has started, over a separate link."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ class Player:
         self._thread: threading.Thread | None = None
 
     def touch(self, first: int, last: int) -> None:
-        """Begin to touch the points numbered `first` to `last`."""
+        """Start touching the points numbered `first` to `last`."""
         self._begin(lambda client: self._touch(client, first, last))
 
     def register(self) -> None:
-        """Begin to register the touched points."""
+        """Start registering the touched points."""
         self._begin(lambda client: _do(client, "Register"))
 
     @property
     def is_done(self) -> bool:
-        """Whether what was started is over; what went wrong is raised here."""
+        """Whether what was started is over; its errors are raised here."""
         if self._error is not None:
             raise self._error
         return self._thread is None or not self._thread.is_alive()

@@ -24,7 +24,7 @@ SHOWN_AFTER = {
 FOLDED = ("advancedGroupBox", "pointListsGroupBox")
 """Groups that a user opens now and then."""
 OPTIONS = ("--speed", "4", "--no-views", "--no-gamepad")
-"""Not too fast: the trainee would seem to pause for long."""
+"""Not too fast: the trainee would seem to make a long pause."""
 AZIMUTH, ELEVATION, ZOOM = 35.0, 20.0, 1.3
 NEAR = ("registration", "plan")
 HEAD, DISTANCE_MM = (0.0, -10.0, 30.0), 620.0
@@ -57,7 +57,7 @@ def save_all(folder: Path) -> None:
 
 
 def show_only(host: Host, shown: str) -> None:
-    """Fold every section but one."""
+    """Fold every section except one."""
     for section in SECTIONS:
         host.find(f"{section}CollapsibleButton").collapsed = section != shown
     for group in FOLDED:

@@ -41,7 +41,7 @@ class Story:
         host.wait_until(lambda: "is set up in" in host.text("setupText"), "it is set up")
 
     def choose_own_program(self) -> None:
-        """Take a simulator that is installed elsewhere; quicker than to set it up."""
+        """Use a simulator that is installed elsewhere, which is quicker than setting it up."""
         host = self.host
         self.write_program()
         host.open()
@@ -106,7 +106,7 @@ class Story:
         self.player = Player(self.port, self.records)
 
     def resume_task(self) -> None:
-        """Resume the trial that the simulator has taken up after its crash."""
+        """Resume the trial that the simulator has reloaded after its crash."""
         host = self.host
         host.wait_until(lambda: "paused" in host.text("phaseText"), "the trial waits")
         host.press("pauseButton")
@@ -199,7 +199,7 @@ class Story:
     def stop_simulator(self) -> None:
         host = self.host
         host.press("stopSimulatorButton")
-        # A quick one has ended by the time that one looks.
+        # A quick one has ended by the time of this check.
         assert host.text("programText") in (
             "The simulator is ending.",
             "The simulator was stopped.",
@@ -236,7 +236,7 @@ class Story:
         def is_connected() -> bool:
             said = host.find("simulatorLogEdit").plainText
             assert "ended by itself" not in host.text("programText"), said
-            # Of a scene just cleared, the panel says at its next look that the connector is gone.
+            # After a scene is cleared, the panel notices the loss at its next update.
             is_in_scene = host.scene.GetFirstNodeByName(CONNECTOR_NAME) is not None
             return is_in_scene and host.text("stateText").startswith("Connected")
 

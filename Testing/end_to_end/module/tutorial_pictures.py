@@ -23,7 +23,7 @@ from Testing.end_to_end.module.story import PLAN_MM
 from Testing.slicer.host.host import Host
 
 OPTIONS = ("--no-views", "--no-gamepad")
-"""As fast as it is with people: otherwise the trainee would seem to pause for long."""
+"""At the speed of real people: otherwise the trainee would seem to make long pauses."""
 SLIP_AT = 9
 PATIENCE_S = 1200.0
 PROCEDURE = "Biopsy of a frontal lesion"
@@ -189,7 +189,7 @@ class Tutorial:
         self._host.wait_until(condition, what, PATIENCE_S)
 
     def _only(self, shown: str) -> None:
-        """Fold every section but one, as the steps do; this one may be no step."""
+        """Fold every section except one, as the steps do; this one need not be a step."""
         for name in SECTIONS:
             self._host.find(f"{name}CollapsibleButton").collapsed = name != shown
         self._host.process_events()

@@ -49,7 +49,7 @@ def proposed(name: str) -> tuple[Task, ...]:
 
 
 def as_json(tasks: tuple[Task, ...]) -> list[dict]:
-    """Return what the file holds of the tasks of one head."""
+    """Return the tasks of one head in the file."""
     return [
         {
             **{key: value for key, value in vars(task).items() if key != "labels"},

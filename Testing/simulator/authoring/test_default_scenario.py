@@ -1,4 +1,4 @@
-"""What the default scenario promises: a sound head, and tasks on it that the robot can do."""
+"""The promises of the default scenario: a sound head, and tasks on it that the robot can do."""
 
 import json
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""What leaves the house: without face and names unless somebody wants them kept."""
+"""Exported scenarios: without face and names unless they are to be kept."""
 
 import json
 import re

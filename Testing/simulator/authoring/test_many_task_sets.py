@@ -25,7 +25,7 @@ ON_SKIN_MM = 0.05
 APART_MM = 0.3
 OTHER_POSES = range(60_000, 60_003)
 SAMPLE = 9
-"""Every so manieth fiducial is touched in the collision model of a simulation."""
+"""Every n-th fiducial is touched in the collision model of a simulation."""
 CLEARANCE_M, AT_PLACE_M = 0.005, 1e-4
 
 
@@ -44,7 +44,7 @@ def test_a_hundred_task_sets_keep_all_promises(name):
 
 
 def broken_promises(planning, tasks):
-    """Return what is wrong with a set, in words."""
+    """Return the faults of a set, in words."""
     broken = []
     if len(tasks) != 6 or not all(b.complexity > a.complexity for a, b in pairwise(tasks)):
         broken.append("the complexity does not rise")
@@ -64,9 +64,9 @@ def broken_promises(planning, tasks):
 
 
 def crowded(planning, places, poses):
-    """Return the places at whose touch something else than the tip is within 5 mm, or the tip off.
+    """Return the points at whose touch something other than the tip is within 5 mm, or the tip off.
 
-    The planner's posture is judged by a collision model of its own, as a simulation makes it.
+    The planner's posture is judged by a separate collision model, as a simulation makes it.
     """
     collision = head_collision(planning.setup.shape, planning.mesh, planning.scenario.furniture)
     kinematics = make_kinematics(planning.setup.robot)
@@ -109,7 +109,7 @@ def hidden(task, planning):
 
 
 def meets(marks, row):
-    """Tell whether a mark's arrow meets another arrow, or the dot of one that it does not join."""
+    """Return whether a mark's arrow meets another arrow, or a dot that it does not join."""
     if marks[row].arrow is None:
         return False
     others = [mark.arrow.points for mark in marks[row + 1 :] if mark.arrow]

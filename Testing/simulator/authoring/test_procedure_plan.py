@@ -1,4 +1,4 @@
-"""The procedures of the default head can be carried out, and of others it is said what cannot."""
+"""The procedures of the default head can be carried out; infeasible ones are reported."""
 
 import json
 import shutil
@@ -127,7 +127,7 @@ def test_a_copy_with_another_plan_keeps_the_procedures(copy, tmp_path):
 
 @pytest.fixture
 def own_procedure(copy, tmp_path):
-    """A procedure in a file of its own, whose structure has the file name of another one."""
+    """A procedure in its own file, whose structure has the file name of another one."""
     folder = tmp_path / "plan"
     (folder / "no-go").mkdir(parents=True)
     values = json.loads((copy / "scenario.json").read_text(encoding="utf-8"))["procedures"][0]

@@ -22,7 +22,7 @@ from Testing.simulator.authoring.heads import colin27, egg
 
 
 def standing(setup):
-    """Return what is wrong with where an egg of a head stands."""
+    """Return the faults of the position of an egg-shaped head."""
     return check_standing(scenario_of(setup), egg())
 
 

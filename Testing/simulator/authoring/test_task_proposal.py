@@ -1,4 +1,4 @@
-"""Tasks proposed on a sphere the size of a head: what the plans ask for, for any seed."""
+"""Tasks proposed on a sphere the size of a head: as the plans require, for any seed."""
 
 from itertools import permutations
 

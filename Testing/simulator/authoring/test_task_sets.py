@@ -1,4 +1,4 @@
-"""Sets of tasks for a head that nobody has seen before: what is proposed, and what is refused."""
+"""Sets of tasks for an unknown head: what is proposed, and what is refused."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -146,7 +146,7 @@ def test_a_head_that_stands_too_far_away_is_refused_and_leaves_nothing(tmp_path)
 
 @pytest.fixture
 def placed(tmp_path, tasks):
-    """Wishes with fiducials that are placed by hand."""
+    """Options with fiducials that are placed by hand."""
     path = tmp_path / "mine.mrk.json"
     write_markups(path, PointList(LABELS, tasks[0].fiducials))
     return replace(WISHES, task_files=(path,))

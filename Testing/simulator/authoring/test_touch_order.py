@@ -21,8 +21,8 @@ def graph():
 def test_the_path_over_a_sphere_is_within_a_tenth_of_its_great_circle(graph, degrees):
     exact = np.radians(degrees) * RADIUS_MM
     for longitude in range(0, 360, 40):
-        way = graph.distance(on_sphere(longitude, 10), on_sphere(longitude, 10 + degrees))
-        assert 0.995 * exact <= way <= 1.10 * exact
+        length = graph.distance(on_sphere(longitude, 10), on_sphere(longitude, 10 + degrees))
+        assert 0.995 * exact <= length <= 1.10 * exact
 
 
 def test_the_path_is_a_few_percent_too_long_on_average(graph):
@@ -30,8 +30,8 @@ def test_the_path_is_a_few_percent_too_long_on_average(graph):
     points = rng.normal(size=(60, 2, 3))
     points *= RADIUS_MM / np.linalg.norm(points, axis=2, keepdims=True)
     exact = RADIUS_MM * np.arccos(np.einsum("ij,ij->i", *points.transpose(1, 0, 2)) / RADIUS_MM**2)
-    ways = [graph.distance(start, end) for start, end in points]
-    assert np.mean(ways / exact) == pytest.approx(1.025, abs=0.015)
+    lengths = [graph.distance(start, end) for start, end in points]
+    assert np.mean(lengths / exact) == pytest.approx(1.025, abs=0.015)
 
 
 def test_the_path_is_symmetric(graph):

@@ -28,7 +28,7 @@ FIRST_DAY = datetime(2026, 11, 2, 9, 0, tzinfo=timezone.utc)
 def play_class(
     place: StudyPlace, names: list[str], trials: int, curriculum: Curriculum | None = None
 ) -> None:
-    """Have each trainee practice up to so many trials, from a tempo of their own, by a seed."""
+    """Have each trainee practice up to a number of trials, from their own tempo, by a seed."""
     rng, follows = random.Random(23), curriculum or read_curriculum(SHIPPED)
     with Study.open(place) as study:
         CurriculumStore(study).choose(follows)

@@ -1,4 +1,4 @@
-"""A board in an event loop of its own, and simulators that it watches by TLS."""
+"""A board in its own event loop, and simulators that it watches by TLS."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a board takes for a simulator: it pairs with anybody, and says what it is given to say."""
+"""A stand-in for a simulator: it pairs with any board, and sends what a test gives it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KEY = "k" * 43
 async def serve_seat(
     say: Callable[[web.WebSocketResponse], Awaitable[None]],
 ) -> tuple[web.AppRunner, int]:
-    """Serve a seat that says what `say` sends to a board; return its server and its port."""
+    """Serve a seat that sends what `say` sends to a board; return its server and its port."""
 
     async def pair(_request: web.Request) -> web.Response:
         return web.json_response({"key": KEY})

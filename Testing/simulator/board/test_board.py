@@ -1,4 +1,4 @@
-"""A board keeps seats by TLS, shows what they say, and gives orders with their PIN only."""
+"""A board watches seats over TLS, shows their state, and gives orders only with their PIN."""
 
 from __future__ import annotations
 

@@ -181,7 +181,7 @@ def test_more_trainees_than_a_table_can_show_are_reported(reader, monkeypatch):
 
 
 def until(board, is_wanted):
-    """Return what the board says of the class once it is as wanted."""
+    """Return the board's message about the class once it meets a condition."""
     give_up = time.monotonic() + PATIENCE_S
     while True:
         status, found = board.ask("/class?language=en")

@@ -17,7 +17,7 @@ class RecordStoreDouble(ThreadingHTTPServer):
     Attributes:
         statements: by their UUIDs.
         requests: how many statements each request had.
-        planned: statuses with which the next requests are answered, in place of being heeded.
+        planned: statuses with which the next requests are answered, instead of being processed.
         refused: UUIDs of statements that are answered with 400.
         crashes: how many of the next requests are stored, but get no answer.
     """

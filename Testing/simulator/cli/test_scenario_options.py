@@ -1,4 +1,4 @@
-"""What the command line says of a scenario: taken as it is said, or refused with a sentence."""
+"""The options of a scenario on the command line: used as given, or refused with a sentence."""
 
 import argparse
 import json

@@ -1,4 +1,4 @@
-"""Statements reach a learning record store: each once, none lost while it is away."""
+"""Statements reach a learning record store: each once, none lost while it is unreachable."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Distances found by looking at every triangle, to check the fast ones against."""
+"""Distances computed from every triangle, to check the fast ones against."""
 
 from collections.abc import Callable, Sequence
 

@@ -1,4 +1,4 @@
-"""Nothing comes near unnoticed, and nothing is looked at for no reason."""
+"""Nothing comes near unnoticed, and nothing is checked without reason."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ COUNT, TICKS = 40, 3000
 
 
 def walk(rough):
-    """A point among others: in each tick its distances, and which of them were looked at."""
+    """A point among others: in each tick its distances, and which of them were checked."""
     random = np.random.default_rng(26)
     others, point, traveled = random.uniform(-0.3, 0.3, (COUNT, 3)), np.zeros(3), 0.0
     bounds = DistanceBounds(COUNT)

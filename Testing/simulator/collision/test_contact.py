@@ -119,8 +119,8 @@ def test_every_fiducial_of_the_default_tasks_can_be_touched_with_the_tip(head, s
             for _ in range(10):
                 driver.push(normal * 0.25 * TICK)
             for _ in range(15):
-                way = fiducial - driver.tip
-                driver.push(way * min(1.0, 0.25 * TICK / np.linalg.norm(way)))
+                offset = fiducial - driver.tip
+                driver.push(offset * min(1.0, 0.25 * TICK / np.linalg.norm(offset)))
             assert np.linalg.norm(driver.tip - fiducial) <= TOUCHING + 2 * REST
             assert driver.clearance.tip_m <= TOUCHING
 

@@ -35,9 +35,10 @@ def states(tips_mm, settings=ProximitySettings(), start=FREE):  # noqa: B008
 
 
 def test_the_tool_approaches_touches_and_leaves():
-    way = [50.0, 20.5, 20.0, 10.0, 0.06, 0.05, 0.01, 0.2, 0.31, 20.9, 21.1, 50.0]
+    clearances = [50.0, 20.5, 20.0, 10.0, 0.06, 0.05, 0.01, 0.2, 0.31, 20.9, 21.1, 50.0]
     assert (
-        states(way) == [FREE] * 2 + [PROXIMITY] * 3 + [CONTACT] * 3 + [PROXIMITY] * 2 + [FREE] * 2
+        states(clearances)
+        == [FREE] * 2 + [PROXIMITY] * 3 + [CONTACT] * 3 + [PROXIMITY] * 2 + [FREE] * 2
     )
 
 

@@ -79,6 +79,6 @@ def nearest_on_floor(point):
 @pytest.mark.parametrize("steps", [0.5, 2.0, 7.0])
 def test_a_pressed_tip_slides_the_whole_way_however_near_it_was(height, steps):
     tip, push = (0.3, 0.1, height), (steps * LONGEST_STEP, 0.0, -steps * LONGEST_STEP)
-    way = slide(nearest_on_floor, tip, nearest_on_floor(tip), push, ())
+    path = slide(nearest_on_floor, tip, nearest_on_floor(tip), push, ())
     x, y, _ = add(tip, push)
-    assert way.position == pytest.approx((x, y, REST), abs=1e-8)
+    assert path.position == pytest.approx((x, y, REST), abs=1e-8)

@@ -1,4 +1,4 @@
-"""From the tip's way to the joints': exact for the tip, within limits, without wandering."""
+"""From the tip's motion to the joints': exact for the tip, within limits, without wandering."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def tip(kinematics, q):
 
 
 def go(motion, kinematics, q, target, direction=None):
-    """Return the joint angles after a straight way of the tip."""
+    """Return the joint angles after a straight motion of the tip."""
     target = np.array(target)
     while (remaining := target - tip(kinematics, q)) @ remaining > 1e-16:
         step = remaining * min(1.0, SPEED * DT / np.linalg.norm(remaining))
@@ -68,10 +68,10 @@ def test_where_a_joint_is_too_slow_the_tip_stays_on_its_straight_path(
 ):
     start = np.array(tip(kinematics, rest))
     q, _ = motion.toward(rest, tuple(start), (0.1, -0.05, 0.0), unit((1.0, 0.0, -0.2)), DT)
-    way = np.array(tip(kinematics, q)) - start
+    moved = np.array(tip(kinematics, q)) - start
     along = unit((0.1, -0.05, 0.0))
-    assert way @ along > 0.0
-    assert np.linalg.norm(way - (way @ along) * np.array(along)) < 2e-5
+    assert moved @ along > 0.0
+    assert np.linalg.norm(moved - (moved @ along) * np.array(along)) < 2e-5
     assert (np.abs(np.subtract(q, rest)) <= setup.robot.velocity * DT * (1 + 1e-9)).all()
 
 

@@ -27,7 +27,7 @@ OUT = OperatorInput(translation=(0.0, 0.0, 1.0), operator="gamepad")
 
 
 class Surgeon(Driver):
-    """Carries a procedure out on a simulation."""
+    """Carries out a procedure on a simulation."""
 
     def must(self, command, **arguments):
         answer = self.do(command, **arguments)
@@ -40,7 +40,7 @@ class Surgeon(Driver):
         return transforms.inverse(self.simulation.truth.head_to_world)
 
     def to(self, phase, procedure="dbs", shift_mm=(0.0, 0.0, 0.0), turn=IDENTITY):
-        """Begin a trial and go to a phase of its procedure, by a registration so far off."""
+        """Begin a trial and go to a phase of its procedure, by a registration with an offset."""
         self.do(CommandName.ABORT)
         start = {"task": "task-1", "trainee": "P01", "seed": SEED, "procedure": procedure}
         self.must(CommandName.START_TASK, **start)

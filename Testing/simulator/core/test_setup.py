@@ -28,7 +28,7 @@ def copied(tmp_path):
 
 
 def same(one, other) -> bool:
-    """Tell whether two values are equal to the last bit, arrays and nested dataclasses too."""
+    """Return whether two values are equal to the last bit, arrays and nested dataclasses too."""
     if is_dataclass(one):
         names = [field.name for field in fields(one)]
         return all(same(getattr(one, name), getattr(other, name)) for name in names)

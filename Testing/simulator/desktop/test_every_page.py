@@ -33,7 +33,7 @@ def show(gl_window, glb):
     def show(screen):
         inbox.screen, inbox.problem = screen, ""
         inbox.take_state(state_text(next=None))
-        # Twice: a camera that sets out arrives.
+        # Twice: a camera that starts moving arrives.
         for now in (next(times), next(times)):
             picture.is_due(now)
         picture.draw()

@@ -43,7 +43,7 @@ def show(gl_window, inbox):
     def show(picture, times_drawn=1, screen=SCREEN, trace=None, **changes):
         inbox.screen, inbox.problem, inbox.trace = screen, "", trace or ShownTrace()
         inbox.take_state(state_text(**changes))
-        # A camera that sets out arrives.
+        # A camera that starts moving arrives.
         picture.is_due(next(times))
         now = next(times)
         for _time in range(times_drawn):
@@ -57,7 +57,7 @@ def show(gl_window, inbox):
 
 @pytest.fixture
 def make(gl_window, inbox):
-    """Return a function that makes a picture of the lowest quality in place of the one before."""
+    """Return a function that makes a picture of the lowest quality in place of the previous one."""
 
     def clear():
         for renderer in list(gl_window.render_window.GetRenderers()):
@@ -110,7 +110,7 @@ def test_a_large_picture_is_coarse_while_the_view_turns_and_then_fine(
     coarse = show(picture, view=SIDE)
     assert picture.viewports.main.GetViewport() == (0.0, 0.0, 0.5, 0.5)
     assert np.abs(coarse - fine).max() > 40
-    # Nothing has changed, and yet it is drawn once more.
+    # Nothing has changed, and yet it is drawn again.
     assert picture.is_due(1e6)
     picture.draw()
     sharp = gl_window.pixels().astype(int)

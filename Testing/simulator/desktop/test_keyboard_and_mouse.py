@@ -1,4 +1,4 @@
-"""What the window sends of keys, of the sticks that the mouse drags, and of the view it turns."""
+"""What the window sends: keys, the sticks that the mouse drags, and turns of the view."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_all_other_events_are_left_unchanged():
 
 
 class Kept:
-    """Stands where the connection is, and keeps what is sent."""
+    """Stands in for the connection, and records what is sent."""
 
     def __init__(self):
         self.messages = []
@@ -182,7 +182,7 @@ def test_a_drag_with_the_right_button_is_sent_once_per_frame_until_its_release(m
     mouse.tell(is_wanted=True)
     ((kind, members),) = kept.messages
     assert kind == ORBIT
-    # What is seen follows the pointer to the right and down: the eye goes left and up.
+    # The scene follows the pointer to the right and down: the eye goes left and up.
     assert members["aroundDeg"] == pytest.approx(-DEG_PER_HEIGHT / 10)
     assert members["higherDeg"] == pytest.approx(DEG_PER_HEIGHT / 20)
     assert members["zoom"] == 1.0

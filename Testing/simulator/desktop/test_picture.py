@@ -1,4 +1,4 @@
-"""What the window shows of what the simulator says, rendered for real but for a display."""
+"""How the window shows the simulator's messages, really rendered but without a display."""
 
 import asyncio
 import sys
@@ -39,7 +39,7 @@ def show(gl_window, inbox, picture):
     def show(screen=SCREEN, **changes):
         inbox.screen, inbox.problem = screen, ""
         inbox.take_state(state_text(**changes))
-        # Twice: a camera that sets out arrives.
+        # Twice: a camera that starts moving arrives.
         for now in (float(next(times)), float(next(times))):
             picture.is_due(now)
         picture.draw()
@@ -66,7 +66,7 @@ def test_the_tip_is_red_only_while_a_touch_goes_wrong(show, touch):
 
 
 def ring_of(pixels, color):
-    """Return how wide what has a color is about the tip, in pixels; None for nothing."""
+    """Return the width of what has a color around the tip, in pixels; None for nothing."""
     places = found(pixels[130:255, 400:560], color)
     return np.ptp(places[:, 1]) if len(places) else None
 

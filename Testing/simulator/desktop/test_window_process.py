@@ -1,4 +1,4 @@
-"""The window as a process of its own, at a real view server: joining, sounds, and coming back."""
+"""The window as a separate process, at a real view server: joining, sounds, and rejoining."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from Testing.without_tutorial import WITHOUT_TUTORIAL, skip_tutorial
 
 @pytest.fixture(scope="session", autouse=True)
 def _known_marks():
-    """Look once for where the numbers of a task are on the skin, not for each presenter again."""
+    """Compute once where the numbers of a task are on the skin, not again for each presenter."""
     known, on_skin = {}, TouchViews._on_skin
 
     def kept(views, task):
@@ -41,7 +41,7 @@ def _known_marks():
 
 @pytest.fixture(scope="module", autouse=True)
 def _cheap_pins():
-    """Make the hash of a PIN cheap: what it costs to guess one is none of these tests' business."""
+    """Make the hash of a PIN cheap: the cost of guessing one is not tested here."""
     with mock.patch.dict(instructor_pin._COST, n=2):
         yield
 
@@ -96,7 +96,7 @@ def shared(setup):
 
 
 def put_back(simulation):
-    """End whatever trial another test has left, and have heads lie as if it had not been."""
+    """End any trial that another test has left, and have heads lie as if there had been none."""
     start = {"task": "task-1", "trainee": "nobody", "mode": "desktop", "seed": 3}
     commands = (OperatorCommand("Abort"), OperatorCommand("StartTask", start))
     simulation.step(0.004, OperatorInput(commands=(*commands, OperatorCommand("Abort"))))

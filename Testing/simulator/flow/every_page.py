@@ -95,7 +95,7 @@ LEARNED = TutorialOutcome("P07", "gamepad", "desktop", 112.0, 2.34, (1.2, 0.8, 0
 
 
 class _SetPin:
-    """A PIN that is set, and that nobody guesses."""
+    """A PIN that is set, and that no one guesses."""
 
     is_set = True
 
@@ -151,7 +151,7 @@ class _Desk:
 
 
 def _screens_of_raters(texts, language: str) -> dict[str, Screen]:
-    """Return the pages of the form with the longest words, of the marks, and while one waits."""
+    """Return the pages of the form with the longest words, of the marks, and of waiting."""
     desk = _Desk(texts)
     form = FORMS["osats"]
     pages = (
@@ -166,7 +166,7 @@ def _screens_of_raters(texts, language: str) -> dict[str, Screen]:
 
 
 def names_of_pages(base: type = SessionPage) -> set[str]:
-    """Return the names of all pages that there are."""
+    """Return the names of all existing pages."""
     below = (names_of_pages(page) for page in base.__subclasses__())
     return ({base.name} if base.name else set()).union(*below)
 

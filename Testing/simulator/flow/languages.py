@@ -1,4 +1,4 @@
-"""In which languages screens are looked at, and every screen where its words are longest."""
+"""The languages in which screens are checked, and every screen where its words are longest."""
 
 from __future__ import annotations
 

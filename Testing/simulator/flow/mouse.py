@@ -9,7 +9,7 @@ VIEW = 1
 
 
 class Mouse:
-    """What a view sends of a mouse: clicks on what can be clicked, and dragged sticks."""
+    """What a view sends for a mouse: clicks on what can be clicked, and dragged sticks."""
 
     def __init__(self, trainee: Trainee, kind: str):
         self._trainee = trainee

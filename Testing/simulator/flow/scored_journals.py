@@ -1,4 +1,4 @@
-"""Journals of scored and aborted trials, and the task menu of who has played them."""
+"""Journals of scored and aborted trials, and the task menu of their trainee."""
 
 from __future__ import annotations
 

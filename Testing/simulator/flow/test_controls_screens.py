@@ -1,4 +1,4 @@
-"""Gamepads that go, operators that come, and controls that are changed on the screen."""
+"""Gamepads that are unplugged, operators that join, and controls that are rebound on the screen."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ TOOL = -1
 
 
 class GhostPlace(Place):
-    """A place at which P07 has played an acceptable trial of Task 1.
+    """A simulator at which P07 has played an acceptable trial of Task 1.
 
     Attributes:
         best: its journal.
@@ -87,7 +87,7 @@ def lab(anywhere, tmp_path_factory):
 
 @pytest.fixture
 def place(lab):
-    """The place without a trial, before and after."""
+    """The simulator without a trial, before and after."""
     yield lab
     if lab.state.training.phase in OPEN_PHASES:
         assert lab.submit("Abort").ok

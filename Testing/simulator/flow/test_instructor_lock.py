@@ -23,7 +23,7 @@ def _pin(outside):
 
 
 def open_pin(trainee):
-    """Go from the start menu to where the PIN is entered."""
+    """Go from the start menu to the page where the PIN is entered."""
     trainee.until_menu("start")
     trainee.choose("settings")
     trainee.until_menu("settings")

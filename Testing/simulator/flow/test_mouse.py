@@ -118,7 +118,7 @@ class MouseLearner(FlowLearner):
 
 @pytest.fixture(params=["desktop", "page"])
 def newcomer(loop, outside, request):
-    """A trainee with a mouse, whom the tutorial is asked of, as from the first start on."""
+    """A trainee with a mouse who has to do the tutorial, as at the first start."""
     presenter = FlowPresenter(loop, outside.services, DEFAULT_BINDINGS, Preferences())
     trainee = ClickingTrainee(loop, presenter, lambda it: Mouse(it, request.param))
     trainee.until_menu("start")
@@ -138,7 +138,7 @@ def enter_id(newcomer):
 
 
 def train_and_view_the_result(newcomer, outside, task):
-    """Touch all points of a task that runs, register them and read the score."""
+    """Touch all points of a running task, register them and read the score."""
     newcomer.play(task)
     assert len(newcomer.state.training.touches) == 15
     trial_id = newcomer.register()

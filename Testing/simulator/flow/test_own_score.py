@@ -44,7 +44,7 @@ def entries_of(outside, trial_id, kind):
 
 
 def errors_are_drawn_as_revealed(trainee, registration):
-    """Look at the arrows on the head: they are the revealed errors of the touches, 5 times."""
+    """Check the arrows on the head: the revealed errors of the touches, 5 times as long."""
     revealed = trainee.submit("SubmitRegistration", **registration).data["touchErrorsMm"]
     trainee.choose("errors")
     trainee.until_menu(None)
@@ -73,7 +73,7 @@ def test_without_slicer_the_trainee_gets_the_simulators_own_score_until_slicers_
     errors_are_drawn_as_revealed(trainee, submitted)
     (own,) = entries_of(outside, trial, "scored")
     assert own["details"]["scoreVersion"] == SCORE_VERSION
-    # Who has seen the truth cannot register again, not by a micrometer; the same is answered.
+    # After the truth is revealed no other registration is accepted, not even by a micrometer.
     moved = [*submitted["matrix"][:3], submitted["matrix"][3] + A_MICROMETER]
     other = {**submitted, "matrix": [*moved, *submitted["matrix"][4:]]}
     refused = trainee.submit("SubmitRegistration", **other)
@@ -119,7 +119,7 @@ def test_the_simulator_scores_nothing_with_slicer_connected_or_a_study_running(t
     outside.services.study.take(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
     outside.has_slicer = False
     trial_of_study = register(trainee)
-    # Longer than a lost connection is waited for.
+    # Longer than the wait for a lost connection.
     trainee.step(500)
     assert trainee.menu.name == "waiting"
     assert "it will score them as soon as it is" in trainee.menu.paragraphs[0]
@@ -168,7 +168,7 @@ def is_in_use(trainee):
 
 
 def feed(trainee, to_mm):
-    """Feed what is in the guide until the screen's state shows it so deep."""
+    """Feed what is in the guide until the state shows this depth."""
     tool = trainee.state.tool
     for _ in range(50):
         if trainee.state.tool is not tool or 1000 * trainee.state.feed >= to_mm:
@@ -179,7 +179,7 @@ def feed(trainee, to_mm):
 
 
 def test_without_slicer_the_simulator_registers_and_scores_a_procedure(trainee, outside):
-    # That a study is led keeps it from scoring alone: registering reveals nothing.
+    # A running study keeps it from scoring alone; registering reveals nothing.
     outside.services.study.take(StudyStep("P07", "trial", 1, 9, "task-1", "desktop"))
     # While a Slicer is connected, it is the one that registers.
     outside.has_slicer = True

@@ -1,4 +1,4 @@
-"""The way between two points, and the words for a direction."""
+"""The path between two points, and the words for a direction."""
 
 from __future__ import annotations
 

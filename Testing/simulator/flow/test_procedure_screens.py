@@ -35,7 +35,7 @@ from Testing.simulator.planned_procedures import ENTRIES, TARGETS, procedure_set
 from Testing.without_tutorial import WITHOUT_TUTORIAL
 
 OFF_MM = (2.0, -1.0, 1.5)
-"""The registration is off by so much, as one by biased touches is."""
+"""Offset of the registration, like that of one by biased touches."""
 DRILLED_M, MICROMETER = 0.052, 1e-6
 
 
@@ -47,7 +47,7 @@ class Operation:
         self.seen: dict = {}
 
     def keep(self, name: str) -> None:
-        """Keep the screen, and what views receive beside it."""
+        """Record the screen, and what views receive beside it."""
         trainee = self.trainee
         trainee.step(15)
         shown = trainee.presenter.shown.latest
@@ -65,13 +65,13 @@ class Operation:
         self.until_tool(tool)
 
     def until_tool(self, tool: Tool) -> None:
-        """Wait until the robot holds another tool, and its screen is there."""
+        """Wait until the robot holds another tool, and its screen is shown."""
         trainee = self.trainee
         trainee.until(lambda: trainee.state.tool is tool, tool.value)
         trainee.step(3)
 
     def feed(self, to_m: float) -> None:
-        """Hold the key that feeds until the tip is so deep."""
+        """Hold the key that feeds until the tip is at a depth."""
         trainee = self.trainee
         trainee.presenter.on_key(1, "KeyF", True, "")
         trainee.until(lambda: trainee.state.feed >= to_m, f"a depth of {to_m} m")
@@ -143,7 +143,7 @@ def begin(operation: Operation) -> None:
     trainee.choose("task-1")
     trainee.until_menu(None)
     for kept in range(1, 16):
-        # Touches at one place could not be registered again by who shows the trial again.
+        # Touches at one point could not be registered again by a replay.
         trainee.hands.push(*np.roll((1.0, 0.0, 0.0), kept).tolist(), False)
         trainee.step(15)
         trainee.hands.push(0.0, 0.0, 0.0, False)
@@ -181,7 +181,7 @@ def is_aligned(trainee: Trainee):
 
 
 def retract(operation: Operation) -> None:
-    """Take the drill out before it has cut anything, and lock the guide once more."""
+    """Remove the drill before it has cut anything, and lock the guide again."""
     trainee = operation.trainee
     trainee.tap("undo")
     trainee.until_menu("procedure")
@@ -191,7 +191,7 @@ def retract(operation: Operation) -> None:
 
 
 def score(operation: Operation) -> None:
-    """Score it as Slicer does, and look at all pages of the result."""
+    """Score it as Slicer does, and view all pages of the result."""
     trainee = operation.trainee
     trainee.until_menu("waiting")
     data = trainee.submit("GetTrial", trialId=operation.registration["trialId"]).data

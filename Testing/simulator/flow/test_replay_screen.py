@@ -25,7 +25,7 @@ from Testing.simulator.flow.test_whole_flow import REGISTRATION, SCORE
 from Testing.simulator.flow.trainee import PATIENCE_S, Keys, Trainee
 
 WAYS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (-1, 0, 0), (0, -1, 0))
-"""The tip has to be elsewhere at each touch; where does not matter here."""
+"""The tip has to be at another position at each touch; which one does not matter here."""
 PAGE = 2
 A, B, X, START = 0, 1, 2, 9
 """Buttons of the W3C standard gamepad."""
@@ -92,7 +92,7 @@ class Place(Trainee):
 
 @pytest.fixture(scope="module")
 def place(anywhere, tmp_path_factory):
-    """A place at which a trial has been scored."""
+    """A simulator at which a trial has been scored."""
     outside = Outside(tmp_path_factory.mktemp("replay"))
     records = outside.services.records
     with ControlLoop(Simulation(anywhere, 3), records, speed=None) as loop:
@@ -107,7 +107,7 @@ def place(anywhere, tmp_path_factory):
 
 @pytest.fixture
 def result(place):
-    """The place with the page of the result, before and after."""
+    """The simulator at the page of the result, before and after."""
     assert place.menu.name == "result"
     yield place
     if place.menu is None:

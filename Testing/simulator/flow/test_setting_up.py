@@ -1,4 +1,4 @@
-"""Other settings: used once, as soon as neither a trial nor a loading is in the way."""
+"""Other settings: used once, as soon as neither a trial nor a loading prevents it."""
 
 from concurrent.futures import Future
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ PRESENT, NEW, NEWER = "present", "new", "newer"
 
 
 class Process:
-    """The process around a `SettingUp`, which answers when a test says so."""
+    """The process around a `SettingUp`, which answers when a test lets it."""
 
     def __init__(self):
         self.loop = SimpleNamespace(is_being_replaced=False)

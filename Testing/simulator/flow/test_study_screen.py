@@ -16,7 +16,7 @@ TASK_2 = StudyStep("P07", "trial", 3, 19, "task-2", "desktop")
 
 @pytest.fixture
 def guide(outside):
-    """What Slicer tells of the study, while no time of a break passes."""
+    """What Slicer sends about the study, while no time of a break passes."""
     outside.services.study._clock = lambda: 100.0
     return outside.services.study
 
@@ -41,7 +41,7 @@ def enabled(menu):
 
 
 def tell(menu, guide, step):
-    """Take what Slicer tells, and wait until the menu can show it."""
+    """Process a message from Slicer, and wait until the menu can show it."""
     guide.take(step)
     menu.step(20)
 
@@ -113,7 +113,7 @@ def test_the_trial_run_lasts_for_the_rest_of_the_studys_minutes(menu, guide):
     tell(menu, guide, replace(TRIAL_RUN, over=6.0))
     menu.choose("trial-run")
     menu.until_menu(None)
-    # Time goes on while the disk keeps the start.
+    # Time continues while the start is written to disk.
     assert menu.presenter.screen.status[2].startswith(("02:00", "01:5"))
 
 

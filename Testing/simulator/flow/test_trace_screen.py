@@ -1,4 +1,4 @@
-"""A trace by the trainee's own controls, and what its match says before it counts."""
+"""A trace by the trainee's own controls, and the report of its match before it counts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The screens of a trial: whoever starts, pauses or ends it."""
+"""The screens of a trial, no matter who starts, pauses or ends it."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_completed_tasks_are_still_known_after_a_restart_of_the_simulator(traine
 
 
 def test_after_five_minutes_of_practice_the_trainee_is_asked_once(trainee, monkeypatch):
-    # Time goes on while the disk keeps the start, and nobody knows how long that takes.
+    # Time continues while the start is written to disk, which may take any time.
     monkeypatch.setattr(trial_screen, "TRIAL_RUN_S", 3600.0)
     trainee.start("trial-run")
     monkeypatch.setattr(trial_screen, "TRIAL_RUN_S", trainee.state.elapsed + 3.0)

@@ -1,4 +1,4 @@
-"""The tutorial in the flow: by keyboard and gamepad, what it gates, what it keeps, what ends it."""
+"""The tutorial in the flow: by keyboard and gamepad; what it gates, stores, and what ends it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The trainee's view: what moves it, what the sticks mean by it, and what the record says."""
+"""The trainee's view: what moves it, what the sticks mean in it, and what the record says."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ def orbit(trainee):
 
 
 def wait_for_views(trainee):
-    """Let the trial's best views be found."""
+    """Wait until the trial's best views are found."""
     is_found = lambda: trainee.presenter.pictures(trainee.state).inset is not None  # noqa: E731
     trainee.until(is_found, "the best view")
 

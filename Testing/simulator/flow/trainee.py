@@ -26,24 +26,24 @@ MAX_STEPS = 5_000
 SINK_M = 0.003
 """How far below the skin the sticks push for, so that the tip comes to rest on it."""
 ATTEMPTS = 3
-"""How often a fiducial is gone to until the ring on it is green."""
+"""How often to approach a fiducial until the ring on it is green."""
 SHORT_PUSHES = 40
 LIFT_M = 0.035
 """How far the tip is taken off the skin before it is carried to the next fiducial."""
 
 
 class Hands(Protocol):
-    """What a trainee works the simulator with."""
+    """The input device of a trainee."""
 
     def tap(self, control: str) -> None:
-        """Press a control and let it go."""
+        """Press a control and release it."""
 
     def push(self, right: float, forward: float, up: float, fine: bool) -> None:
         """Push the sticks, −1…1."""
 
 
 class Watcher:
-    """Keeps everything that a presenter tells."""
+    """Records everything that a presenter sends."""
 
     def __init__(self, presenter):
         self.screens, self.feedbacks, self.controls = [], [], []
@@ -56,7 +56,7 @@ class Watcher:
 
 
 class LockStep:
-    """Lets a control loop tick only when a test says so: nothing depends on how fast it is."""
+    """Lets a control loop tick only when a test wants it: nothing depends on how fast it is."""
 
     def __init__(self, loop):
         self._loop = loop
@@ -69,7 +69,7 @@ class LockStep:
         assert self._done.acquire(timeout=PATIENCE_S), "the control loop has stopped"
 
     def free(self) -> None:
-        """Let the loop go on alone."""
+        """Let the loop run alone."""
         self._is_free = True
         self._go.release()
 
@@ -120,7 +120,7 @@ class Trainee:
         return len(self.presenter.shown.latest.training.touches)
 
     def step(self, count: int = 1) -> None:
-        """Let the presenter go on for `count` steps, and the loop with it."""
+        """Advance the presenter by `count` steps, and the loop with it."""
         for _ in range(count):
             self._advance(self.step_s)
             for _ in range(self.ticks_a_step):
@@ -174,7 +174,7 @@ class Trainee:
     def focus(self, item: str) -> None:
         names = [each.name for each in self.menu.items if each.kind != "axis"]
         assert item in names, f"{self.menu.name} has {names}"
-        # A menu that has opened by itself takes nothing for a moment.
+        # A menu that has opened by itself ignores input for a moment.
         self.until(lambda: self.menu.focus, "a focus")
         while self.menu.focus != item:
             before = self.menu.focus
@@ -215,7 +215,7 @@ class Trainee:
     def lower_onto(self, point: np.ndarray, center: np.ndarray) -> None:
         """Carry the tip over the head to a point of the skin (3,) m, and lower it until contact.
 
-        Where the ring does not turn green, it is done again, as a person would.
+        If the ring does not turn green, this is repeated, as a person would.
         """
         for _ in range(ATTEMPTS):
             self._carry_over(point, center)
@@ -238,7 +238,7 @@ class Trainee:
         self._let_go()
 
     def _press_until_green(self, outward: np.ndarray) -> None:
-        """Press less or more, by short pushes, as far as the ring is that of the next point."""
+        """Press less or more, by short pushes, as long as the ring is that of the next point."""
         pushes = {TouchStage.TOO_DEEP: outward, TouchStage.NEAR: -outward}
         for _ in range(SHORT_PUSHES):
             if self._stage not in pushes:
@@ -285,7 +285,7 @@ class Trainee:
         self.hands.push(right, forward, up, fine)
 
     def play(self, task: str) -> None:
-        """Touch all points of the trial that runs, as the head stands in it."""
+        """Touch all points of the running trial, as the head stands in it."""
         truth = self.loop.truth
         center = truth.in_world(truth.target) / MM_PER_M
         for label in [str(number) for number in range(1, 16)]:
@@ -295,7 +295,7 @@ class Trainee:
 
 
 class Keys:
-    """A keyboard: what it types goes to the presenter as a view sends it."""
+    """A keyboard: its keys go to the presenter as a view sends them."""
 
     CODES: Mapping[str, str] = {
         "accept": "Enter",
@@ -337,7 +337,7 @@ class Keys:
             self.key(f"Key{letter.upper()}" if letter.isalpha() else f"Digit{letter}", letter)
 
     def push(self, right: float, forward: float, up: float, fine: bool) -> None:
-        """Keys know no half way: what is worth more than half the longest part is held."""
+        """Keys are pressed or not: components above half of the longest are held."""
         wanted = {"ShiftLeft"} if fine else set()
         longest = max(abs(right), abs(forward), abs(up))
         for value, (below, above) in zip((right, forward, up), self.STICKS, strict=True):

@@ -1,4 +1,4 @@
-"""Bindings and presets: one meaning an input, a way out of every menu, what one hand reaches."""
+"""Bindings and presets: one meaning per input, a way out of every menu, what one hand reaches."""
 
 from __future__ import annotations
 
@@ -197,7 +197,7 @@ def test_a_preset_gives_every_input_one_function_and_is_kept(device, name, tmp_p
 @pytest.mark.parametrize(("device", "name"), REACH, ids=named)
 def test_one_hand_alone_reaches_everything_a_trial_needs(device, name):
     table, reach = presets_of(device)[name], REACH[device, name]
-    # Upward a menu wraps around: the way down leads everywhere.
+    # Upward a menu wraps around: going down leads everywhere.
     ways_up = {ControlName.UP} if (device, name) == (InputDevice.KEYBOARD, LEFT_ALONE) else set()
     out_of_reach = {each for each in NEEDED - ways_up if not reach & set(table[each])}
     assert out_of_reach == set()

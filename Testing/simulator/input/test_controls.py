@@ -1,4 +1,4 @@
-"""What a hand does, who is the one operator, and steps that repeat while a direction is held."""
+"""The effect of inputs, the single operator, and steps that repeat while a direction is held."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_sticks_do_nothing_in_a_menu(controls):
 def test_a_key_repeats_in_a_menu_only_while_its_keyboard_repeats_it(controls, ear):
     controls.enter(ControlContext.MENU)
     controls.set_key(KEYS, "ArrowDown", True)
-    # A window that draws for so long has not looked at the release.
+    # A window that draws for so long has not polled the release.
     controls.advance(3.0)
     assert ear.presses == [ControlName.DOWN]
     for _ in range(100):

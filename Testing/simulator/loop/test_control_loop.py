@@ -70,7 +70,7 @@ class Client:
         return self.do(CommandName.TRIAL_SCORED, trialId=trial_id, score=70.0)
 
     def ticks(self, count):
-        """Wait until so many more ticks have been published."""
+        """Wait until a number of further ticks have been published."""
         until = self.loop.latest.tick + count
         wait_for(lambda: self.loop.latest.tick >= until)
 
@@ -446,7 +446,7 @@ def test_a_late_tick_is_counted_and_lost_ticks_are_not_hidden(anywhere, tmp_path
 
 
 class SteppedClock:
-    """Time that goes on only where the loop sleeps or is held up: no machine stands still in it."""
+    """Time that passes only while the loop sleeps or is held up: no machine stalls in it."""
 
     def __init__(self):
         self.now = 100.0

@@ -30,7 +30,7 @@ def in_a_thread(call):
 
 
 def may_be_first() -> bool:
-    """Tell whether the system permits this process a real-time priority."""
+    """Return whether the system permits this process a real-time priority."""
 
     def ask() -> bool:
         try:

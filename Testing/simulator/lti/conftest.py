@@ -1,4 +1,4 @@
-"""The tool in an event loop of its own, a platform that is registered there, and a study."""
+"""The tool in its own event loop, a platform that is registered there, and a study."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Lab:
         (self.config / SETTINGS_FILE).write_text(json.dumps(settings))
 
     def start(self, timeout_s: float = PATIENCE_S) -> ServedTool:
-        """Start the tool, as after a crash of the one before."""
+        """Start the tool, as after a crash of the previous one."""
         self.tool = ServedTool(self.thread, self.study, self.config, self._port, timeout_s)
         self.platform.tool = self.tool.url
         self._started.append(self.tool)
@@ -92,7 +92,7 @@ class Lab:
 
 @pytest.fixture(scope="session")
 def key_and_study(tmp_path_factory):
-    """A key and a study without trainees, made once: that takes a while."""
+    """A key and a study without trainees, made once since that takes time."""
     folder = tmp_path_factory.mktemp("lti")
     ToolKey(folder)
     Study.open(folder / "study.db").close()

@@ -36,7 +36,7 @@ class PlatformDouble:
         keys: what its key set answers; None for never.
         asked_for_keys: how often it was asked for them.
         scores: bodies of the scores that it was sent.
-        planned: statuses with which the next scores are answered, instead of being heeded.
+        planned: statuses with which the next scores are answered, instead of being processed.
         stored_first: whether a planned status comes after the score was stored.
         assertions: claims of the requests for access.
         address: of the platform.
@@ -79,7 +79,7 @@ class PlatformDouble:
         self._thread.run(self._runner.cleanup())
 
     def settings(self, **changes) -> dict:
-        """Return what the tool's settings say of it."""
+        """Return its entry in the tool's settings."""
         return {
             "name": "University",
             "issuer": self.address,

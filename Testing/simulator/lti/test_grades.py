@@ -1,4 +1,4 @@
-"""Grades reach the gradebook: each until it is confirmed, none lost while the platform is away."""
+"""Grades reach the gradebook: each is sent until confirmed, none is lost in an outage."""
 
 from __future__ import annotations
 

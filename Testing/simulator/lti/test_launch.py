@@ -1,4 +1,4 @@
-"""A course launches the tool: who comes gets a pseudonym, and sees what to do."""
+"""A course launches the tool: each learner gets a pseudonym, and sees what to do."""
 
 from __future__ import annotations
 

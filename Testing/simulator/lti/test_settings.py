@@ -1,4 +1,4 @@
-"""The lab's settings say which platforms may launch; what is wrong in them is said."""
+"""The lab's settings say which platforms may launch; errors in them are reported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Logs are lines of JSON, never grow too big, and never stand in the way."""
+"""Logs are lines of JSON, never grow too big, and never block."""
 
 import errno
 import io
@@ -121,7 +121,7 @@ def test_logging_is_restored_when_the_program_ends(tmp_path):
 
 
 class Blocked(logging.Handler):
-    """Takes nothing until it is let go."""
+    """Accepts nothing until it is released."""
 
     def __init__(self):
         super().__init__()

@@ -1,4 +1,4 @@
-"""An aborted trial is kept and offered until somebody has it: no touch disappears."""
+"""An aborted trial is stored and offered until a client has it: no touch disappears."""
 
 import json
 import os
@@ -115,7 +115,7 @@ def test_a_trial_run_is_stored_too_and_marked(simulation, tmp_path):
 
 
 def test_a_trial_that_was_only_viewed_is_not_stored(simulation, tmp_path):
-    # So slow that its ten seconds are not over while the disk keeps the start.
+    # So slow that its ten seconds are not over while the start is written to disk.
     with Server(simulation, tmp_path, speed=0.1) as server:
         server.start()
         server.move(ticks=5)
@@ -197,7 +197,7 @@ def test_an_aborted_trial_that_a_full_disk_could_not_take_is_offered_and_written
 
 
 def test_of_two_simultaneous_commands_that_end_a_trial_only_one_takes_effect(simulation, tmp_path):
-    """A trainee registers while somebody else aborts: there is one record, of what came first."""
+    """A trainee registers while a client aborts: there is one record, of what came first."""
     kinds = []
     with Server(simulation, tmp_path) as server:
         for commands in (

@@ -1,4 +1,4 @@
-"""The computer's clock may be set while a trial runs: durations and the record do not mind."""
+"""The computer's clock may be set while a trial runs: durations and the record are unaffected."""
 
 import time
 from datetime import datetime, timedelta

@@ -1,4 +1,4 @@
-"""A trial whose server has ended is taken up where it was, and written on in the same journal."""
+"""A trial whose server has ended is resumed where it was, and continued in the same journal."""
 
 import errno
 import os
@@ -63,7 +63,7 @@ class Server:
         return self.do(CommandName.START_TASK, task="task-1", trainee="P01").data["trialId"]
 
     def move(self, translation=(0.4, -0.3, 0.2), ticks=20):
-        """Hold the sticks for so many ticks, however late this thread is."""
+        """Hold the sticks for a number of ticks, however late this thread is."""
         sticks = [OperatorInput(translation, operator="gamepad"), *[None] * (ticks - 1)]
         sticks.append(OperatorInput())
         is_over = threading.Event()

@@ -1,4 +1,4 @@
-"""What is done beside the task never helps: waiting and detours cost points."""
+"""Off-task behavior never helps: waiting and detours cost points."""
 
 import functools
 

@@ -55,7 +55,7 @@ class Theater(Server):
         self.must(CommandName.USE_REGISTRATION, trialId=self.training.trial_id, **numbers)
 
     def feed(self, to_mm):
-        """Feed by the stick, with other sticks in between, until it is so deep."""
+        """Feed by the stick, with other sticks in between, to a depth."""
         is_deep = threading.Event()
 
         def release_in_time(result):
@@ -111,7 +111,7 @@ class Theater(Server):
             self.feed(9.0)
 
     def finish(self, drilled_mm=14.0, placed_mm=11.0):
-        """Go on from any phase to the end of the procedure."""
+        """Continue from any phase to the end of the procedure."""
         if self.training.phase is Phase.VERIFYING:
             if self.training.procedure.registration is None:
                 self.use_exact_registration()

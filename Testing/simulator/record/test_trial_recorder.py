@@ -1,4 +1,4 @@
-"""What the first trial needs is there before it begins; a tick has no time to load anything."""
+"""What the first trial needs is loaded before it begins; a tick has no time to load anything."""
 
 from __future__ import annotations
 

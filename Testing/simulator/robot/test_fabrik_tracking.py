@@ -89,7 +89,7 @@ def test_the_arm_stretches_to_its_limit_stays_there_and_comes_back(fabrik, robot
     wrist = path - [0.326, 0.0, 0.34] if direction else path - [0.0, 0.0, 0.34]
     beyond = np.linalg.norm(wrist, axis=1) > (0.8 if direction else 1.126)
     assert [not solution.converged for solution in solutions] == beyond.tolist()
-    # At the edge itself angles go with the square root of the way: no solver can do less.
+    # At the edge itself angles grow with the square root of the distance: no solver can do less.
     edge = np.abs(np.linalg.norm(wrist, axis=1) - (0.8 if direction else 1.126)) < 0.008
     assert steps[edge].max() <= 45.0
     assert steps[~edge].max() <= 2.0

@@ -1,4 +1,4 @@
-"""LoadScenario: which folders may be named, and what is said when one cannot be used."""
+"""LoadScenario: which folders may be named, and the error if one cannot be used."""
 
 import json
 from concurrent.futures import Future

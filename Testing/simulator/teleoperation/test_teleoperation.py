@@ -34,7 +34,7 @@ SETTINGS = TeleoperationSettings()
 
 
 class Hand:
-    """A tip that goes exactly where it is wished: teleoperation without a robot."""
+    """A tip that goes exactly where it is sent: teleoperation without a robot."""
 
     def __init__(self, settings=SETTINGS, axes=FRONT_CAMERA, surface=None):
         self.teleoperation = Teleoperation(settings)

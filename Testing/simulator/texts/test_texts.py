@@ -1,4 +1,4 @@
-"""Every sentence is there in every language, and can be said again in another."""
+"""Every sentence exists in every language, and can be repeated in another."""
 
 import copy
 import json

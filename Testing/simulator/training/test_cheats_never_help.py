@@ -54,7 +54,7 @@ def scenario(request, tmp_path_factory):
 
 
 def _apart(places, random):
-    """Return fifteen of the places, as far apart as a random order allows."""
+    """Return fifteen of the points, as far apart as a random order allows."""
     for distance in (20.0, 15.0, 10.0, 5.0):
         chosen = []
         for place in random.permutation(places):

@@ -27,7 +27,7 @@ MOTION = {
 
 @dataclasses.dataclass
 class Submitted:
-    """A trial with five bad touches, and what a submitted registration led to."""
+    """A trial with five bad touches, and the result of a submitted registration."""
 
     reply: object
     record: TrialRecord

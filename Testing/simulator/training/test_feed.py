@@ -1,4 +1,4 @@
-"""How far drill and instrument go in the guide, and what is felt on the way."""
+"""How far drill and instrument go in the guide, and what is felt meanwhile."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""From the registration to the placed instrument: what each command leads to, and what it keeps."""
+"""From the registration to the placed instrument: what each command causes and records."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A trial that is registered by landmarks or by a trace: what is touched, traced, undone, said."""
+"""A trial registered by landmarks or by a trace: what is touched, traced, undone and shown."""
 
 from dataclasses import replace
 
@@ -31,7 +31,7 @@ def begun(scenario, method="surface", **others):
 
 
 def traced(scenario, count, method="surface", **others):
-    """Return a trial with one ended stroke of so many points."""
+    """Return a trial with one ended stroke of a number of points."""
     trial = begun(scenario, method, **others)
     trial.touch(3 if method == "surface" else len(NAMES))
     stroke(trial, count)

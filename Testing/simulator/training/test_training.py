@@ -1,4 +1,4 @@
-"""The trial's state machine: what each command does in each phase, and what is said."""
+"""The trial's state machine: what each command does in each phase, and its message."""
 
 import itertools
 

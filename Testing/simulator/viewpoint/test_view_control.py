@@ -1,4 +1,4 @@
-"""The view that is turned by hand, or goes to a place by itself."""
+"""The view that is turned by hand, or moves to a position by itself."""
 
 import math
 

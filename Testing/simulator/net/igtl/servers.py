@@ -1,4 +1,4 @@
-"""Servers on real sockets, in an event loop of their own, and the simulation's state by hand."""
+"""Servers on real sockets, in their own event loop, and the simulation's state by hand."""
 
 import asyncio
 import socket
@@ -56,7 +56,7 @@ class LoopThread:
 
 
 async def _end_all():
-    """Cancel what still waits, so that threads that wait for it go on."""
+    """Cancel pending tasks, so that threads that wait for them continue."""
     others = asyncio.all_tasks() - {asyncio.current_task()}
     for task in others:
         task.cancel()
@@ -64,7 +64,7 @@ async def _end_all():
 
 
 class RecordingHandler:
-    """Keeps what arrives; wakes whoever waits for it."""
+    """Keeps what arrives; wakes threads that wait for it."""
 
     def __init__(self):
         self.news = threading.Condition()

@@ -1,4 +1,4 @@
-"""What a client may cost: memory, time, connections; and who is no client at all."""
+"""What a client may cost: memory, time, connections; and peers that are no clients."""
 
 import asyncio
 import contextlib

@@ -56,7 +56,7 @@ def receiver() -> Receiver:
 
 @pytest.fixture
 def publisher(receiver) -> Publisher:
-    """A publisher whose one subscriber knows how things stand."""
+    """A publisher whose only subscriber has the current state."""
     publisher = Publisher(at_rest)
     publisher.subscribe(receiver, PoseSubscription())
     publisher.publish(at_rest())

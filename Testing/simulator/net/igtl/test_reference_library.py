@@ -1,4 +1,4 @@
-"""The C++ reference library, as a client of ours: every type, both ways, and as a hostile one."""
+"""The C++ reference library as our client: every type, in both directions, and hostile input."""
 
 import asyncio
 import json

@@ -33,7 +33,7 @@ def control_loop(tmp_path_factory, setup) -> ControlLoop:
 
 @pytest.fixture(autouse=True)
 def no_page(monkeypatch):
-    """Have no built page, whether there is one in this checkout or not."""
+    """Pretend that there is no built page, whether this checkout has one or not."""
     monkeypatch.setattr(view_server_module, "page_folder", lambda: None)
 
 
@@ -58,7 +58,7 @@ def served(serve) -> ServedViews:
 
 @pytest.fixture
 def connect():
-    """Connects views to a server, each with a key of its own, and lets them go."""
+    """Connects views to a server, each with its own key, and closes them."""
     views = []
 
     def connect_one(served: ServedViews, role: ViewRole = ViewRole.VIEW) -> ViewClient:

@@ -55,7 +55,7 @@ class RecordingPresenter:
         return self.reported_seat
 
     def instruct(self, order, text):
-        """Note what a teacher wants, and do it unless there is a `problem`."""
+        """Record a teacher's order, and carry it out unless there is a `problem`."""
         self.calls.append(("instruct", order.value, text))
         return self.problem
 
@@ -71,7 +71,7 @@ class RecordingPresenter:
 
 
 class ServedViews:
-    """A `ViewServer` in an event loop of its own.
+    """A `ViewServer` in its own event loop.
 
     Attributes:
         presenter: where the views' input ends.
@@ -114,7 +114,7 @@ class ServedViews:
         return self.thread.call(self.server.sessions.open, role)
 
     def tell(self, *news):
-        """Have the presenter tell several things at once."""
+        """Have the presenter send several things at once."""
         self.thread.call(self.presenter.tell, *news)
 
     def wait_for_call(self, *call):
@@ -220,7 +220,7 @@ def request(url: str, path: str, method: str = "GET", **arguments) -> tuple[int,
 
 
 async def answered(url: str, path: str, method: str = "GET", **arguments) -> tuple:
-    """Return status, headers and body of one request, in an event loop that is there."""
+    """Return status, headers and body of one request, in a running event loop."""
     async with (
         aiohttp.ClientSession(cookie_jar=aiohttp.DummyCookieJar()) as session,
         session.request(method, url + path, **arguments) as response,

@@ -1,4 +1,4 @@
-"""A simulator tells boards of its seat, remembers their keys, and takes orders with its PIN."""
+"""A simulator informs boards of its seat, remembers their keys, and accepts orders with its PIN."""
 
 from __future__ import annotations
 

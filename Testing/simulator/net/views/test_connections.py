@@ -13,7 +13,7 @@ LONG_S = 1000.0
 
 
 def in_memory() -> int:
-    """Return how many connections anything still knows of."""
+    """Return how many connections are still referenced."""
     gc.collect()
     return sum(isinstance(each, web.RequestHandler) for each in gc.get_objects())
 
@@ -29,7 +29,7 @@ def test_an_ended_connection_is_released_from_memory():
     async def ask_and_leave(url: str, is_last: bool) -> None:
         async with aiohttp.ClientSession() as session, session.get(url) as response:
             assert response.status == 200
-            # It takes long to look: once is enough, when others have come and gone.
+            # Counting takes long: once is enough, after others have come and gone.
             assert not is_last or in_memory() == before + 1
 
     async def run() -> None:

@@ -187,7 +187,7 @@ def test_without_a_built_page_the_answer_says_how_to_build_it(served):
 
 @pytest.fixture
 def page(tmp_path, monkeypatch):
-    """A built page, and beside its folder a file that is nobody's business."""
+    """A built page, and beside its folder a private file."""
     folder = tmp_path / "page"
     folder.mkdir()
     (folder / "index.html").write_text("<title>built</title>")

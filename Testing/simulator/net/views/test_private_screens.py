@@ -1,4 +1,4 @@
-"""What a private menu offers is sent to who operates, and to nobody else."""
+"""What a private menu offers is sent to the operator, and to no one else."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def screens_and_events(view):
 
 
 def tell(served, control):
-    """Have somebody hold the control while the private menu is open, hear a click, and leave."""
+    """Have an operator take control while the private menu is open, hear a click, and leave."""
 
     def act(presenter):
         presenter.control, presenter.screen = control, SECRET

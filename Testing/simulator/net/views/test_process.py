@@ -30,7 +30,7 @@ def test_a_view_pairs_by_the_printed_code_and_does_not_keep_the_simulator_from_e
             scene = again.next("scene")["url"]
             headers = {"Authorization": f"Bearer {key}"}
             assert request(simulator.url, scene, headers=headers)[2][:4] == b"glTF"
-            # It reads all the time: the simulator waits only shortly for who does not.
+            # It reads all the time: the simulator waits only briefly for peers that do not.
             closing = reading.submit(again.closing)
             status, errors = simulator.stop()
             assert closing.result() == (1001, "The simulator has been stopped.")
@@ -57,7 +57,7 @@ def _opened(tmp_path, *arguments):
 
 
 def _usual_port_taken():
-    """Return a socket at the usual port, once whoever else may have it is gone."""
+    """Return a socket at the usual port, once any other user of the port is gone."""
     give_up = time.monotonic() + 600.0
     while True:
         try:

@@ -1,4 +1,4 @@
-"""A spectator sees everything that a view sees, and drives nothing whatever it sends."""
+"""A spectator sees everything that a view sees, and drives nothing, whatever it sends."""
 
 import json
 
@@ -29,7 +29,7 @@ def watch(served, connect, role=ViewRole.SPECTATOR, kind="spectator"):
 
 
 def wearers(view):
-    """Return what a spectator has read of who wears a headset, state by state."""
+    """Return what a spectator has read about the wearer of a headset, state by state."""
     while True:
         yield view.next("state")["wearer"]
 

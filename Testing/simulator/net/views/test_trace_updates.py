@@ -21,7 +21,7 @@ NEXT = {"positionMm": [1.0, 80.0, -20.0], "normal": [0.0, 1.0, 0.0]}
 
 
 class RepeatedStates:
-    """A `StateSource` that tells one state again and again, until a test has another."""
+    """A `StateSource` that repeats one state, until a test sets another."""
 
     statistics = LoopStatistics()
 
@@ -67,7 +67,7 @@ class TracedTrial:
         return view.next("trace")
 
     def draw(self, count, height):
-        """Draw a stroke of so many points at a height, m."""
+        """Draw a stroke of a number of points at a height, m."""
         self.trial.must(CommandName.TRACE, on=True)
         for number in range(count):
             self.trial.now += 0.02
