@@ -12,7 +12,7 @@ from Testing.postgres_server import PostgresServer
 
 @pytest.fixture(scope="session")
 def postgres_server():
-    """A server for all tests that only want databases of it."""
+    """A server for all tests that need only its databases."""
     with PostgresServer() as server:
         yield server
 

@@ -73,10 +73,10 @@ LAYERS = {
         rastrainer_simulator.cli
     """,
 }
-# Which tables a table's rooms may look down to.
+# Which tables a table's rooms may import from.
 BELOW = {"the domain": (), "Slicer's side": ("the domain",), "the simulator": ("the domain",)}
 
-# What a part may import that is not ours; None is anything that its package requires.
+# What a part may import that is not ours; None means anything that its package requires.
 OUTSIDE = {"the domain": {*sys.stdlib_module_names, "numpy", "fastcrc"}}
 FORBIDDEN = {
     "rastrainer.slicer": {"qt", "ctk"},

@@ -23,7 +23,7 @@ TRACKED = [
     if (ROOT / name).exists()
 ]
 PAGES = [name for name in TRACKED if name.endswith(".md") and name != "CHANGELOG.md"]
-"""The changelog tells of what there once was."""
+"""The changelog names what existed once."""
 TOP = {name.split("/")[0] for name in TRACKED if "/" in name}
 PLACES = {"/" + place for name in TRACKED for place in (name, *map(str, Path(name).parents))}
 """Every file and folder of the repository."""
@@ -62,21 +62,21 @@ def anchors(page: str) -> set[str]:
 
 
 def paths_in(page: str) -> set[str]:
-    """Return the paths of the repository that stand as code in a page."""
+    """Return the paths of the repository that a page has as code."""
     words = {word for span in CODE.findall(text_of(page)) for word in span.split()}
     paths = {word.split("::")[0].split("#")[0].rstrip("/,;:") for word in words}
     return {path for path in paths if is_path(path)} - IN_USERS_FOLDERS
 
 
 def is_path(word: str) -> bool:
-    """Tell whether a word names a file or folder of the repository, and no pattern of names."""
+    """Return whether a word names a file or folder of the repository, and no pattern of names."""
     if any(sign in word for sign in "*…<>{}") or word.startswith(("~", "/", "http", "build/")):
         return False
     return ("/" in word and word.split("/")[0] in TOP) or bool(SOURCE_FILE.match(word))
 
 
 def is_there(path: str) -> bool:
-    """Tell whether a path, or the end of one such as `flow/screen.py`, is in the repository."""
+    """Return whether a path, or the end of one such as `flow/screen.py`, is in the repository."""
     return path.startswith(BUILT) or any(place.endswith("/" + path) for place in PLACES)
 
 
@@ -98,7 +98,7 @@ def is_named(path: str, name: str) -> bool:
 
 
 def is_module(name: str) -> bool:
-    """Tell whether a dotted name is a module, or a name that is defined in one."""
+    """Return whether a dotted name is a module, or a name that is defined in one."""
     parts = name.split(".")
     for length in range(len(parts), 0, -1):
         module = ".".join(parts[:length])
@@ -108,7 +108,7 @@ def is_module(name: str) -> bool:
 
 
 def defines(module: str, name: str) -> bool:
-    """Tell whether a module's source defines a name at its top level."""
+    """Return whether a module's source defines a name at its top level."""
     place = module.replace(".", "/")
     for source in SOURCES:
         for file in (ROOT / source / f"{place}.py", ROOT / source / place / "__init__.py"):
@@ -186,7 +186,7 @@ def test_the_architecture_page_describes_every_folder():
 
 
 def modules_of_walks() -> dict[str, list[str]]:
-    """Return the modules that a value passes through, by the walks that the design page tells."""
+    """Return the modules that a value passes through, by the walks on the design page."""
     walks = WALK.findall(text_of("docs/design.md"))
     return {name: [module_at(path) for path in CODE.findall(text)] for name, text in walks}
 

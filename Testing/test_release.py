@@ -1,4 +1,4 @@
-"""A release says the same of itself everywhere: in its code, its changelog and its citation."""
+"""A release is described the same everywhere: in its code, its changelog and its citation."""
 
 from __future__ import annotations
 

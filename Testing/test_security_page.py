@@ -1,4 +1,4 @@
-"""SECURITY.md names tests that exist, and every test of attacks stands in it."""
+"""SECURITY.md names tests that exist, and lists every test of attacks."""
 
 from __future__ import annotations
 

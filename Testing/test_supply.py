@@ -35,7 +35,7 @@ EXTRAS = {
 }
 """What `make lock` makes each lock from, beside the project's own dependencies."""
 PEERS_LOCKS = tuple(REQUIREMENTS / f"{name}.lock" for name in ("ralph", "icp", "openedx"))
-"""Of peers in the tests, which have environments and files of requirements of their own."""
+"""Of peers in the tests, which have their own environments and requirements files."""
 NAME = re.compile(r"^([A-Za-z0-9._-]+)(?:\[([^]]*)\])?")
 
 ENTRY = re.compile(r"^[a-z0-9][a-z0-9._-]*==[^\s\\]+(?: ; [^\\]+)? \\$")

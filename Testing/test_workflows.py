@@ -1,4 +1,4 @@
-"""What is run where the project is hosted is what a contributor runs, and by fixed programs."""
+"""The hosted workflows run what a contributor runs, with pinned programs."""
 
 from __future__ import annotations
 

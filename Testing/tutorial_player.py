@@ -1,4 +1,4 @@
-"""A virtual trainee at the tutorial: does what each step asks for, by any hands."""
+"""A virtual trainee at the tutorial: does what each step asks for, by any input device."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rastrainer_simulator.presentation.screen import Screen
 
 _PLACE = re.compile(r"(?:Step|Schritt) (\d+) (?:of|von) (\d+)")
 PUSH = 0.45
-"""Of a stick; what reads it late lets go of it late."""
+"""Of a stick; what reads it late releases it late."""
 _WAYS = {
     TutorialStep.RIGHT: (PUSH, 0.0, 0.0),
     TutorialStep.LEFT: (-PUSH, 0.0, 0.0),
@@ -31,7 +31,7 @@ class Learner(Protocol):
 
     @property
     def screen(self) -> Screen:
-        """What is read."""
+        """What is on the screen."""
 
     def until(self, condition: Callable[[], bool], what: str) -> None:
         """Let time pass until a condition is true."""
@@ -63,7 +63,7 @@ class TutorialPlayer:
 
     @property
     def step(self) -> TutorialStep | None:
-        """The step that the screen tells; None without one."""
+        """The step that the screen names; None without one."""
         found = [place for fact in self._learner.screen.status if (place := _PLACE.match(fact))]
         if not found:
             return None

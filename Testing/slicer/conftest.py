@@ -25,7 +25,7 @@ def own_processes():
 
 @pytest.fixture(autouse=True)
 def _work_in_threads(request, monkeypatch):
-    """Do such work in a thread, which takes a fraction of the time, wherever it is not tested."""
+    """Do such work in a thread, which takes a fraction of the time, unless a test is about it."""
     if "own_processes" not in request.fixturenames:
         monkeypatch.setattr(
             OwnProcess, "__call__", lambda _self, *work, **named: runHere(*work, **named)
@@ -65,7 +65,7 @@ class Clock:
         self._stands_at = time.monotonic()
 
     def skip_ahead(self):
-        """Let half a second pass; for conditions that are looked at again and again."""
+        """Let half a second pass; for conditions that are checked repeatedly."""
         self.ahead += 0.5
         return True
 
@@ -90,7 +90,7 @@ def simulator():
 
 @pytest.fixture
 def scenario(tmp_path):
-    """A ball of a head with three tasks on it."""
+    """A ball as a head with three tasks on it."""
     sphere = vtk.vtkSphereSource()
     sphere.SetRadius(90.0)
     sphere.SetThetaResolution(40)

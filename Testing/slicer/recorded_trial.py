@@ -1,4 +1,4 @@
-"""A journal of a made-up trial of a few seconds, for the tests of what shows it again."""
+"""A journal of a made-up trial of a few seconds, for the tests of replays."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def write_recorded_trial(
     touch_every_s: int = 1,
     traced: int = 0,
 ) -> np.ndarray:
-    """Write the journal of a trial with a touch each second, or more seldom.
+    """Write the journal of a trial with a touch each second, or less often.
 
     `traced` points are left after that, one at each sample, and then no more.
 

@@ -33,12 +33,12 @@ Responder = Callable[[str, dict[str, Any]], "Mapping[str, Any] | Refusal | None"
 
 
 class SimulatorDouble:
-    """Listens on a free port of the loopback; `port` may be given to come back on the same one.
+    """Listens on a free port of the loopback; `port` may be given to reuse the same one.
 
-    `responder(name, arguments)` gives each command's answer: data, a sentence of refusal, or None
-    for no answer at all. Everything received stands in `commands`. As the simulator does, it sends
-    its heartbeat to whoever sends a first message, and then once a second; where `beats` is False,
-    only to who asks.
+    `responder(name, arguments)` gives each command's answer: data, a refusal in words, or None
+    for no answer. Everything received is in `commands`. As the simulator does, it sends
+    its heartbeat to each peer that sends a first message, and then once a second; if `beats` is
+    False, only to peers that ask.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class SimulatorDouble:
             return len(self._peers)
 
     def stop_listening(self) -> None:
-        """Free the port, and stay with those who are connected."""
+        """Free the port, and stay connected to the present peers."""
         _close(self._listener)
 
     def close(self) -> None:
@@ -85,7 +85,7 @@ class SimulatorDouble:
     def send_bytes(self, data: bytes) -> None:
         with self._lock:
             for peer in self._peers:
-                with contextlib.suppress(OSError):  # A peer of an earlier connection has gone.
+                with contextlib.suppress(OSError):  # A peer of an earlier connection has left.
                     peer.sendall(data)
 
     def send_command(self, name: str, arguments: Mapping[str, Any]) -> None:
@@ -102,7 +102,7 @@ class SimulatorDouble:
             with self._lock:
                 self._peers.append(peer)
             if self._isClosed.is_set():
-                # Whoever closes all peers may have missed this one.
+                # A caller that closes all peers may have missed this one.
                 _close(peer)
             threading.Thread(target=self._receive, args=(peer,), daemon=True).start()
 
@@ -168,14 +168,14 @@ def wait_until(condition: Callable[[], Any], process: Callable[[], None], timeou
 
 
 def process_link(link: Link) -> None:
-    """Do what Slicer's timers do for a link."""
+    """Do for a link what Slicer's timers do."""
     if link.connector is not None:
         link.connector.PeriodicProcess()
     link.process()
 
 
 def connect_module(host, simulator):
-    """Connect the module that is open in the host, and wait until it has heard the heartbeat."""
+    """Connect the module that is open in the host, and wait until it has received the heartbeat."""
     host.type("portSpinBox", str(simulator.port))
     host.press("connectButton")
     host.wait_until(lambda: simulator.commands, "the module says hello")

@@ -1,4 +1,4 @@
-"""Servers that are no simulator, on real sockets, for the tests of whom the module connects to."""
+"""Servers that are not simulators, on real sockets: the module must not connect to them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SLOW_S = 30.0
 
 @contextlib.contextmanager
 def stranger(behavior: Behavior, port: int = 0) -> Iterator[int]:
-    """Let `behavior` serve each connection in a separate thread; gives the port."""
+    """Let `behavior` serve each connection in a separate thread; yield the port."""
     over = threading.Event()
     peers = []
 
@@ -47,11 +47,11 @@ def stranger(behavior: Behavior, port: int = 0) -> Iterator[int]:
 
 @contextlib.contextmanager
 def web_server(port: int = 0) -> Iterator[int]:
-    """Serve pages as Python's own server does; gives the port."""
+    """Serve pages as Python's own server does; yield the port."""
 
     class Quiet(http.server.BaseHTTPRequestHandler):
         def log_message(self, *_arguments: object) -> None:
-            """Stay quiet."""
+            """Log nothing."""
 
     with http.server.ThreadingHTTPServer(("127.0.0.1", port or free_port()), Quiet) as server:
         thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
@@ -64,7 +64,7 @@ def web_server(port: int = 0) -> Iterator[int]:
 
 
 def says(data: bytes) -> Behavior:
-    """Say something at once, and then nothing more."""
+    """Send something at once, and then nothing more."""
 
     def behave(peer: socket.socket) -> None:
         peer.sendall(data)
@@ -85,13 +85,13 @@ def replies_with(data: bytes) -> Behavior:
 
 
 def is_silent(peer: socket.socket) -> None:
-    """Take the connection and say nothing."""
+    """Accept the connection and send nothing."""
     peer.recv(65536)
     time.sleep(SLOW_S)
 
 
 def trickles(data: bytes) -> Behavior:
-    """Say the same again and again, a byte at a time."""
+    """Send the same again and again, a byte at a time."""
 
     def behave(peer: socket.socket) -> None:
         while True:
@@ -103,7 +103,7 @@ def trickles(data: bytes) -> Behavior:
 
 
 def floods(data: bytes) -> Behavior:
-    """Say the same without end, as fast as it is taken."""
+    """Send the same endlessly, as fast as it is received."""
 
     def behave(peer: socket.socket) -> None:
         while True:

@@ -1,4 +1,4 @@
-"""An aborted trial is kept once and acknowledged when it is kept, as a finished one is."""
+"""An aborted trial is stored once and acknowledged when it is stored, as a finished one is."""
 
 import pytest
 

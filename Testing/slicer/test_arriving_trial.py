@@ -57,7 +57,7 @@ def record(make_record, head_to_world):
 
 @pytest.fixture
 def journals(connected):  # noqa: ARG001 (Slicer runs)
-    """Who reads journals."""
+    """The processes that read journals."""
     opened = OpenedJournals(Path(slicer.app.slicerHome))
     yield opened
     opened.close()

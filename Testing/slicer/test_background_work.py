@@ -1,4 +1,4 @@
-"""Work in the background: in order, handed over on the main thread, and never in its way."""
+"""Work in the background: in order, handed over on the main thread, and never blocking it."""
 
 import gc
 import sys

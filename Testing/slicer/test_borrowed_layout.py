@@ -1,4 +1,4 @@
-"""Tables and the learning curve are seen, and the user's own layout comes back after them."""
+"""Tables and the learning curve are shown, and the user's own layout is restored after them."""
 
 import uuid
 
@@ -12,7 +12,7 @@ OWN = slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView
 
 @pytest.fixture
 def looking(host, make_record):
-    """The module with a trainee who has a trial, in a layout of the user's own."""
+    """The module with a trainee who has a trial, in the user's own layout."""
     host.open()
     record = make_record(str(uuid.UUID(int=1)), trainee="T001", scenario="colin27")
     store_trial_on_colin(host, record, 2)

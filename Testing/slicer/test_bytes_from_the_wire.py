@@ -1,4 +1,4 @@
-"""Texts that are not UTF-8 arrive as bytes, and what fails keeps nothing else from its turn."""
+"""Texts that are not UTF-8 arrive as bytes, and what fails blocks nothing else."""
 
 import struct
 

@@ -1,4 +1,4 @@
-"""What Slicer starts by its Python, a launcher, ends as a whole, and never keeps Slicer waiting."""
+"""What Slicer starts by its Python, a launcher, ends as a whole, and never makes Slicer wait."""
 
 import contextlib
 import os
@@ -49,7 +49,7 @@ time.sleep(600)
 
 
 class CanceledError(Exception):
-    """Nobody wants the work any more."""
+    """The work is no longer wanted."""
 
 
 def ends(path):
@@ -204,7 +204,7 @@ def test_quitting_slicer_leaves_no_simulator_behind_even_if_it_hangs(python, tmp
 
 
 def test_a_crash_of_slicer_leaves_the_simulator_alone(tmp_path):
-    """As the trial that runs is to be finished; Slicer finds the simulator again."""
+    """As for a trial that is to be finished; Slicer finds the simulator again."""
     slicer = (
         "import sys, time\n"
         "from rastrainer.slicer.program.child_process import ChildProcess\n"

@@ -1,4 +1,4 @@
-"""Nothing of a scene that is closed is taken for part of the next one, whose nodes have its IDs."""
+"""Nothing of a closed scene is mistaken for part of the next one, whose nodes have the same IDs."""
 
 import uuid
 from pathlib import Path

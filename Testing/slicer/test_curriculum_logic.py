@@ -1,4 +1,4 @@
-"""Slicer tells the simulator where each trainee stands in the curriculum, when it is new."""
+"""Slicer sends the simulator each trainee's standing in the curriculum, when it is new."""
 
 import json
 import uuid
@@ -16,7 +16,7 @@ SHIPPED = Path(__file__).parents[2] / "assets" / "studies" / "example-curriculum
 
 
 class Class:
-    """A study with two trainees, and its teacher's hands."""
+    """A study with two trainees, and their teacher."""
 
     def __init__(self, room, folder):
         self.room = room

@@ -1,4 +1,4 @@
-"""The part Curriculum by its buttons alone: set for one or all, shown, ended."""
+"""The group Curriculum by its buttons alone: set for one or all, shown, ended."""
 
 import uuid
 from pathlib import Path

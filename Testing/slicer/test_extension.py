@@ -17,7 +17,7 @@ RESOURCES = sorted(
 )
 """Without the simulator's wheel, which a release builds."""
 
-# Free to import in Slicer: its own modules and what its Python brings along.
+# Importable in Slicer: its own modules and what comes with its Python.
 BUNDLED = {"slicer", "vtk", "qt", "ctk", "numpy", "scipy", "requests", "PIL", "SampleData"}
 
 

@@ -1,4 +1,4 @@
-"""Point lists of the scene as tasks: which are taken, which left out and why, which refused."""
+"""Point lists of the scene as tasks: which are used, which omitted and why, which refused."""
 
 import numpy as np
 import pytest

@@ -71,7 +71,7 @@ def count_events(node, event):
 
 
 def waiting(connector):
-    """How much has arrived that is not yet processed; nobody else needs to know."""
+    """How much has arrived that is not yet processed; no other class needs this."""
     return len(connector._commands) + len(connector._latest)
 
 

@@ -1,4 +1,4 @@
-"""The host has PythonQt's manners, as they were measured in Slicer 5.13."""
+"""The host behaves as PythonQt does, as measured in Slicer 5.13."""
 
 import json
 import logging
@@ -59,7 +59,7 @@ def test_an_unknown_member_raises_on_reading_and_on_assigning(qt):
         button.nosuch = 1
     with pytest.raises(AttributeError):
         qt.QNoSuchWidget  # noqa: B018
-    with pytest.raises(AttributeError):  # Qt 6 has it, Slicer's Qt 5.15 has not.
+    with pytest.raises(AttributeError):  # Qt 6 has it, Slicer's Qt 5.15 does not.
         qt.QCheckBox().checkStateChanged  # noqa: B018
 
 

@@ -58,7 +58,7 @@ def folds():
 
 
 def value(widget, name):
-    """Return a property as a `.ui` file has it, empty where it has none."""
+    """Return a property as a `.ui` file has it, empty if it has none."""
     found = widget.find(f"property[@name='{name}']")
     return "" if found is None else "".join(found.itertext()).strip()
 
@@ -109,7 +109,7 @@ def test_panels_fill_labels_through_the_functions_that_limit_the_text():
         assert "QLabel(" not in source, name
 
 
-# The ways in
+# The entry points
 
 
 def test_no_label_grows_with_a_long_word(open_module):

@@ -1,4 +1,4 @@
-"""The MRI of a scenario in Slicer's slice views: to see, to plan on, and to follow a trial on."""
+"""The MRI of a scenario in Slicer's slice views: to view, to plan on, and to follow a trial."""
 
 import json
 import shutil
@@ -94,7 +94,7 @@ def test_the_button_brings_the_mri_back_where_others_are_shown_or_the_scene_was_
     assert images(host) is None
     host.press("showScenarioButton")
     wait_for_images(host)
-    # It is not taken for a scan to make a scenario of.
+    # It is not offered as a scan to make a scenario of.
     host.unfold("scanComboBox")
     assert host.find("scanComboBox").currentNode() is None
 
@@ -176,7 +176,7 @@ class Trial:
         )
 
     def wishes(self):
-        """Whether poses were wished, in each of the greetings."""
+        """Whether poses were requested, in each of the greetings."""
         hellos = [sent for name, sent in self._simulator.commands if name == "Hello"]
         return [hello["toolTipHz"] > 0 for hello in hellos]
 

@@ -60,7 +60,7 @@ def with_wheel(checkout, built_wheel):
 
 
 def configure(source, build, *options):
-    """Run CMake and return its status and what it said."""
+    """Run CMake and return its status and output."""
     command = ["cmake", "-S", str(source), "-B", str(build), f"-DSlicer_DIR={STUB}", *options]
     done = subprocess.run(command, capture_output=True, text=True)
     return done.returncode, " ".join(f"{done.stdout}\n{done.stderr}".split())

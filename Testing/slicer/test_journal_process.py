@@ -29,7 +29,7 @@ TOOL = "T-001, task-1: tool model"
 
 @pytest.fixture
 def journals(panel):  # noqa: ARG001 (Slicer runs)
-    """Who has opened journals."""
+    """The processes that have opened journals."""
     opened = OpenedJournals(Path(slicer.app.slicerHome))
     yield opened
     opened.close()
@@ -37,7 +37,7 @@ def journals(panel):  # noqa: ARG001 (Slicer runs)
 
 @pytest.fixture
 def panel(host, make_record):
-    """The section Score, with a stored trial; nobody is chosen."""
+    """The section Score, with a stored trial; no trainee is chosen."""
     return open_score(host, make_record(TRIAL, scenario="colin27"))
 
 
@@ -65,7 +65,7 @@ def wait_for_feedback(panel):
 
 
 def endless_journal(folder):
-    """Make a journal of which nothing ever comes: who opens it waits for a writer."""
+    """Make a journal that never yields anything: a process that opens it waits for a writer."""
     folder.mkdir(parents=True)
     os.mkfifo(folder / f"20260302T090000Z_{TRIAL}.journal")
 
@@ -80,7 +80,7 @@ def test_feedback_and_replay_read_the_journal_in_another_process(panel, records,
     assert len(set(pids)) == 2
     assert os.getpid() not in pids
     assert not any(map(runs, pids))
-    # What is in the scene already is not read again, unless a node of it is gone.
+    # What is in the scene already is not read again, unless one of its nodes is gone.
     panel.press("worstTouchButton")
     assert journals.pids() == pids
     panel.scene.RemoveNode(panel.scene.GetFirstNodeByName(TOOL))

@@ -1,4 +1,4 @@
-"""What the user has chosen in the panels is there after Slicer was closed and started again."""
+"""The user's choices in the panels are restored after Slicer was closed and started again."""
 
 import pytest
 import slicer

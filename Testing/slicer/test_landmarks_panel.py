@@ -1,4 +1,4 @@
-"""Landmarks are placed, replaced, removed and restored in Slicer; the scenario has them after."""
+"""Landmarks are placed, replaced, removed and restored in Slicer, and saved in the scenario."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def test_each_state_is_emitted_once(link, simulator, clock):
 def test_silence_is_reported_and_a_long_one_ends_the_half_open_connection(link, simulator, clock):
     clock.stop()
     connect(link, simulator)
-    # One that is on its way may end the silence once.
+    # One that is in transit may end the silence once.
     simulator.beats = False
     run_link_until(link, lambda: clock.skip_ahead() and link.status.state is LinkState.STALE)
     beat(simulator)

@@ -1,4 +1,4 @@
-"""What is said of the link, and what to do about it."""
+"""What the status line says about the link, and what to do about it."""
 
 from dataclasses import replace
 

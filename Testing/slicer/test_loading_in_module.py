@@ -10,7 +10,7 @@ STARTING = ("startTrialRunButton", "startTaskButton", "nextStepButton")
 
 
 class Simulator:
-    """Answers as a simulator that loads a head, for the module or for somebody else."""
+    """Answers as a simulator that loads a head, for the module or for another client."""
 
     def __init__(self):
         self.is_loading = False

@@ -11,7 +11,7 @@ OPTIONAL_UNION = "Optional[Union[vtkMRMLMarkupsFiducialNode, vtkMRMLMarkupsLineN
 
 @pytest.fixture
 def host_with(tmp_path):
-    """Returns a function that opens the module with `plan` annotated otherwise."""
+    """Returns a function that opens the module with `plan` annotated differently."""
     hosts = []
 
     def open_module(annotation):

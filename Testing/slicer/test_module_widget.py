@@ -104,7 +104,7 @@ def test_without_a_network_sample_data_are_reported_and_leave_nothing(host, monk
         assert host.text("makeScenarioButton") == "Make scenario"
         assert host.find("sampleDataButton").enabled
     assert len(host.messages) == 2
-    # Nor may a sample come though there is a network.
+    # Nor may a sample be loaded though there is a network.
     logic.uri = usual
     monkeypatch.setattr(logic, "downloadSamples", lambda _name: [None])
     host.press("sampleDataButton")

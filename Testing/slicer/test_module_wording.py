@@ -1,4 +1,4 @@
-"""What a user of Slicer reads has no word of the command line: that user has none."""
+"""Texts for a user of Slicer do not mention the command line: that user has none."""
 
 import ast
 import re
@@ -12,7 +12,7 @@ from Testing.forked_child import in_child
 RASTRAINER = Path(__file__).parents[2] / "RASTrainer"
 LOGIC = RASTRAINER / "Logic" / "rastrainer"
 ON_THE_COMMAND_LINE = {LOGIC / "statistics" / "intervals.py"}
-"""Files whose sentences only somebody reads who has typed a command: Slicer has scipy."""
+"""Files whose messages are read only by those who have typed a command: Slicer has scipy."""
 COMMANDS = "simulator|scenario|demo|doctor|study|head|score|register|export|report"
 WORDS = re.compile(rf"(?<![\w-])--[a-z]|\brastrainer ({COMMANDS})\b|command line|terminal|\bpip\b")
 
@@ -47,7 +47,7 @@ def test_files_allowed_to_mention_the_command_line_exist_and_do():
 
 
 def texts_of_widgets():
-    """Return what each widget says, by the widgets that it lies in and the property."""
+    """Return the texts of each widget, by the widgets that contain it and the property."""
     found = {}
 
     def look(element, place):
@@ -55,7 +55,7 @@ def texts_of_widgets():
             name = child.get("name", "")
             where = f"{place}/{name}" if child.tag in ("widget", "property") else place
             if child.tag == "string":
-                # A list has several of the same place.
+                # A list has several with the same key.
                 found[where] = f"{found.get(where, '')} {child.text or ''}".strip()
             look(child, where)
 

@@ -63,7 +63,7 @@ def found_once(find):
 
 
 def ignore(_step, _share):
-    """Hear of progress, and do nothing."""
+    """Receive the progress, and do nothing."""
 
 
 def test_a_zip_file_is_added_listed_with_its_picture_and_chosen(host, package):

@@ -1,4 +1,4 @@
-"""What comes next: one thing to do at each point of a session."""
+"""The next step: one thing to do at each point of a session."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Every panel in the host: what its buttons do, what they refuse, and what is said."""
+"""Every panel in the host: what its buttons do, what they refuse, and the messages."""
 
 import csv
 import json
@@ -35,7 +35,7 @@ if "--lan" in sys.argv:
     print(f"{said} the local network on https://192.0.2.7:18946; the browser warns", flush=True)
 threading.Event().wait()
 """
-"""A simulator that only says how a headset is paired."""
+"""A simulator that only explains how a headset is paired."""
 
 
 @pytest.fixture
@@ -299,7 +299,7 @@ def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touch
     after = cells(panels, "residualsTable")
     assert after[2][3] == "20.00"
     assert float(after[2][1]) > float(before[2][1])
-    # A point that hardly counts lies where the others put it, fitted or left out.
+    # A point of little weight lies where the others put it, fitted or left out.
     assert float(after[2][1]) == pytest.approx(float(after[2][2]), abs=0.02)
     assert "weighted by the stated FLE; the score of the trial is not" in panels.text(
         "registrationText"
@@ -310,7 +310,7 @@ def test_a_point_with_a_larger_stated_error_weighs_less_until_undo(panels, touch
 
 def test_the_chosen_fiducial_is_shown_in_the_slices_and_left_out(panels, touched, colin):
     touch(panels, touched)
-    # Slice views are fitted to the images once they come.
+    # Slice views are fitted to the images once they are loaded.
     wait_for_images(panels)
     view = panels.scene.AddNewNodeByClass("vtkMRMLSliceNode", "Mine")
     panels.choose("residualsTable", 4)

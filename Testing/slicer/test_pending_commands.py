@@ -27,7 +27,7 @@ class Clock:
 
 
 class Room:
-    """A link to a simulator double, in a host whose next turn comes when a test says so."""
+    """A link to a simulator double, in a host whose next turn a test triggers."""
 
     def __init__(self, scene, answer):
         self.clock = Clock()

@@ -1,4 +1,4 @@
-"""The section Plan while a simulator is connected: what it says of the plan that is looked at."""
+"""The section Plan while a simulator is connected: what it says about the shown plan."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""It is asked who answers at an address, and never waited for."""
+"""Which server answers at an address is probed, without ever waiting for it."""
 
 import socket
 import threading
@@ -27,7 +27,7 @@ POSE = pack(Message("Tool", Transform((1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0))))
 
 
 class Clock:
-    """Stands still, however late a busy machine is, and goes on where a test lets it."""
+    """Stands still, however slow a busy machine is, and continues when a test lets it."""
 
     def __init__(self):
         self.now = 0.0

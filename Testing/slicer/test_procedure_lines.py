@@ -23,7 +23,7 @@ ROLES = (Role.PLANNED_LINE, Role.REGISTERED_LINE, Role.TRUE_LINE)
 
 @pytest.fixture(scope="module")
 def analysis():
-    """Two lines, off by a registration and by a hand that stopped 2 mm too early."""
+    """Two lines with the errors of a registration, and of a hand that stopped 2 mm too early."""
     random = np.random.default_rng(4)
     truth = transforms.rigid(rotation(random, 90.0), random.normal(0.0, 100.0, 3))
     off = transforms.rigid(rotation(random, 2.0), np.array([0.4, -0.7, 0.5]))
@@ -104,7 +104,7 @@ def test_everything_is_still_there_in_a_saved_and_reopened_scene(
     headless_scene.load(tmp_path / "procedure.mrb")
     check(headless_scene.scene, analysis[1])
     assert findNode(headless_scene.scene, MODEL, Role.ERRORS_BY_HAND).GetPolyData() is not None
-    # Shown again, nothing is made twice.
+    # When it is shown again, nothing is duplicated.
     showProcedureErrors(headless_scene.scene, analysis[1])
     check(headless_scene.scene, analysis[1])
 

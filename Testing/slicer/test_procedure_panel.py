@@ -47,7 +47,7 @@ def surgery(host):
 
 
 def tell(host, simulator, phase, **procedure):
-    """Have the simulator say how far the procedure is, and wait until it is shown."""
+    """Have the simulator report the progress of the procedure, and wait until it is shown."""
     values = {"name": "seeg", "trajectory": 1, "trajectories": 5, "registrationInUse": True}
     state = {**STATE, "phase": phase, "procedure": {**values, **procedure}}
     logic = host.widget.logic.session.procedure

@@ -1,4 +1,4 @@
-"""The plan of a procedure in the scene: read with one sentence for what is missing, and kept."""
+"""The plan of a procedure in the scene: read, with one message for what is missing, and stored."""
 
 from dataclasses import replace
 

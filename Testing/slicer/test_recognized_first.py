@@ -1,4 +1,4 @@
-"""The connector meets simulators only: anything else could end Slicer."""
+"""The connector connects to simulators only: anything else could crash Slicer."""
 
 import time
 
@@ -24,7 +24,7 @@ def run_until_state(link, state):
 
 
 def run_until_status_contains(link, words):
-    """Wait until the link says so; a server that is late counts as silent at first."""
+    """Wait until the link reports it; a server that is late counts as silent at first."""
     run_link_until(link, lambda: words in link.status.sentence)
 
 
@@ -68,7 +68,7 @@ def test_another_program_at_the_port_during_a_stall_is_not_connected_to(link):
     with SimulatorDouble() as simulator:
         connect(link, simulator)
     with stranger(says(HTTP), simulator.port):
-        time.sleep(5 * RETRY_PERIOD_S)  # The connector's own thread goes on all the time.
+        time.sleep(5 * RETRY_PERIOD_S)  # The connector's own thread continues all the time.
         run_until_state(link, LinkState.OTHER_PROGRAM)
 
 

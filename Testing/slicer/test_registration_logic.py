@@ -1,4 +1,4 @@
-"""The registration that the user looks at follows its lists, and every change can be undone."""
+"""The registration that is shown follows its lists, and every change can be undone."""
 
 import threading
 
@@ -32,7 +32,7 @@ LEGEND = "vtkMRMLColorLegendDisplayNode"
 
 
 class Table:
-    """The scene of a played trial, and the logic that looks at it."""
+    """The scene of a played trial, and the logic that registers it."""
 
     def __init__(self, scene, scenario):
         self.scene, self.scenario = scene, scenario
@@ -337,7 +337,7 @@ def work():
 
 @pytest.fixture
 def logic_in_turns(table, work):
-    """Logic that has turns, beside the table's own that has none."""
+    """Logic with turns; the table's own has none."""
     return RegistrationLogic(table.scene, work)
 
 

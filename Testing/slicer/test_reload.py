@@ -30,7 +30,7 @@ def objects(host):
 
 
 def living(host):
-    """Count what must not become more: our objects, observers of the scene, nodes, widgets."""
+    """Count what must not increase: our objects, observers of the scene, nodes, widgets."""
     for _round in range(3):
         counts = objects(host)
     nodes = [host.scene.GetNthNode(index) for index in range(host.scene.GetNumberOfNodes())]
@@ -58,7 +58,7 @@ def settled(host, before, threads):
 
 @pytest.fixture
 def used(host):
-    """Returns a function that works with the module a little."""
+    """Returns a function that uses the module a little."""
 
     def use():
         host.open()

@@ -1,4 +1,4 @@
-"""A simulator that a crash of Slicer has left behind is found, and ended only if it is that one."""
+"""A simulator left behind by a crash of Slicer is found; no other process is ever ended."""
 
 import contextlib
 import os
@@ -45,7 +45,7 @@ class Connections:
 
 @pytest.fixture
 def left_behind(tmp_path):
-    """Return what starts a simulator as Slicer does; what is left of it goes after the test."""
+    """Return a function that starts a simulator as Slicer does; it is ended after the test."""
     started = []
 
     def start(*words):

@@ -109,7 +109,7 @@ def test_showing_a_scenario_again_adds_no_node(scene, planned):
 
 
 def overwrite_mesh(path, mesh):
-    """Write another mesh in the place of one, a second later by the file's time."""
+    """Replace a mesh by another, a second later by the file's time."""
     later = path.stat().st_mtime + 1.0
     write_head_mesh(path, mesh)
     os.utime(path, (later, later))

@@ -1,4 +1,4 @@
-"""The shelf finds scenarios by name as they are on disk now."""
+"""The cache finds scenarios by name as they are on disk now."""
 
 import os
 import shutil
@@ -14,7 +14,7 @@ from Testing.domain.scenario.made_up_scenario import ball_head, made_up_scenario
 
 
 def build(folder, title):
-    """Build the ball in place of what is there, a second later by the file's time."""
+    """Replace what is there by the ball, a second later by the file's time."""
     later = (folder / "scenario.json").stat().st_mtime + 1.0 if folder.exists() else 1.0
     shutil.rmtree(folder, ignore_errors=True)
     with new_folder(folder) as made:

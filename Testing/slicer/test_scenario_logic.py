@@ -1,4 +1,4 @@
-"""Any model or volume of the scene can be the head that is looked at."""
+"""Any model or volume of the scene can be the head that is shown."""
 
 import numpy as np
 import pytest

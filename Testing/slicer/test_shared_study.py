@@ -1,4 +1,4 @@
-"""Two Slicers may work with one study: each sees what the other does, and waits for nobody."""
+"""Two Slicers may work with one study: each sees what the other does, and neither waits."""
 
 import sqlite3
 

@@ -52,7 +52,7 @@ if __name__ == "__main__":
 
 
 def write_bolt(folder):
-    """Write a wheel of others into a folder of wheels."""
+    """Write a third-party wheel into a folder of wheels."""
     return write_wheel(folder / "wheels", "bolt", "1.0", {"bolt.py": "SIZE = 8\n"})
 
 
@@ -115,7 +115,7 @@ def run_setup(setup, source):
 
 
 def left_beside(setup):
-    """Return what is beside the private folder, once what was removed has gone."""
+    """Return what is beside the private folder, once the removal has finished."""
     kept = setup.folder.parent
     wait_until(lambda: not any(".removed-" in path.name for path in kept.iterdir()), lambda: None)
     return [path.name for path in kept.iterdir()]
@@ -143,7 +143,7 @@ def test_the_simulator_is_set_up_from_a_folder_of_wheels_without_a_network(setup
     assert (setup.progress.done, setup.progress.count) == (2, 2)
     assert sorted(set(counts)) == [0, 1, 2]
     assert setup.progress.isInstalling
-    # What an interrupted removal had left is gone.
+    # What an interrupted removal left behind is gone.
     assert left_beside(setup) == ["simulator"]
 
 

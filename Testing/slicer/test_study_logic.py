@@ -1,4 +1,4 @@
-"""The study leads each trainee: what comes next, its time, its questionnaires, and resuming."""
+"""The study leads each trainee: the next step, its time, its questionnaires, and resuming."""
 
 import json
 from datetime import datetime, timedelta, timezone
@@ -23,7 +23,7 @@ STARTED = "2999-01-01T10:00:00Z"
 
 
 class Lab:
-    """A study with a protocol, its trainee, and the hands of an instructor."""
+    """A study with a protocol, its trainee, and an instructor."""
 
     def __init__(self, room, folder):
         self.room, self.path = room, folder / "study.db"
@@ -108,7 +108,7 @@ def test_the_study_starts_only_what_comes_next(enrolled):
     room.needsTutorial = True
     logic.startStep()
     logic.startTrial("trial-run", "hmd", isTutorialFirst=False)
-    # What is received has not been answered yet: how, is changed below.
+    # What is received has not been answered yet: the answer is set below.
     room.run_until(lambda: len(room.answers) == 2)
     assert room.logic.learner == "T001"
     assert len(room.sent("StartTutorial")) == 2
@@ -382,7 +382,7 @@ def test_answers_given_at_the_simulator_are_stored_once_for_whichever_trainee_is
     answered(enrolled, answers=[3] * 16)
     enrolled.room.run_until(lambda: sent_step(enrolled).get("kind") == "trial-run")
     answered(enrolled, answers=[3] * 16)
-    # The first step, and what comes next after each answer.
+    # The first step, and the next one after each answer.
     enrolled.room.run_until(lambda: len(enrolled.room.sent("StudyStep")) == 4)
     (kept,) = StudyProgress(enrolled.trainees.study).answers()
     assert (kept.trainee, kept.step.name, kept.answers) == ("T001", "hmd/before/ssq", (1,) * 16)

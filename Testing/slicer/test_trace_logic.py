@@ -55,7 +55,7 @@ class Tracing(Room):
         }
 
     def draw(self, count, is_guided=True, on=False, **state):
-        """Have the simulator tell of so many points along the ball's front, a second later."""
+        """Have the simulator send so many points along the ball's front, a second later."""
         angles = np.radians(np.arange(count, dtype=float))
         self.places = 90.0 * np.stack([np.sin(angles), np.cos(angles), np.zeros(count)], axis=1)
         self.now += 1.0
@@ -75,7 +75,7 @@ class Tracing(Room):
 
     @property
     def shown(self):
-        """The places of the points that are shown, RAS; None without any."""
+        """The positions of the shown points, RAS; None without any."""
         node = self.node(Role.TRACED_POINTS, MODEL)
         if node is None or not node.GetPolyData().GetNumberOfPoints():
             return None
@@ -171,7 +171,7 @@ def test_invalid_data_from_the_simulator_shows_nothing_and_breaks_nothing(tracin
     tracing.places = np.full((600, 3), np.nan)
     tracing.run_until(lambda: tracing.sent("GetTrial"))
     run_until_received(tracing.link)
-    # What came before its answer has come, too.
+    # What was sent before its answer has arrived, too.
     tracing.run_until(lambda: not tracing.work.isBusy)
     assert tracing.shown is None
     tracing.draw(12)

@@ -173,7 +173,7 @@ def test_a_cleared_scene_gets_the_running_trial_back(room):
     assert room.node(Role.FIXED_FIDUCIALS) is None
     room.logic.forgetScene()
     room.run_until(lambda: len(room.sent("Hello")) == 2)
-    room.tell(elapsedS=2.0)  # The simulator tells its state to everyone who connects.
+    room.tell(elapsedS=2.0)  # The simulator sends its state to everyone who connects.
     room.run_until(lambda: room.node(Role.FIXED_FIDUCIALS) is not None)
     assert room.node(Role.WORLD_TO_HEAD, "vtkMRMLLinearTransformNode") is not None
 

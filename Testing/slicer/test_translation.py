@@ -19,7 +19,7 @@ GERMAN = {
 
 @pytest.fixture
 def asked():
-    """What Slicer's translation was asked for."""
+    """The texts that Slicer was asked to translate."""
     return []
 
 

@@ -1,4 +1,4 @@
-"""A finished trial is kept once, acknowledged when kept, scored, and shown."""
+"""A finished trial is stored once, acknowledged when stored, scored, and shown."""
 
 import sqlite3
 import threading
@@ -91,7 +91,7 @@ class Lab:
         return [arguments for sent, arguments in self.simulator.commands if sent == name]
 
     def all_sent(self, name):
-        """Return the arguments of all commands of a name, none of which is still on its way."""
+        """Return the arguments of all commands of a name, none of which is still in transit."""
         run_until_received(self.link)
         return self.sent(name)
 

@@ -51,7 +51,7 @@ def tip_in_scene(scene):
 
 
 def shown(scene):
-    """Return how many nodes of each class there are, but for storage, which Slicer adds itself."""
+    """Return how many nodes of each class there are, except storage, which Slicer adds itself."""
     nodes = scene.GetNodes()
     names = [nodes.GetItemAsObject(n).GetClassName() for n in range(nodes.GetNumberOfItems())]
     return Counter(name for name in names if "Storage" not in name and "Display" not in name)

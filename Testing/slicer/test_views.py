@@ -33,7 +33,7 @@ def place(scene):
 
 
 def play(room, follower, point, task="task-1"):
-    """Have the simulator send which point is next."""
+    """Have the simulator send the next point."""
     room.tell(nextPoint=point, task=task)
     wanted = (point, task)
     room.run_until(lambda: (room.logic.progress.nextPoint, room.logic.progress.task) == wanted)

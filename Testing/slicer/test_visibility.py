@@ -1,4 +1,4 @@
-"""Poses are worth their renderings only where somebody may see them."""
+"""Poses are worth rendering only where someone may see them."""
 
 import pytest
 import slicer

@@ -1,4 +1,4 @@
-"""Broken volumes in the section New scenario: each gets a sentence and leaves all as it was."""
+"""Broken volumes in the section New scenario: each gets an error and changes nothing."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ BUTTONS = ("previewHeadButton", "makeScenarioButton")
 
 
 def refuse_each(host, folder, cases):
-    """Press the buttons, by the names of the volumes: a sentence, and all is as it was."""
+    """Press the buttons, by the names of the volumes: an error is shown, and nothing changes."""
     host.open()
     program = write_program(folder / "rastrainer", folder / "simulator.pid", [])
     for name in ("setupGroupBox", "newScenarioCollapsibleButton", "adjustHeadGroupBox"):

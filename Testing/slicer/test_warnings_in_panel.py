@@ -1,4 +1,4 @@
-"""What may be wrong with touches: the panel names the points, and offers what can be done."""
+"""What may be wrong with touches: the panel names the points, and offers remedies."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def touches():
 
 
 def touch(host, points):
-    """Put touches into the scene, and wait until the panel has taken them."""
+    """Put touches into the scene, and wait until the panel has processed them."""
     work = host.widget.logic.session.work
     host.wait_until(lambda: not work.isBusy, "what was there before is shown")
     host.find("registrationText").text = ""

@@ -127,7 +127,7 @@ class Windows:
                 return failure
             try:
                 return function(*given)
-            except Exception as error:  # Nobody would hear of it in a function that C calls.
+            except Exception as error:  # It would go unnoticed in a function that C calls.
                 self.misused.append(f"{name}: {error!r}")
                 return failure
 

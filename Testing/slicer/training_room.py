@@ -53,7 +53,7 @@ class Room:
         return [arguments for sent, arguments in self.simulator.commands if sent == name]
 
     def all_sent(self, name):
-        """Return the arguments of all commands of a name, none of which is still on its way."""
+        """Return the arguments of all commands of a name, none of which is still in transit."""
         run_until_received(self.link)
         return self.sent(name)
 

@@ -1,4 +1,4 @@
-"""Makes a Python process behave as on a slow, busy machine: what a test must not depend on.
+"""Makes a Python process behave as on a slow, busy machine, which no test may depend on.
 
 Python imports this module when it starts, wherever its folder is on `PYTHONPATH`: `make test
 SLOW=7` has the tests and all processes that they start do so. Threads, work given to pools, disks
@@ -94,7 +94,7 @@ def _delay_thread_starts_and_sends() -> None:
     asyncio.BaseEventLoop.call_soon_threadsafe = call_soon_and_wait
     for name in ("send", "sendall"):
         setattr(socket.socket, name, _held_up_after(getattr(socket.socket, name)))
-    # Threads take turns where they seldom would.
+    # Threads take turns where they rarely would.
     sys.setswitchinterval(_random.choice((1e-5, 5e-3, 5e-2)))
 
 

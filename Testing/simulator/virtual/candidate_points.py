@@ -1,4 +1,4 @@
-"""Where the next point may be, by all that has been read: places on a head of common size."""
+"""Where the next point may be, by all that was read: positions on a head of average size."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ HALF_AXES = np.array([0.08, 0.103, 0.1])
 LOWEST_M = -0.06
 """Below its middle there is no point deeper than this."""
 PLACES = 3000
-"""Of the whole head: a place is 6 mm from its neighbors."""
+"""Of the whole head: positions are 6 mm from their neighbors."""
 UNSURE_M = 0.012
 """How wrong the count of one's own movements may be."""
 AROUND_M = 0.0075
-"""So near to where a touch does not count there is no place for the point."""
+"""The point is farther than this from where a touch does not count."""
 COUNTS_M = 0.01
 """Within this a touch counts, as a refusal tells."""
 
 
 def outward(place: np.ndarray) -> np.ndarray:
-    """Return the way out of the head at a place, (3,) float, a unit vector."""
+    """Return the direction out of the head at a position, (3,) float, a unit vector."""
     normal = (place - CENTER) / HALF_AXES**2
     return normal / np.linalg.norm(normal)
 
 
 def surface_at(place: np.ndarray) -> np.ndarray:
-    """Return the place of the skin under a place, (3,) float, m."""
+    """Return the position on the skin under a position, (3,) float, m."""
     from_center = place - CENTER
     return CENTER + from_center / np.linalg.norm(from_center / HALF_AXES)
 
 
 class CandidatePoints:
-    """The places where the next point may be; all are (3,) float, World, m.
+    """The positions where the next point may be; all are (3,) float, World, m.
 
     Attributes:
         all: (n, 3) float, of the whole head.
@@ -61,7 +61,7 @@ class CandidatePoints:
         self.needs_answers = True
 
     def nearest(self, at: np.ndarray) -> np.ndarray:
-        """Return the nearest place where the point may be; all may anew where none is left."""
+        """Return the nearest position where the point may be; if none is left, reopen all."""
         if not self._is_open.any():
             self.needs_answers = True
             self._is_open[:] = ~self._is_empty
@@ -72,15 +72,15 @@ class CandidatePoints:
         return self.all[int(np.argmin(np.where(self._is_open, away, np.inf)))]
 
     def may_be_at(self, place: np.ndarray) -> bool:
-        """Return whether the point may be at one of the places."""
+        """Return whether the point may be at one of the positions."""
         return bool(self._is_open[np.argmin(np.linalg.norm(self.all - place, axis=1))])
 
     def is_silent_at(self, at: np.ndarray) -> bool:
-        """Return whether nothing is said on the skin there: the last touch was."""
+        """Return whether no message is shown on the skin there: the last touch was."""
         return self._last is not None and bool(np.linalg.norm(at - self._last) < COUNTS_M)
 
     def has_touched(self, at: np.ndarray, following: str) -> None:
-        """Begin to look for the point that follows the one that was touched there."""
+        """Begin to search for the point after the one that was touched there."""
         self._last, self._label, self._was_off = at, following, False
         self.needs_answers = False
         self._is_empty |= self._away(surface_at(at)) < AROUND_M
@@ -94,7 +94,7 @@ class CandidatePoints:
             self._known[label] = away_m, at
 
     def is_empty(self, at: np.ndarray) -> None:
-        """No point at all is near there."""
+        """No point is near there."""
         self._is_empty |= self._away(surface_at(at)) < AROUND_M
         self.is_not_at(at)
 
@@ -103,7 +103,7 @@ class CandidatePoints:
         self._keep(self._away(surface_at(at)) > AROUND_M)
 
     def cannot_reach(self, place: np.ndarray) -> None:
-        """The tip does not get to one of the places."""
+        """The tip does not reach one of the positions."""
         self._is_open[np.argmin(self._away(place))] = False
 
     def is_within(self, at: np.ndarray, most_m: float) -> None:
@@ -135,7 +135,7 @@ class CandidatePoints:
         self._is_open &= agrees
 
     def _beside(self, at: np.ndarray) -> np.ndarray:
-        """Return how far a tip is beside the path to each place, (n,) float, m."""
+        """Return how far a tip is from the path to each position, (n,) float, m."""
         assert self._last is not None, "there is no path to the first point"
         first, here = _unit(self._last - CENTER), _unit(at - CENTER)
         ends = (self.all - CENTER) / np.linalg.norm(self.all - CENTER, axis=1)[:, None]

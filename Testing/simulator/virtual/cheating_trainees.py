@@ -159,7 +159,7 @@ class _Notes:
 
 
 class Pilot:
-    """Steers one trial by commands: places and ways are (3,) float, World, mm."""
+    """Steers one trial by commands: positions and displacements are (3,) float, World, mm."""
 
     def __init__(self, setup: SimulationSetup, task: str, seed: int) -> None:
         self._simulation, self._notes = Simulation(setup, seed), _Notes()
@@ -184,7 +184,7 @@ class Pilot:
         return self._notes.played(self._simulation)
 
     def move(self, place: np.ndarray, speed_mm_s: float) -> None:
-        """Go straight to a place, or as far as the skin lets the tip."""
+        """Go straight to a position, or as far as the skin lets the tip."""
         self._do(CommandName.MOVE_TIP_TO, positionMm=place.tolist(), speedMmS=speed_mm_s)
         self._rest()
 
@@ -200,7 +200,7 @@ class Pilot:
         self.move(place, SLOW_MM_S)
 
     def slide_to(self, place: np.ndarray) -> bool:
-        """Drag the tip over the skin; return whether it got within a millimeter."""
+        """Drag the tip over the skin; return whether it came within a millimeter."""
         least, stuck = np.inf, 0
         for _ in range(round(MAX_DRAG_S / DT)):
             way = place - self.tip
@@ -242,6 +242,6 @@ class Pilot:
 
 
 def _most_outward(normals: np.ndarray) -> np.ndarray:
-    """Return the unit vector with the greatest least part along the normals, (n, 3) float."""
+    """Return the unit vector whose smallest component along the normals, (n, 3), is greatest."""
     directions = sphere_directions(4000)
     return directions[(directions @ normals.T).min(axis=1).argmax()]

@@ -1,4 +1,4 @@
-"""A small cohort that was really played, and copies of it to change."""
+"""A small cohort that was actually played, and copies of it to change."""
 
 import shutil
 

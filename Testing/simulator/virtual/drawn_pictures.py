@@ -1,4 +1,4 @@
-"""What the two pictures of the scene show: places that rays from their cameras reach."""
+"""What the two pictures of the scene show: positions that rays from their cameras reach."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ OFF_SKIN_M = 0.002
 BEHIND_TIP_M = 0.004
 """The middle of the tip's colored marker."""
 END_ON_DEG = 15.0
-"""Looked at more along the tool than this, its holder hides the tip."""
+"""Seen more along the tool than this, its holder hides the tip."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class _Places:
 
 
 class DrawnPictures:
-    """Looks at the pictures that views draw; with collision shapes of its own.
+    """Looks at the pictures that views draw; with its own collision shapes.
 
     Args:
         setup: what the simulation is made from.
@@ -188,7 +188,7 @@ class DrawnPictures:
         height_px: int,
         covered: Sequence[tuple[float, float, float, float]],
     ) -> np.ndarray | None:
-        """Return where a place (3,) before a camera is seen, (2,) float, as tangents.
+        """Return where a position (3,) before a camera is seen, (2,) float, as tangents.
 
         `half` is that of half the picture's height; None out of the picture.
         """

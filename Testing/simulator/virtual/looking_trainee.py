@@ -16,13 +16,13 @@ GAIN_PER_S = 2.5
 HOVER_M = 0.03
 """How far off the skin the tip travels."""
 OVER_M = 0.01
-"""Nearer than this to the place above the fiducial, the tip is lowered."""
+"""Nearer than this to the position above the fiducial, the tip is lowered."""
 AIM_M = 0.0012
 """The aim on the skin."""
 GO_AROUND_M = 0.03
-"""Farther from the fiducial than this, what the tip comes near to is not where it is to go."""
+"""Farther from the fiducial than this, what the tip approaches is not its goal."""
 LOST_LOOKS = 12
-"""After so many looks without the tip, the view is taken farther away again."""
+"""After so many looks without the tip, the view zooms out again."""
 ZOOM_LOOKS = 12
 TURN_LOOKS = 8
 """The view turns by 70° in a second."""
@@ -53,7 +53,7 @@ class LookingTrainee:
         self._goals: list[np.ndarray | None] = [None, None]
 
     def play(self, limit_s: float) -> None:
-        """Go on until all points are touched, or until the trial has lasted so long."""
+        """Continue until all points are touched, or until the trial has lasted so long."""
         trainee = self._trainee
         task = trainee.loop.setup.scenario.task(trainee.state.training.task)
         self._pictures.use(task, trainee.state.head_to_world)
@@ -94,7 +94,7 @@ class LookingTrainee:
         return look
 
     def _lift(self) -> None:
-        """Take the tip off the skin, until its color says that it is far from the head."""
+        """Lift the tip off the skin, until its color says that it is far from the head."""
         for _ in range(40):
             look = self._look()
             if look.stage is TouchStage.FAR:
@@ -130,7 +130,7 @@ class LookingTrainee:
         self._look()
 
     def _travel(self) -> bool:
-        """Carry the tip to a place above the fiducial; return whether it is there."""
+        """Carry the tip to a position above the fiducial; return whether it is there."""
         unseen = returned = unjudged = 0
         for _ in range(400):
             look = self._look()
@@ -179,7 +179,7 @@ class LookingTrainee:
         return velocity - inward * away + 0.06 * away
 
     def _search(self, look: Look, unseen: int) -> None:
-        """Look for the tip: from farther away, and where it is hidden raise it."""
+        """Look for the tip: from farther away, and if it is hidden raise it."""
         if unseen % LOST_LOOKS == 1:
             self._pad.stop()
             self._pad.hold("view_farther", True)
@@ -227,7 +227,7 @@ class LookingTrainee:
             self._lift()
 
     def _way(self, look: Look, goal: str) -> np.ndarray | None:
-        """Return the way from the tip to a fiducial or to the head's middle, (3,) float, m.
+        """Return the vector from the tip to a fiducial or to the head's middle, (3,) float, m.
 
         Each picture tells two of its parts; what neither tells is taken as zero. None where the
         tip or the goal is seen in none.

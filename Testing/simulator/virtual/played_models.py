@@ -94,7 +94,7 @@ def play(
 
 @contextmanager
 def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Iterator[Trainee]:
-    """Give a trainee with a gamepad, at the start menu of a simulator of its own."""
+    """Yield a trainee with a gamepad, at the start menu of their own simulator."""
     done: Future[Answer] = Future()
     done.set_result(Answer(0, True))
     services = FlowServices(
@@ -108,7 +108,7 @@ def _at_work(setup: SimulationSetup, seed: int, folder: Path, model: str) -> Ite
     )
     skip_tutorial(services.config)
     if model == "reads":
-        # The view stays, so that directions keep their meaning to who does not see it turn.
+        # The view stays, so that directions keep their meaning to those who do not see it turn.
         path = services.config / PREFERENCES_FILE
         preferences = json.loads(path.read_text(encoding="utf-8"))
         path.write_text(json.dumps({**preferences, "view": "never"}), encoding="utf-8")

@@ -25,15 +25,15 @@ WAYS = {
 }
 CARRY_M_S, SLIDE_M_S, CENTER_M_S, LOWER_M_S, EASE_M_S = 0.1, 0.08, 0.03, 0.06, 0.01
 NEARBY_M, ABOVE_M = 0.04, 0.025
-"""Up to so far the tip is led along the skin; farther, it is carried so high above it."""
+"""Up to this distance the tip is led along the skin; farther, it is carried so high above it."""
 INWARD = 0.05
 """Share of the speed along the skin with which the tip is held on it."""
 STEEPER, FORGET = 0.12, 0.97
-"""So much steeper it takes the skin to be; and how much of that it keeps from read to read."""
+"""How much steeper it assumes the skin to be, and how much of that it keeps from read to read."""
 SUNK_M = 0.03
-"""So far below where the skin should be, the tip is beside the head."""
+"""This far below where the skin should be, the tip is beside the head."""
 PRESSED_M = 0.012
-"""Touch is pressed so often along the skin: a refusal tells which point is there, or none."""
+"""How often Touch is pressed along the skin: a refusal tells which point is there, if any."""
 STUCK_READS, CENTER_READS = 50, 80
 
 
@@ -65,7 +65,7 @@ class ReadingTrainee:
         self._places = CandidatePoints()
 
     def play(self, limit_s: float) -> None:
-        """Go on until all points are touched, or until the trial has lasted so long."""
+        """Continue until all points are touched, or until the trial has lasted so long."""
         self._limit_s = limit_s
         while self._goes_on:
             if self._is_on_skin:
@@ -91,7 +91,7 @@ class ReadingTrainee:
 
     @property
     def _warnings(self) -> str:
-        """What is wrong with where the arm is; "" where nothing is."""
+        """What is wrong with where the arm is; "" if nothing is."""
         warnings = self._trainee.presenter.screen.warnings
         return " ".join(warning.text for warning in warnings if warning.tone is not Tone.PLAIN)
 
@@ -109,7 +109,7 @@ class ReadingTrainee:
         return self._is_on_skin or self._is_away_from_point or self._is_pressing
 
     def _move(self, velocity: np.ndarray) -> None:
-        """Move for a moment, (3,) float, m/s, and take note of what is read then."""
+        """Move for a moment, (3,) float, m/s, and note what is read then."""
         self._pad.move(velocity)
         self._trainee.step(READ_STEPS)
         self._at = np.array(self._trainee.tip)
@@ -131,7 +131,7 @@ class ReadingTrainee:
                 self._places.is_away(self._at, float(guidance[2]) / 1000.0, direction)
 
     def _approach(self, place: np.ndarray) -> None:
-        """Bring the tip nearer to a place on the skin, until something else is to be done."""
+        """Bring the tip nearer to a position on the skin, until something else is to be done."""
         above = place + ABOVE_M * outward(place)
         if min(np.linalg.norm(goal - self._at) for goal in (place, above)) > NEARBY_M:
             self._carry(place, above)
@@ -139,7 +139,7 @@ class ReadingTrainee:
             self._slide(place)
 
     def _carry(self, place: np.ndarray, goal: np.ndarray) -> None:
-        """Carry the tip around the head to above a place, while the point may be there."""
+        """Carry the tip around the head to above a position, while the point may be there."""
         for _ in range(STUCK_READS):
             if not self._goes_on or self._is_on_skin or not self._places.may_be_at(place):
                 return
@@ -155,7 +155,7 @@ class ReadingTrainee:
             self._move(CARRY_M_S * _unit(along) + rise * out)
 
     def _slide(self, place: np.ndarray) -> None:
-        """Lead the tip along the skin to a place, while the point may be there."""
+        """Lead the tip along the skin to a position, while the point may be there."""
         for _ in range(STUCK_READS):
             if not self._goes_on or self._is_on_skin or not self._places.may_be_at(place):
                 return
@@ -163,7 +163,7 @@ class ReadingTrainee:
                 break
             self._along_skin(place - self._at, SLIDE_M_S)
             self._ask()
-        # It does not get there, or beside the head: back above the skin, and to another place.
+        # It does not get there, or beside the head: back above the skin, and to another position.
         self._places.cannot_reach(place)
         while self._goes_on and (surface_at(self._at) - self._at) @ outward(self._at) > 0.0:
             self._move(CARRY_M_S * outward(self._at))
@@ -196,7 +196,7 @@ class ReadingTrainee:
             self._move(lower + (0.3 * speed * ahead if self._lowered < 4 else 0.0))
 
     def _ask(self) -> None:
-        """Press Touch where the tip is, to read which point is there; now and then only."""
+        """Press Touch where the tip is, to read which point is there; only now and then."""
         is_near = np.linalg.norm(self._at - self._pressed_at) < PRESSED_M
         if is_near or not self._is_away_from_point or not self._places.needs_answers:
             return
@@ -206,7 +206,7 @@ class ReadingTrainee:
             self._press()
 
     def _center(self) -> None:
-        """Go to the middle of where the touch counts, along one way and then across it."""
+        """Go to the middle of where the touch counts, along one direction and then across it."""
         out = outward(self._at)
         first = _unit(np.cross(out, (0.0, 1.0, 0.0)))
         for way in (first, np.cross(out, first)):
@@ -216,7 +216,7 @@ class ReadingTrainee:
                 self._creep_to((there[-1] + back[-1]) / 2.0)
 
     def _along_where_it_counts(self, way: np.ndarray) -> list[np.ndarray]:
-        """Go one way along the skin, over and past where a touch counts; return the places."""
+        """Go in one direction along the skin, past where a touch counts; return the positions."""
         places: list[np.ndarray] = []
         for _ in range(CENTER_READS):
             if self._is_on_skin:
@@ -227,7 +227,7 @@ class ReadingTrainee:
         return places
 
     def _creep_to(self, place: np.ndarray) -> None:
-        """Go to a place on the skin, until it reads there that a touch counts."""
+        """Go to a position on the skin, until it reads there that a touch counts."""
         for _ in range(CENTER_READS):
             out = outward(place)
             along = place - self._at

@@ -1,4 +1,4 @@
-"""Jobs that square, fail or die, in a module of their own: a new process has it loaded at once."""
+"""Jobs that square, fail or die, in a separate module that a new process loads quickly."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ def squared_by_mortals(folder, doomed, times, number):
 
 
 def kill_self(folder: Path, job, times: int) -> None:
-    """Kill this process by SIGKILL the first so many times that it is given a job."""
+    """Kill this process by SIGKILL each of the first times that it is given a job."""
     for number in range(times):
         try:
             (folder / f"{job}-{number}").touch(exist_ok=False)

@@ -59,7 +59,7 @@ def test_the_record_has_the_metrics_of_the_trajectory(honest):
 
 def test_dragging_from_fiducial_to_fiducial_counts_as_unintended_contact_nearly_all_the_way(cheat):
     motion = cheat("drag").record.motion
-    # Five millimeters about each touch belong to it: ten on each of fourteen ways.
+    # Five millimeters about each touch belong to it: ten on each of fourteen paths.
     expected_mm = motion["path_between_touches_mm"] - 14 * 10.0
     assert motion["unintended_contact_path_mm"] > 0.8 * expected_mm
     assert motion["unintended_contact_time_s"] > 0.4 * motion["completion_time_s"]

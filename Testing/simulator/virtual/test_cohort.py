@@ -73,7 +73,7 @@ def test_no_trainee_gets_stuck_at_a_fiducial(played):
     with Study.open(played / DATABASE) as study:
         records = [trial.record for i in (1, 2) for trial in study.history(f"V000{i}")]
     waits = [np.diff([point.sim_time_s for point in record.points]) for record in records]
-    # Whoever is held up waits at least this long, after the way to the fiducial.
+    # A trainee who lapses waits at least this long, after the path to the fiducial.
     assert np.max(waits) < STUCK_AFTER_S
 
 

@@ -1,4 +1,4 @@
-"""What leaves a study is what other programs expect, and reveals nobody's name."""
+"""What leaves a study is what other programs expect, and reveals no names."""
 
 import csv
 import json

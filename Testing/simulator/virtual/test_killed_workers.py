@@ -38,7 +38,7 @@ def played_by_mortals(folder, doomed, times, job, settings):
 
 
 def tables(path):
-    """Return all rows of a study but for when they were stored."""
+    """Return all rows of a study except when they were stored."""
     connection = sqlite3.connect(path)
     connection.row_factory = sqlite3.Row
     names = [row[0] for row in connection.execute("SELECT name FROM sqlite_master")]
@@ -57,7 +57,7 @@ def tables(path):
 
 
 def journals(folder):
-    """Return the entries of all journals but for when they were written, which the hashes hold."""
+    """Return the entries of all journals without the time of writing, which is in the hashes."""
     clock = ("monotonic", "previous", "sha256")
     found = {}
     for path in (folder / RECORDS).iterdir():
@@ -231,7 +231,7 @@ def test_trials_that_got_stuck_are_reported_and_not_played_again(tmp_path):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The command but for its folder, and a cohort that nothing interrupted."""
+    """The command without its folder, and a cohort that nothing interrupted."""
     folder = tmp_path_factory.mktemp("whole")
     shape = '"formatVersion": 1, "name": "s", "title": "S", "modes": ["desktop"]'
     rest = '"modeOrder": "fixed", "tasks": ["task-1"], "taskOrder": "fixed"'

@@ -1,4 +1,4 @@
-"""A recorded trial shown again in the simulator's views: as recorded, played and sought."""
+"""A recorded trial replayed in the simulator's views: as recorded, played and sought."""
 
 import os
 import re
@@ -183,7 +183,7 @@ def test_the_worst_touch_is_shown_in_its_best_view_until_the_camera_changes(
         line = (middle - eye) / np.linalg.norm(middle - eye)
         return np.linalg.norm(np.cross(fiducial - eye, line))
 
-    # The best views are looked for in a thread beside, one after the other; first in none.
+    # The best views are searched for in another thread, one after the other; first in none.
     with viewer.presenter._best._lock:
         viewer.press("KeyT")
         assert off_middle() > 0.001

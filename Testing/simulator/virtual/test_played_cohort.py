@@ -1,4 +1,4 @@
-"""A cohort that is really played by the whole simulator: the truth comes back out of the study."""
+"""A cohort played by the whole simulator: the study recovers the truth."""
 
 import numpy as np
 import pytest

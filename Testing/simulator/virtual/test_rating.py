@@ -1,4 +1,4 @@
-"""Replays are rated blinded: under numbers, in any view, kept mark by mark, taken up again."""
+"""Replays are rated blinded: under numbers, in any view, stored mark by mark, resumed."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def study(copied):
 
 @pytest.fixture(scope="module")
 def setups():
-    """Return the set-ups that loaders have made: it takes a second each time."""
+    """Return the set-ups that loaders have made: each takes a second."""
     return {}
 
 
@@ -316,7 +316,7 @@ class RatingProcess:
         self._view.send({"type": "key", "code": code, "isDown": True, "text": ""})
 
     def until(self, condition):
-        """Read on until a screen is as wanted, and return it."""
+        """Read on until a screen meets the condition, and return it."""
 
         def is_wanted(message):
             return message["type"] == "screen" and condition(message["screen"])
@@ -324,7 +324,7 @@ class RatingProcess:
         return self._view.all_until(is_wanted)[-1]["screen"]
 
     def end(self, has_left):
-        """End it by force, or wait until it has ended of itself; return what it said last."""
+        """End it by force, or wait until it has ended by itself; return what it printed last."""
         try:
             if not has_left:
                 self._process.kill()
@@ -366,7 +366,7 @@ def test_the_program_accepts_marks_and_resumes_where_it_was_even_if_killed(
     # From the first item over the end to the last.
     rating.press("ArrowUp")
     rating.until(lambda screen: screen["menu"]["focus"] == "leave")
-    # Not let go: it ends the program.
+    # Not released: it ends the program.
     rating.hold("Enter")
     assert "1 of 2 replays are rated" in rating.end(has_left=True)
     with Study.open(copied / STUDY_FILE) as study:

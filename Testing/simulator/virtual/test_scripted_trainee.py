@@ -15,7 +15,7 @@ DT = 0.05
 @pytest.mark.parametrize(
     ("head", "task"),
     [
-        # From one side of the neck to the other: the direct way leads under the head.
+        # From one side of the neck to the other: the direct path leads under the head.
         ("small", "task-5"),
         # Coming from below, the arm reaches a point with its shaft at the skin.
         ("egg", "task-3"),
@@ -37,7 +37,7 @@ def test_all_fiducials_are_reached_and_the_tip_never_goes_under_the_head(head, t
 
 
 def test_slow_moving_hands_touch_only_once_they_have_arrived(setup):
-    """The way over the head takes them longer than they would aim."""
+    """The path over the head takes them longer than they would aim."""
     skill = Skill(speed_mm_s=54.0, gain_per_s=1.35, slip_at=None)
     refused = []
 

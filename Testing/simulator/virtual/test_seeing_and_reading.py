@@ -1,4 +1,4 @@
-"""Tasks are done by who looks, not by who only reads; the figures are in docs/views.md."""
+"""Tasks are completed by looking, not by reading alone; the figures are in docs/views.md."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Virtual trainees carry procedures out: a split that is known, and a study that has it."""
+"""Virtual trainees carry out procedures: errors split as known, and a study that recovers it."""
 
 from dataclasses import replace
 

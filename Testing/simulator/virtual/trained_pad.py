@@ -15,7 +15,7 @@ FASTEST_M_S = 0.1
 
 
 class TrainedPad(Pad):
-    """Moves the tip at a speed, and takes the view farther away, too."""
+    """Moves the tip at a speed, and zooms out the view, too."""
 
     BUTTONS: ClassVar = {**Pad.BUTTONS, "view_farther": "leftstick"}
 
@@ -29,5 +29,5 @@ class TrainedPad(Pad):
         self.push(*(velocity * push / max(wanted, 1e-9)).tolist(), is_fine)
 
     def stop(self) -> None:
-        """Let the sticks go."""
+        """Release the sticks."""
         self.push(0.0, 0.0, 0.0, False)

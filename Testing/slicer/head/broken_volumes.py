@@ -1,4 +1,4 @@
-"""Volumes that are broken or no heads, each with a part of the sentence that refuses it."""
+"""Volumes that are broken or not heads, each with a part of the error that refuses it."""
 
 from __future__ import annotations
 

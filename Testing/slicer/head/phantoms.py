@@ -16,7 +16,7 @@ SAGITTAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
 def depth_mm(ras, size=1.0):
-    """Return how deep places (n, 3) are below the skin, mm, roughly; negative outside.
+    """Return how deep positions (n, 3) are below the skin, mm, roughly; negative outside.
 
     `size` is that of the head: with 0.5, half as wide, long and high as usual.
     """

@@ -1,4 +1,4 @@
-"""What tests do with the phantom of a head in a scene: its volume, and fiducials on its skin."""
+"""The phantom of a head in a scene, for tests: its volume, and fiducials on its skin."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def add_volume(scene, volume, name):
 
 
 def fiducials(size=1.0):
-    """Return fifteen places on the phantom's skin, (15, 3) float, RAS mm, ring by ring.
+    """Return fifteen positions on the phantom's skin, (15, 3) float, RAS mm, ring by ring.
 
     `size` is that of `phantom`.
     """

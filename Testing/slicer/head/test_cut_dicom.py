@@ -28,7 +28,7 @@ def long(tag, kind, length):
 
 
 def with_first(elements, syntax=b"1.2.840.10008.1.2.1\0"):
-    """The slice with elements at the begin of its data set, and in another transfer syntax."""
+    """The slice with elements at the start of its data set, and in another transfer syntax."""
     meta = SLICE[:META].replace(b"1.2.840.10008.1.2.1\0", syntax)
     assert len(meta) == META
     return meta + elements + SLICE[META:]

@@ -17,7 +17,7 @@ SKIN = 48.6
 """The threshold that the head was made with."""
 
 COVERED_MM = ((-88.0, 88.0), (-123.0, 89.0), (-69.0, 107.0))
-"""Where the scan covers the head: beyond, nose and ears go on by their own trend."""
+"""Where the scan covers the head: beyond it, nose and ears are extrapolated."""
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,7 @@ def volume():
 
 @pytest.fixture(scope="module")
 def skin():
-    """Places (n, 3), RAS mm, of the head's skin that the scan covers."""
+    """Positions (n, 3), RAS mm, on the head's skin that the scan covers."""
     vertices = read_head_mesh(SCENARIO.head_mesh).vertices.astype(float)
     low, high = np.array(COVERED_MM).T
     return vertices[((vertices > low) & (vertices < high)).all(axis=1)]

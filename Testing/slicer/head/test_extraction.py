@@ -109,7 +109,7 @@ def test_the_skin_of_a_phantom_is_found_within_half_a_millimeter(spacing, turn_d
 )
 def test_the_skin_is_found_however_the_scan_is_oriented_and_stored(directions, spacing):
     mesh = skin_in(stored_along(directions, spacing))
-    # Below, the neck goes straight on where the tilted lowest slice leaves some of it out.
+    # Below, the neck continues straight where the tilted lowest slice omits some of it.
     errors = skin_errors(mesh, above=LOWEST + 14.0)
     assert errors.mean() < 0.5
     assert np.percentile(errors, 95) < 1.0

@@ -63,7 +63,7 @@ def test_the_draft_has_the_images_unless_declined(mri, ct):
 
 @pytest.mark.soak
 def test_thick_slices_give_a_whole_head_and_a_warning():
-    # Cut where nobody has chosen a base, its decimated skin has a fin, which must go.
+    # Cut where no base was chosen, its decimated skin has a fin, which must be removed.
     scan = phantom(spacing=(1.0, 1.0, 5.0))
     draft, warnings = makeDraft(scan, HeadSettings(), hasSkull=False)
     assert "5.0 mm apart" in warnings[0]

@@ -31,7 +31,7 @@ class Answers:
 
     Attributes:
         messages: all message boxes so far.
-        are_given_by_hand: whether dialogs stay open until somebody presses their buttons.
+        are_given_by_hand: whether dialogs stay open until someone presses their buttons.
     """
 
     def __init__(self) -> None:
@@ -49,11 +49,11 @@ class Answers:
 
     @property
     def unused(self) -> list[str]:
-        """The texts of the dialogs that were expected and have not come."""
+        """The texts of the dialogs that were expected and have not appeared."""
         return [part for part, _answer in self._prepared]
 
     def take(self, *texts: str) -> Any | None:
-        """Return the answer prepared for a dialog with these texts; None where there is none."""
+        """Return the answer prepared for a dialog with these texts; None if there is none."""
         for prepared in self._prepared:
             if any(prepared[0] in text for text in texts):
                 self._prepared.remove(prepared)
@@ -75,7 +75,7 @@ class Answers:
         return answer
 
     def path(self, caption: str) -> str:
-        """Return the path chosen in a file dialog; an empty one where it is canceled."""
+        """Return the path chosen in a file dialog; an empty one if it is canceled."""
         answer = self.take(caption)
         if answer is None:
             FAILURES.add(f"Nobody has chosen a file in the dialog “{caption}”.")

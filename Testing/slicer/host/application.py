@@ -52,7 +52,7 @@ class Application(Checked):
         return True
 
     def _complete_startup(self) -> None:
-        """Emit, as Slicer does once, that all modules are loaded."""
+        """Signal, as Slicer does once, that all modules are loaded."""
         for listener in self._startup_listeners:
             listener()
 
@@ -69,11 +69,11 @@ class Application(Checked):
         self._exit_status = status
 
     def exit_status_of_host(self) -> int | None:
-        """Return with which status Slicer was asked to end; None where it was not."""
+        """Return the status with which Slicer was asked to exit; None if it was not."""
         return self._exit_status
 
     def close_of_host(self) -> None:
-        """Write no log any more."""
+        """Stop writing the log."""
         self._error_log.close()
 
     def setAttribute(self, attribute: int, on: bool = True) -> None:
@@ -193,7 +193,7 @@ class Module:
 
 
 class ModuleManager:
-    """Finds modules by name; one that is not there is None."""
+    """Finds modules by name; a missing one is None."""
 
     def __init__(self, application_logic: Any) -> None:
         self._application_logic = application_logic

@@ -17,7 +17,7 @@ def cancels(host: Host, button: str, when: Callable[[], bool] = lambda: True) ->
     """Press a button within the context when it says Cancel and `when()` is true.
 
     Raises:
-        AssertionError: the context ends, and it has not come to that.
+        AssertionError: the context ends before that happens.
     """
     timer = QtCore.QTimer()
     timer.setInterval(PERIOD_MS)

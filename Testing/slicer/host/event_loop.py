@@ -23,7 +23,7 @@ _WAIT_US = 2000
 
 
 def process_events_keeping_lock() -> None:
-    """Let Qt do what is due; where Qt's library is none of Linux, PySide does it."""
+    """Let Qt process its events; where Qt's library is not Linux's, PySide does it."""
     if sys.platform != "linux":
         QtWidgets.QApplication.processEvents()
         return
@@ -50,7 +50,7 @@ def lend_references() -> None:
 
 TICK_MS = 5
 LOOK_AFTER_S = 0.03
-"""A stall of this length is looked into: what the main thread runs then is noted."""
+"""A stall of this length is examined: what the main thread runs then is recorded."""
 
 
 @dataclass(frozen=True)

@@ -78,7 +78,7 @@ class ErrorLog(Checked):
             file.write(f"[{level}][{origin}] {moment} [] (unknown:0) - {text}\n")
 
     def close(self) -> None:
-        """Write no more."""
+        """Stop writing."""
         FAILURES.listener = None
         logging.getLogger().removeHandler(self._handler)
 
@@ -107,7 +107,7 @@ class VtkMessages:
         self._tags = [self._window.AddObserver(event, _take) for event in _EVENTS]
 
     def close(self) -> None:
-        """Listen no more."""
+        """Stop listening."""
         for tag in self._tags:
             self._window.RemoveObserver(tag)
 

@@ -101,7 +101,7 @@ class Host(User):
 
     @property
     def errors(self) -> list[str]:
-        """What went wrong where Slicer would have printed it and gone on; empty in a good test."""
+        """What went wrong, which Slicer would have only printed; empty in a good test."""
         return FAILURES.texts
 
     @property
@@ -126,7 +126,7 @@ class Host(User):
             self.leave()
 
     def enter(self) -> None:
-        """Come back to the module."""
+        """Return to the module."""
         self._frame._qt.enter()
         self.widget.enter()
 
@@ -136,7 +136,7 @@ class Host(User):
         self._frame._qt.exit()
 
     def minimize(self, is_minimized: bool = True) -> None:
-        """Minimize Slicer's main window, or bring it back."""
+        """Minimize Slicer's main window, or restore it."""
         window = self._main_window._qt
         window.showMinimized() if is_minimized else window.showNormal()
         self.process_events()
@@ -190,7 +190,7 @@ class Host(User):
         getattr(module, f"{self._module_name}Test")().runTest()
 
     def run_script(self, path: Path, *arguments: str) -> int | None:
-        """Run a script as `Slicer --python-script` does; return with which status it ends Slicer.
+        """Run a script as `Slicer --python-script` does; return Slicer's exit status.
 
         A dialog stays open until the script presses one of its buttons.
         """
@@ -284,5 +284,5 @@ def _execute(script: Path) -> None:
     code = compile(script.read_text(encoding="utf-8"), str(script), "exec")
     try:
         exec(code, {"__name__": "__main__", "__file__": str(script)})
-    except Exception as exception:  # Slicer prints it, and goes on.
+    except Exception as exception:  # Slicer prints it, and continues.
         FAILURES.catch(exception)

@@ -1,4 +1,4 @@
-"""Puts the host's modules where a module of Slicer's looks for them, and takes them out again."""
+"""Puts the host's modules where a module of Slicer's looks for them, and removes them again."""
 
 from __future__ import annotations
 

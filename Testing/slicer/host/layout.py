@@ -1,4 +1,4 @@
-"""`slicer.app.layoutManager()`: a 3D view and three slice views; drawn when they are asked for."""
+"""`slicer.app.layoutManager()`: a 3D view and three slice views; drawn on request."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class LayoutManager(Checked):
         return self._plots[node.GetID()]
 
     def shown_tables_of_host(self) -> list[str]:
-        """Return the names of the tables that are seen in the layout."""
+        """Return the names of the tables that are visible in the layout."""
         tables = [view.GetTableNode() for view in self._views("vtkMRMLTableViewNode")]
         return [table.GetName() for table in tables if table is not None]
 
@@ -150,7 +150,7 @@ class LayoutManager(Checked):
         return list(self._slices.values())
 
     def close(self) -> None:
-        """Let go of the scene."""
+        """Release the scene."""
         views = [self.__dict__.get("_three_d"), *self.__dict__.get("_slices", {}).values()]
         for view in views:
             if view is not None:

@@ -26,13 +26,13 @@ sys.addaudithook(note)
 
 
 class OpenedJournals:
-    """Notes the processes of Slicer's Python that read a journal, and Slicer itself.
+    """Records the processes of Slicer's Python that read a journal, and Slicer itself.
 
     A note is made before the file is opened, which may take long.
     """
 
     def __init__(self, home: Path) -> None:
-        """Have PythonSlicer in the host's folder of Slicer take notes, from its next start on."""
+        """Have PythonSlicer in the host's folder of Slicer record openings from its next start."""
         self._path = home / "opened-journals"
         with (home / PACKAGES / "sitecustomize.py").open("a", encoding="utf-8") as program:
             program.write(NOTE.format(path=str(self._path)))
@@ -46,7 +46,7 @@ class OpenedJournals:
         return [*map(int, beside), *[os.getpid()] * self._count_here]
 
     def close(self) -> None:
-        """Note nothing more of this process; Python cannot take its hook away."""
+        """Record nothing more of this process; Python cannot remove its hook."""
         self._is_open = False
 
     def _note_here(self, event: str, arguments: tuple[Any, ...]) -> None:

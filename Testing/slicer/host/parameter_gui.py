@@ -7,7 +7,7 @@ from typing import Any
 import slicer
 import vtk
 
-# Class of widget: the signal that tells of a change, and how the value is read and written.
+# Class of widget: the signal of a change, and how the value is read and written.
 VALUE_OF = {
     "QLineEdit": ("textChanged(QString)", "text"),
     "QSpinBox": ("valueChanged(int)", "value"),
@@ -48,7 +48,7 @@ class Binding:
         self._tag = wrapper.AddObserver(vtk.vtkCommand.ModifiedEvent, self._show)
 
     def close(self) -> None:
-        """Let go of the widgets."""
+        """Release the widgets."""
         self._wrapper.RemoveObserver(self._tag)
         for name, widget in self._widgets.items():
             widget.disconnect(VALUE_OF[widget.className()][0], self._slots[name])

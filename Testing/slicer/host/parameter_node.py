@@ -18,7 +18,7 @@ from Testing.slicer.host.parameter_gui import Binding
 
 
 def parameterNodeWrapper(kind: type) -> type:
-    """Make of a class with annotations one that keeps its values in a node."""
+    """Turn a class with annotations into one that stores its values in a node."""
     hints = typing.get_type_hints(kind, include_extras=True)
     namespace: dict[str, Any] = {"__doc__": kind.__doc__, "allParameters": {}}
     for name, hint in hints.items():
@@ -71,7 +71,7 @@ class Parameter:
         node.SetParameter(self.name, value.name if isinstance(value, enum.Enum) else str(value))
 
     def write_default(self, node: Any) -> None:
-        """Write the default, where the node has no value yet.
+        """Write the default, if the node has no value yet.
 
         Raises:
             ValueError: a `Union` of nodes leaves no room for None.

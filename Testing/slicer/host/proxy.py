@@ -29,7 +29,7 @@ from Testing.slicer.host.values import (
     wrap_objects_with,
 )
 
-# PythonQt spells Python's keywords of old with an underscore.
+# PythonQt spells Python's old keywords with an underscore.
 ALIASES = {"exec_": "exec", "raise_": "raise"}
 # Static functions that are hidden by a property of the same name on an object, not on the class.
 STATIC_FUNCTIONS = {("QTimer", "singleShot")}
@@ -223,7 +223,7 @@ def _qt_class(name: str) -> type:
 
 
 class ClassModule(ModuleType):
-    """A module whose classes are made when they are asked for."""
+    """A module whose classes are made on request."""
 
     def __init__(self, name: str, source: str) -> None:
         super().__init__(name)

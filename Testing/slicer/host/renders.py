@@ -37,7 +37,7 @@ class RenderCounter:
         ]
 
     def close(self) -> None:
-        """Let go of the scene."""
+        """Release the scene."""
         for tag in self._tags:
             self._scene.RemoveObserver(tag)
 

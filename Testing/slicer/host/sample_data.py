@@ -14,7 +14,7 @@ import numpy as np
 import slicer
 
 OWN_SAMPLE = "MRBrainTumor1"
-"""One of those that Slicer brings along."""
+"""One of those that come with Slicer."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class SampleDataLogic:
     """Stands in for the logic of Sample Data. What Slicer would download is made here instead.
 
     Attributes:
-        uri: where Slicer's own samples are; an address of nobody is Slicer without a network.
+        uri: where Slicer's own samples are; an address without a server means no network.
         attempts: how often a sample was to be downloaded.
     """
 
@@ -82,7 +82,7 @@ class SampleDataLogic:
         return SampleDataSource(name, [self.uri], [f"{name}.nrrd"], [name])
 
     def downloadSamples(self, name: str) -> list[Any]:
-        """Return the loaded nodes; where nothing came, none: only the log says so."""
+        """Return the loaded nodes; none if nothing came: only the log says so."""
         self.attempts += 1
         source = self.sourceForSampleName(name)
         if source is None:

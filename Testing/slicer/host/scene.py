@@ -56,7 +56,7 @@ class ApplicationScene:
 
 
 def _viridis() -> Any:
-    """Return the color table that Slicer's module Colors reads from a file, as near as need be."""
+    """Return the color table that Slicer's module Colors reads from a file, near enough."""
     node = slicer.vtkMRMLColorTableNode()
     node.SetSingletonTag("FileViridis.txt")
     node.SetName("Viridis")

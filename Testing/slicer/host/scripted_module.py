@@ -74,7 +74,7 @@ class ScriptedLoadableModuleWidget:
         return str(folder / "Resources" / filename)
 
     def setup(self) -> None:
-        """The section for developers stays away."""
+        """The section for developers is not shown."""
 
     def cleanup(self) -> None:
         """Called when the module is closed."""
@@ -111,7 +111,7 @@ class ScriptedLoadableModuleTest(unittest.TestCase):
             self.tearDown()
 
     def delayDisplay(self, message: str, requestedDelay: Any = None, msec: int = 100) -> None:
-        """Slicer shows the message for a moment."""
+        """Slicer shows the message briefly."""
 
 
 def make_module() -> ModuleType:

@@ -91,7 +91,7 @@ class User:
         self.process_events()
 
     def place(self, *position: float) -> None:
-        """Click in a view, RAS mm, while Slicer's mouse places points of a markup."""
+        """Click in a view, RAS mm, while points of a markup are placed by mouse."""
         interaction = self.scene.GetNodeByID("vtkMRMLInteractionNodeSingleton")
         selection = self.scene.GetNodeByID("vtkMRMLSelectionNodeSingleton")
         if interaction.GetCurrentInteractionMode() != interaction.Place:
@@ -104,7 +104,7 @@ class User:
         self.process_events()
 
     def answer(self, part: str, answer: Any) -> None:
-        """Answer the next dialog that says `part`: a button's name, a path, a text, a function."""
+        """Answer the next dialog that contains `part`: a button, path, text or function."""
         ANSWERS.prepare(part, answer)
 
     # What a user sees
@@ -114,10 +114,10 @@ class User:
         return self.find(name).text
 
     def wait_until(self, condition: Callable[[], Any], what: str, timeout_s: float = 300.0) -> None:
-        """Let events pass until something is so.
+        """Process events until something is true.
 
         Raises:
-            AssertionError: it is not so in time, or something went wrong meanwhile; `what` says
+            AssertionError: it is not true in time, or something failed meanwhile; `what` says
                 what was awaited.
         """
         deadline = time.monotonic() + timeout_s
@@ -140,14 +140,14 @@ class User:
         )
 
     def idle_for(self, seconds: float) -> None:
-        """Let some time pass, as a user does who waits."""
+        """Let some time pass, as a waiting user does."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.process_events()
             self._wait()
 
     def process_events(self) -> None:
-        """Let Qt do what is due."""
+        """Let Qt process its events."""
         if self.keeps_lock:
             event_loop.process_events_keeping_lock()
         else:
@@ -166,7 +166,7 @@ class User:
         return self._layout.three_d_view_of_host().sees(model)
 
     def shown_tables(self) -> list[str]:
-        """Return the names of the tables that are seen in the layout's views."""
+        """Return the names of the tables that are visible in the layout's views."""
         return self._layout.shown_tables_of_host()
 
     def legends(self) -> dict[str, list[tuple[str, float]]]:
@@ -193,7 +193,7 @@ class User:
         self._layout.three_d_view_of_host().look_from(azimuth, elevation, zoom)
 
     def look_at(self, place: tuple, azimuth: float, elevation: float, distance: float) -> None:
-        """Turn the 3D view to a place, RAS mm, from a distance, mm."""
+        """Turn the 3D view to a position, RAS mm, from a distance, mm."""
         self._layout.three_d_view_of_host().look_at(place, azimuth, elevation, distance)
 
     def _fit(self, width: int) -> None:
@@ -243,10 +243,10 @@ class User:
         self.process_events()
 
     def _usable(self, name: str) -> Any:
-        """Return a widget, in a section that is open: a user opens the one that is needed."""
+        """Return a widget, in an open section: a user opens the one that is needed."""
         self.unfold(name)
         deadline = time.monotonic() + TIMEOUT_S
-        # One that has just been made anew or unfolded is shown by an event. Slicer's panel scrolls:
+        # One that was just recreated or unfolded is shown by an event. Slicer's panel scrolls:
         # no widget is squeezed to nothing where many sections are open.
         rounds = 0
         while not _has_area(self.find(name)._qt):

@@ -119,7 +119,7 @@ class Slot:
     def __call__(self, *arguments: Any) -> None:
         try:
             self.function(*(from_qt(item) for item in arguments[: self._count]))
-        except Exception as exception:  # PythonQt prints it, and goes on.
+        except Exception as exception:  # PythonQt prints it, and continues.
             FAILURES.catch(exception)
 
 
@@ -142,7 +142,7 @@ class BoundSignal:
 
 
 def connect(proxy: Any, signature: str, function: Callable[..., Any]) -> bool:
-    """Connect, or return False where Slicer's class has no such signal, as PythonQt does."""
+    """Connect, or return False if Slicer's class has no such signal, as PythonQt does."""
     signature = signature.replace(" ", "")
     if signature not in proxy.members.signals:
         return False
@@ -168,9 +168,9 @@ def connect(proxy: Any, signature: str, function: Callable[..., Any]) -> bool:
 
 
 def _releasing(connections: list[tuple]) -> Callable[[], None]:
-    """Return what lets go of the functions, as PythonQt does when their object is deleted.
+    """Return what releases the functions, as PythonQt does when their object is deleted.
 
-    PySide6 would keep the slots of an object that is gone.
+    PySide6 would keep the slots of a deleted object.
     """
 
     def release() -> None:
@@ -182,7 +182,7 @@ def _releasing(connections: list[tuple]) -> Callable[[], None]:
 
 
 def _nothing(*_arguments: Any) -> None:
-    """Stands where a function was."""
+    """Replaces a function that was released."""
 
 
 def disconnect(proxy: Any, signature: str, function: Callable[..., Any] | None = None) -> bool:

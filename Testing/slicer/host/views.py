@@ -38,7 +38,7 @@ SLICE_MANAGERS = (
     "vtkMRMLLinearTransformsDisplayableManager",
     "vtkMRMLSegmentationsDisplayableManager2D",
 )
-"""Those of Slicer's own views, and of its modules whose nodes ours has to do with."""
+"""Those of Slicer's own views, and of its modules whose nodes ours uses."""
 SLICES = {"Red": "Axial", "Green": "Coronal", "Yellow": "Sagittal"}
 SLICE_COLORS = {
     "Red": (0.95, 0.29, 0.20),
@@ -51,7 +51,7 @@ class View:
     """A render window without a screen, and the managers that fill it.
 
     The window that can draw is opened for the first picture: that takes a tenth of a second, and
-    most tests want none.
+    most tests need none.
     """
 
     def __init__(self, factory: Any, managers: tuple[str, ...], logic: Any, node: Any) -> None:
@@ -73,7 +73,7 @@ class View:
         """Return what the view shows."""
         self._open_window()
         self.window.SetSize(width, height)
-        # The labels of markups find their places in the second one.
+        # The labels of markups find their positions in the second one.
         self.window.Render()
         self.window.Render()
         reader = vtk.vtkWindowToImageFilter()
@@ -112,7 +112,7 @@ class View:
         return drawn
 
     def close(self) -> None:
-        """Let go of the scene."""
+        """Release the scene."""
         self._group.SetMRMLDisplayableNode(None)
         self.window.Finalize()
 
@@ -143,7 +143,7 @@ class ThreeDView(View):
         self.renderer.GetActiveCamera().Zoom(zoom)
 
     def look_at(self, place: tuple, azimuth: float, elevation: float, distance: float) -> None:
-        """Look at a place, RAS mm, from an angle and a distance, mm."""
+        """Look at a position, RAS mm, from an angle and a distance, mm."""
         camera = self._turn(azimuth, elevation)
         direction = camera.GetPosition()
         camera.SetFocalPoint(*place)

@@ -1,4 +1,4 @@
-"""Takes a real Slicer through the whole module, and says what does not work; made for a release.
+"""Takes a real Slicer through the whole module, and reports what does not work; for releases.
 
     Slicer --python-script Testing/slicer/real/tour.py -- --output DIR
 
@@ -6,7 +6,7 @@ Every section is worked by its real widgets: simulator, trainee, a trial that a 
 plays, registration, plan, score, replay, report, a procedure and its plan, scenes, a scenario from
 a volume, a study. DIR gets a picture of each step, and a table of them as `tour.json` and
 `tour.md`, with the buttons that no step has clicked, and what Slicer has logged as an error
-meanwhile. The exit status is 0 where all is well. It takes some minutes.
+meanwhile. The exit status is 0 if all is well. It takes some minutes.
 
 The module must be installed with SlicerOpenIGTLink. The simulator is set up first where it is not
 yet. Without a main window (`--no-main-window`) the pictures show the panel alone; with `--testing`

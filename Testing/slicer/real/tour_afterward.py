@@ -60,7 +60,7 @@ def replay(tour: Tour) -> str:
 
 
 def tables_and_plots(tour: Tour) -> str:
-    """Show tables, learning curve and calibration; each time the user's layout comes back."""
+    """Show tables, learning curve and calibration; each time the user's layout is restored."""
     hands, layouts = tour.hands, []
     own = _layout()
     for name in ("showTablesButton", "learningCurveButton", "calibrationButton"):

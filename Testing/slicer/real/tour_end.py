@@ -11,7 +11,7 @@ from tour_trial import STUDY, TRAINEE
 
 
 def curriculum(tour: Tour) -> str:
-    """Set a curriculum for everybody in a new study, and end it."""
+    """Set a curriculum for everyone in a new study, and end it."""
     tour.choose_study(tour.fresh("practiced.db"))
     hands = tour.hands
     hands.open("studyCollapsibleButton", "curriculumCollapsibleButton")

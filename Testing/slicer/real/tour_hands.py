@@ -25,7 +25,7 @@ class Hands:
     """
 
     def __init__(self, module: Any, unexpected: list[str], patience_s: float) -> None:
-        """`unexpected` grows by what each dialog says that nobody has expected."""
+        """`unexpected` grows by the text of each unexpected dialog."""
         self.module = module
         self.patience_s = patience_s
         self.clicked: set[str] = set()
@@ -84,7 +84,7 @@ class Hands:
         self.idle_for(0.1)
 
     def idle_for(self, seconds: float) -> None:
-        """Let Slicer do what is due for some time."""
+        """Let Slicer process its events for some time."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             slicer.app.processEvents()
@@ -92,7 +92,7 @@ class Hands:
             time.sleep(0.005)
 
     def wait_until(self, condition: Callable[[], Any], what: str, at_least_s: float = 0.0) -> None:
-        """Let Slicer do what is due until something is so.
+        """Let Slicer process its events until something is true.
 
         Args:
             condition: what is waited for.
@@ -100,7 +100,7 @@ class Hands:
             at_least_s: patience for what may take longer than other things.
 
         Raises:
-            TourError: it is not so in time, or a dialog has opened that nobody has expected.
+            TourError: it is not true in time, or an unexpected dialog has opened.
         """
         timeout_s = max(at_least_s, self.patience_s)
         end = time.monotonic() + timeout_s
@@ -111,13 +111,13 @@ class Hands:
             self.idle_for(0.02)
 
     def _handle_dialogs(self) -> None:
-        """Raise `TourError` where a dialog has opened that nobody has expected."""
+        """Raise `TourError` if an unexpected dialog has opened."""
         said = self._unexpected[self._known :]
         self._known = len(self._unexpected)
         if said:
             raise TourError(f"A dialog has opened that nobody expected: {'; '.join(said)}")
 
     def must(self, condition: Any, sentence: str) -> None:
-        """Raise `TourError` with a sentence unless something is so."""
+        """Raise `TourError` with a message unless something is true."""
         if not condition:
             raise TourError(sentence)

@@ -9,7 +9,7 @@ TITLE = "Landmarks of the tour"
 OF_COLIN27 = 5
 PLACED = "Right tragus"
 PLACED_MM = (86.4, -8.2, -49.1)
-"""Where the robot does not reach it in every pose: the head's own landmarks lack it."""
+"""Where the robot does not reach in every pose: the head's own landmarks lack it."""
 SCENARIO_TIMEOUT_S = 600.0
 
 

@@ -1,4 +1,4 @@
-"""What became of the tour: a table of its steps, pictures, and the errors in Slicer's log."""
+"""The results of the tour: a table of its steps, pictures, and the errors in Slicer's log."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Step:
 
 
 class Record:
-    """Does the steps, and writes what became of them.
+    """Does the steps, and writes their results.
 
     Attributes:
         steps: those that are over.
@@ -55,7 +55,7 @@ class Record:
         begin = time.monotonic()
         try:
             note, ok = function() or "", True
-        except Exception as error:  # The tour goes on: what else is broken is to be known, too.
+        except Exception as error:  # The tour continues, to find what else is broken.
             note, ok = f"{type(error).__name__}: {error}", False
             print(traceback.format_exc(), flush=True)
         step = Step(name, ok, round(time.monotonic() - begin, 2), note)

@@ -9,7 +9,7 @@ SCENARIO_TIMEOUT_S = 600.0
 
 
 def zip_file(tour: Tour) -> str:
-    """Save the scenario without its names, and add it again under what it is called then."""
+    """Save the scenario without its names, and add it again under its new name."""
     hands, path = tour.hands, tour.fresh("scenario.zip")
     hands.open("scenarioCollapsibleButton", "shareGroupBox")
     # Its tasks have fiducials on the face, which could not go without them.

@@ -14,7 +14,7 @@ SLIP_AT = 9
 
 
 class Tour:
-    """The module, opened, with somebody who works it.
+    """The opened module, and someone who works with it.
 
     Attributes:
         hands: work the widgets.
@@ -46,7 +46,7 @@ class Tour:
         folder.mkdir(parents=True, exist_ok=True)
 
     def close(self) -> None:
-        """End the trainee, and give the user's choices back."""
+        """End the trainee, and restore the user's choices."""
         if self._trainee is not None and self._trainee.poll() is None:
             self._trainee.kill()
         self.dialogs.close()
@@ -124,7 +124,7 @@ class Dialogs:
     """
 
     def __init__(self) -> None:
-        # The dialogs of the system are not Qt's: nobody could press their buttons from here.
+        # The dialogs of the system are not Qt's: their buttons cannot be pressed from here.
         slicer.app.setAttribute(qt.Qt.AA_DontUseNativeDialogs, True)
         self.unexpected: list[str] = []
         self._answers: list[tuple[str, str]] = []
@@ -136,7 +136,7 @@ class Dialogs:
         self._timer.start()
 
     def close(self) -> None:
-        """Answer no more."""
+        """Stop answering."""
         self._timer.stop()
 
     def answer(self, part: str, answer: str) -> None:
@@ -149,7 +149,7 @@ class Dialogs:
         self._answers.append((part, str(answer)))
 
     def forget(self) -> None:
-        """Forget the answers that nothing has asked for."""
+        """Forget the unused answers."""
         self._answers = []
 
     def _look(self) -> None:

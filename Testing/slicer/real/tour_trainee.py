@@ -1,6 +1,6 @@
 """A trainee in a separate process, over OpenIGTLink: touches, and feeds drill and instrument.
 
-Run by Slicer's own Python, which the tour does. The journal of the trial tells where the head
+Run by Slicer's own Python, which the tour does. The journal of the trial says where the head
 stands, which a person sees on the screen. Depths are those of the plan, as a person reads them.
 """
 
@@ -133,7 +133,7 @@ class TourTrainee:
             time.sleep(LOOK_EVERY_S)
 
     def touch(self, place: Any, outward: Any, slips: bool) -> None:
-        """Touch the skin at a place; (3,) float, World, mm, with the outward direction there."""
+        """Touch the skin at a position; (3,) float, World, mm, with the outward direction there."""
         import numpy as np
 
         above = place + ABOVE_MM * outward

@@ -1,4 +1,4 @@
-"""Widgets that Qt has not, or that would wait for a user, made with PySide6.
+"""Widgets that Qt lacks, or that would wait for a user, made with PySide6.
 
 They are written in PySide6's manner; `proxy` gives them PythonQt's.
 """

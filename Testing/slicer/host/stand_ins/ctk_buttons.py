@@ -10,7 +10,7 @@ WITHOUT_LIMIT = 16777215
 
 
 class Folding(QtCore.QObject):
-    """Hides the children of a widget, also those that come while it is collapsed.
+    """Hides the children of a widget, also those added while it is collapsed.
 
     As in CTK, a child that is hidden or shown meanwhile is so when the widget is opened.
     """
@@ -45,7 +45,7 @@ class Folding(QtCore.QObject):
                 child.installEventFilter(self)
 
     def heed(self, event: QtCore.QEvent) -> None:
-        """Hide a child that has just come."""
+        """Hide a child that was just added."""
         kinds = (QtCore.QEvent.Type.ChildPolished, QtCore.QEvent.Type.LayoutRequest)
         if self.is_collapsed and event.type() in kinds:
             self.hide_children()
@@ -61,7 +61,7 @@ class Folding(QtCore.QObject):
     def _hide(self, child: QtWidgets.QWidget) -> None:
         self._isAtWork = True
         child.hide()
-        # Or Qt would not tell that it is hidden once more.
+        # Otherwise Qt would send no event when it is hidden once more.
         child.setAttribute(QtCore.Qt.WidgetAttribute.WA_WState_ExplicitShowHide, False)
         self._isAtWork = False
 

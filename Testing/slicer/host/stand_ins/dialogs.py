@@ -63,7 +63,7 @@ class ctkMessageBox(QMessageBox):
 
 
 class QDialog(QtWidgets.QDialog):
-    """A dialog of the module's own: the answer is a function that presses its buttons."""
+    """One of the module's own dialogs: the answer is a function that presses its buttons."""
 
     def exec(self) -> int:
         play: Callable[[QtWidgets.QDialog], None] | None = ANSWERS.take(self.windowTitle())
@@ -105,7 +105,7 @@ def _path(caption: str, mode: QtWidgets.QFileDialog.FileMode) -> str:
 
 
 class QInputDialog(QtWidgets.QInputDialog):
-    """Returns the text that the test has given; an empty one where it is canceled."""
+    """Returns the text that the test has given; an empty one if it is canceled."""
 
     @staticmethod
     def getText(

@@ -24,7 +24,7 @@ def weakly(method: Callable[..., None]) -> Callable[..., None]:
 
 
 def unobserving(observed: Any, tags: list[int]) -> Callable[[], None]:
-    """Return what ends the observers of a widget that is deleted."""
+    """Return a function that ends the observers of a widget that is deleted."""
 
     def unobserve() -> None:
         for tag in tags:

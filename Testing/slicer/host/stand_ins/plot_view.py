@@ -73,7 +73,7 @@ class qMRMLPlotView(QtWidgets.QLabel):
 
 
 class qMRMLPlotWidget(QtWidgets.QWidget):
-    """A plot view with its controller, which stays away here."""
+    """A plot view with its controller, which is not shown here."""
 
     mrmlSceneChanged = QtCore.Signal(object)
 
