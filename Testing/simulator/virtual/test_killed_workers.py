@@ -75,6 +75,7 @@ def without_last_trials(folder, count):
     empty = "SELECT trainee_id FROM trials"
     connection.execute(f"DELETE FROM trainees WHERE id NOT IN ({empty})")
     connection.execute("UPDATE sqlite_sequence SET seq = (SELECT max(id) FROM trainees)")
+    connection.execute("UPDATE trainee_numbers SET latest = (SELECT max(id) FROM trainees)")
     connection.execute("UPDATE cohort SET finished_utc = NULL")
     connection.commit()
     connection.close()
