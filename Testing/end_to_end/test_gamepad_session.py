@@ -107,11 +107,11 @@ def session(tmp_path_factory) -> dict:
         trainee.press("touch", lambda: trainee.menu is not None, "the end of the task")
         trainee.until_menu("complete")
         trainee.choose("register")
-        events = slicer.events_until("trial")
+        slicer_events = slicer.events_until("trial")
         trainee.until_menu("result")
         photographer.keep("result")
         played = {
-            "events": events,
+            "slicer_events": slicer_events,
             "crash": crash,
             "menu": trainee.menu,
             "felt": lab.simulator.felt(),
@@ -215,7 +215,7 @@ def kinds(events: list[dict]) -> list[str]:
 
 
 def test_slicer_scores_the_trial_of_that_trainee(session):
-    results = session["events"][-1]["results"]
+    results = session["slicer_events"][-1]["results"]
     assert results["trainee"] == TRAINEE
     assert results["task"] == "task-1"
     assert session["menu"].facts[0].label == "Score"
@@ -229,9 +229,9 @@ def test_the_trial_continues_without_slicers_side_and_the_window_says_so(session
 
 
 def test_slicers_side_rejoins_the_running_trial_and_receives_all_of_it(session):
-    points = [event["label"] for event in session["events"] if event["event"] == "point"]
+    points = [event["label"] for event in session["slicer_events"] if event["event"] == "point"]
     assert points == [str(number) for number in range(1, 16)]
-    assert session["events"][-1]["event"] == "trial"
+    assert session["slicer_events"][-1]["event"] == "trial"
 
 
 def test_unplugging_the_gamepad_stops_the_arm_and_loses_nothing(session):
