@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+import threading
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -83,7 +83,9 @@ class FlowPresenter:
         self._flow = Flow(self._session, control_loop)
         self._view = OperatedView(self._session, self.controls, control_loop, self.shown)
         self.rumble: Callable[[float, float], None] = _nothing_vibrates
-        self._results: deque[StepResult] = deque()
+        self._arriving = threading.Lock()
+        self._newest = control_loop.latest
+        self._results: list[StepResult] = []
         self._subscribers: Subscribers[ViewUpdate] = Subscribers()
         self._views = ViewSources()
         self._number = 0
@@ -106,11 +108,15 @@ class FlowPresenter:
 
     def advance(self, dt: float) -> None:
         """Advance by `dt` seconds."""
-        while self._results:
-            self._flow.take(self._results.popleft())
+        # A state ahead of its events would sound the alarm of a contact twice.
+        with self._arriving:
+            results, self._results = self._results, []
+            newest = self._newest
+        for result in results:
+            self._flow.take(result)
             self._is_changed = True
         self.controls.advance(dt)
-        self._flow.advance(dt, self._control_loop.latest)
+        self._flow.advance(dt, newest)
         self._view.advance(dt)
         self._settle()
         self._since_refresh += dt
@@ -331,9 +337,11 @@ class FlowPresenter:
             self._session.mode = (Mode.HMD if self._views.has_headset else Mode.DESKTOP).value
 
     def _take_tick(self, result: StepResult) -> None:
-        """Queue a tick in which something happened; called in the control loop's thread."""
-        if result.events:
-            self._results.append(result)
+        """Note a tick, and queue what happened in it; called in the control loop's thread."""
+        with self._arriving:
+            self._newest = result.state
+            if result.events:
+                self._results.append(result)
 
     def _types(self, source: Source, code: str, text: str) -> bool:
         """Let a key type into the text that has the focus; return whether it did."""

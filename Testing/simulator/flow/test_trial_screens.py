@@ -385,6 +385,25 @@ def test_a_correct_touch_raises_no_alarm_and_names_the_button(pilot):
     assert "contact" not in pilot.watcher.kinds
 
 
+def test_a_contact_that_happens_while_the_presenter_advances_raises_one_alarm(pilot, monkeypatch):
+    pilot.start("task-1")
+    truth = pilot.loop.truth
+    above = truth.in_world(truth.target) / MM_PER_M + (0.0, 0.0, 0.13)
+    pilot.steer_to(above, 0.01)
+    controls = pilot.presenter.controls
+    advance = controls.advance
+
+    def advance_and_tick(dt):
+        advance(dt)
+        pilot._lock_step.tick()
+
+    monkeypatch.setattr(controls, "advance", advance_and_tick)
+    pilot.ticks_a_step = 0
+    pilot.steer_to(above - (0.0, 0.0, 0.13), 0.0, fine=True, ends_in_contact=True)
+    pilot.step(3)
+    assert pilot.watcher.kinds.count("contact") == 1
+
+
 def test_a_pressed_tool_is_reported_with_its_depth_in_both_languages(pilot):
     pilot.start("task-1")
     truth = pilot.loop.truth
