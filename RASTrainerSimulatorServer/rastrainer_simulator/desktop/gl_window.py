@@ -22,6 +22,16 @@ from rastrainer_simulator.desktop.panels.theme import Color, rgba
 TITLE = "RASTrainer"
 LEAST_SIZE = (960, 540)
 REPEAT_AFTER_MS, REPEAT_EVERY_MS = 450, 45
+SOFTWARE_RENDERERS = (
+    "llvmpipe",
+    "softpipe",
+    "swrast",
+    "swr",
+    "swiftshader",
+    "software",
+    "microsoft basic render",
+    "gdi generic",
+)
 NO_WINDOW = "No window can be opened on this machine: {reason}."
 _CORE_PROFILE = {
     pygame.GL_CONTEXT_MAJOR_VERSION: 3,
@@ -147,6 +157,11 @@ def _roomy_size() -> tuple[int, int]:
     width, height = pygame.display.get_desktop_sizes()[0]
     unit = max(30, min(round(0.86 * width / 16), round(0.86 * height / 9)))
     return 16 * unit, 9 * unit
+
+
+def is_software_renderer(name: str) -> bool:
+    """Return whether the processor draws, by OpenGL's name of the renderer."""
+    return any(known in name.lower() for known in SOFTWARE_RENDERERS)
 
 
 def _renderer_name(window: vtkGenericOpenGLRenderWindow) -> str:

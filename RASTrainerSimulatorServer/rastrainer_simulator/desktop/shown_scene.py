@@ -18,8 +18,10 @@ from rastrainer_simulator.scene.nodes import (
     GHOST,
     GHOST_OPACITY,
     NEXT,
+    NO_GO_PREFIX,
     TIP_ERROR,
     TIP_FREE,
+    TIP_MARKER,
     TIP_NEAR,
     TIP_ON_SKIN,
     TOUCHED,
@@ -60,7 +62,6 @@ def finish_surface(target: vtkProperty, finish: Finish, is_physical: bool) -> No
         target.SetSpecularPower(4.0 + 40.0 * (1.0 - finish.roughness))
 
 
-TIP_MARKER = "tip_marker"
 FIDUCIAL = "fiducial_"
 _TIPS = {
     TouchStage.FAR: TIP_FREE,
@@ -75,7 +76,6 @@ INSTRUMENTS: Mapping[str, tuple[str, ...]] = {
 """Nodes that are shown with each tool of a procedure; the pointer has none."""
 FED = ("drill", "electrode")
 """Nodes as long as they are fed; in the file they are 1 m long."""
-NO_GO = "no_go_"
 CLEAR_SKIN = 0.3
 PULSE_COLOR = (1.0, 0.97, 0.75)
 SKIN_NODE = "skin"
@@ -117,7 +117,7 @@ class ShownScene:
             for name in part.nodes:
                 self._named[name].append(actor)
         for name in list(self._named):
-            if name in {*FED, "guide", "axis"} or name.startswith(NO_GO):
+            if name in {*FED, "guide", "axis"} or name.startswith(NO_GO_PREFIX):
                 self._set_visible(name, False)
         self._marked: object = None
         self._pulsing: list[vtkActor] = []
@@ -205,7 +205,7 @@ class ShownScene:
             for actor in self._named[name]:
                 actor.SetScale(1.0, 1.0, max(feed_m, 1e-6))
         for name in list(self._named):
-            if name.startswith(NO_GO):
+            if name.startswith(NO_GO_PREFIX):
                 self._set_visible(name, bool(shown) and name in no_go)
 
     def paint_skin(self, trace: ShownTrace) -> None:

@@ -8,7 +8,7 @@ from enum import Enum
 
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from rastrainer_simulator.desktop.gl_window import GlWindow
+from rastrainer_simulator.desktop.gl_window import GlWindow, is_software_renderer
 from rastrainer_simulator.desktop.inbox import Viewpoint
 from rastrainer_simulator.desktop.kept_view import KeptView, ReducedScene
 from rastrainer_simulator.desktop.panels import theme
@@ -17,18 +17,6 @@ from rastrainer_simulator.desktop.shown_scene import ShownScene
 from rastrainer_simulator.rendering.lighting import Shadows, add_plain_lights, light_room
 
 BACKGROUND = (0.62, 0.65, 0.68)
-
-
-SOFTWARE_RENDERERS = (
-    "llvmpipe",
-    "softpipe",
-    "swrast",
-    "swr",
-    "swiftshader",
-    "software",
-    "microsoft basic render",
-    "gdi generic",
-)
 
 
 class Quality(str, Enum):
@@ -56,9 +44,7 @@ class Quality(str, Enum):
 
 def first_quality(renderer_name: str) -> Quality:
     """Return the initial quality, by OpenGL's name of the renderer."""
-    name = renderer_name.lower()
-    is_software = any(known in name for known in SOFTWARE_RENDERERS)
-    return Quality.LOW if is_software else Quality.HIGH
+    return Quality.LOW if is_software_renderer(renderer_name) else Quality.HIGH
 
 
 TRANSITION_S = 0.7

@@ -35,13 +35,14 @@ from rastrainer_simulator.robot.model import RobotModel, load_robot
 from rastrainer_simulator.scene.nodes import (
     NEXT,
     TIP_FREE,
+    TIP_MARKER,
     TIP_NEAR,
     TOUCHED,
     Material,
     Node,
     Surface,
 )
-from rastrainer_simulator.scene.scene_glb import TIP_MARKER, TOOL, link_node_name, scene_nodes
+from rastrainer_simulator.scene.scene_glb import TOOL, link_node_name, scene_nodes
 from rastrainer_simulator.scene.surfaces import surface, vtk_matrix
 
 

@@ -35,6 +35,9 @@ class Material:
         return red, green, blue
 
 
+TIP_MARKER = "tip_marker"
+NO_GO_PREFIX = "no_go_"
+"""Name of the node at the tip, and how the names of no-go structures begin."""
 SKIN = Material("skin", (0.87, 0.67, 0.56), 0.55)
 STEEL = Material("steel", (0.76, 0.77, 0.78), 0.35, 0.6)
 TABLE_TOP = Material("table_top", (0.68, 0.70, 0.70), 0.45)
@@ -129,7 +132,7 @@ class Node:
 
 def no_go_name(path: Path) -> str:
     """Return the name of the node of a no-go structure, by its mesh file."""
-    return f"no_go_{path.stem}"
+    return f"{NO_GO_PREFIX}{path.stem}"
 
 
 def merged(surfaces: list[Surface]) -> tuple[Surface, ...]:

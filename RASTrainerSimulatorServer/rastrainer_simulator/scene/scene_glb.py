@@ -40,6 +40,7 @@ from rastrainer_simulator.scene.nodes import (
     NUMBER,
     SKIN,
     TIP_FREE,
+    TIP_MARKER,
     WAITING,
     Material,
     Node,
@@ -54,7 +55,6 @@ from rastrainer_simulator.scene.skin_marks import SkinMark, skin_marks
 from rastrainer_simulator.scene.surfaces import shaded, turned
 
 TOOL = "tool"
-TIP_MARKER = "tip_marker"
 
 
 def link_node_name(joint: int) -> str:

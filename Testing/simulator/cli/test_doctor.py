@@ -102,6 +102,20 @@ def test_on_a_display_the_renderer_of_opengl_is_named(monkeypatch):
 
 
 @pytest.mark.parametrize(
+    ("answer", "verdict", "words"),
+    [
+        ("renderer: NVIDIA T4", CheckStatus.OK, "OpenGL works: NVIDIA T4."),
+        ("software renderer: SWR", CheckStatus.WARNING, "the processor draws: SWR."),
+    ],
+)
+def test_only_a_renderer_in_software_is_a_warning(monkeypatch, answer, verdict, words):
+    monkeypatch.setenv("DISPLAY", ":0")
+    (finding,) = check_graphics((sys.executable, "-c", f"print({answer!r})"))
+    assert finding.verdict is verdict
+    assert words in finding.sentence
+
+
+@pytest.mark.parametrize(
     ("script", "words"),
     [
         ("import os; os.abort()", "ended with -6"),

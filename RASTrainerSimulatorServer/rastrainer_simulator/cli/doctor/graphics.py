@@ -87,10 +87,9 @@ def _is_kept_out(devices: Path) -> bool:
 
 PROBE = "rastrainer_simulator.cli.doctor.graphics"
 LONGEST_PROBE_S = 60.0
-IN_SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "gdi generic", "microsoft basic render")
 NO_WINDOW = "The trainee's window cannot open; browsers and headsets can still be used."
 
-_ANSWER = "renderer: "
+_RENDERER, _SOFTWARE_RENDERER = "renderer: ", "software renderer: "
 
 
 def check_graphics(probe: Sequence[str] = ()) -> Iterator[CheckResult]:
@@ -115,13 +114,17 @@ def check_graphics(probe: Sequence[str] = ()) -> Iterator[CheckResult]:
     except subprocess.TimeoutExpired:
         yield _failure(f"A window did not open within {LONGEST_PROBE_S:g} s.")
         return
-    answers = [line for line in done.stdout.splitlines() if line.startswith(_ANSWER)]
+    answers = [
+        line
+        for line in done.stdout.splitlines()
+        if line.startswith((_RENDERER, _SOFTWARE_RENDERER))
+    ]
     if done.returncode != 0 or not answers:
         reason = (done.stderr.strip().splitlines() or [f"it ended with {done.returncode}"])[-1]
         yield _failure(f"OpenGL does not work: {reason}")
         return
-    renderer = answers[0].removeprefix(_ANSWER)
-    if any(name in renderer.lower() for name in IN_SOFTWARE):
+    _kind, _colon, renderer = answers[0].partition(": ")
+    if answers[0].startswith(_SOFTWARE_RENDERER):
         yield CheckResult(
             "graphics",
             CheckStatus.WARNING,
@@ -154,14 +157,15 @@ def _failure(sentence: str) -> CheckResult:
 
 def main() -> int:
     """Print the name of OpenGL's renderer; if there is none, print one sentence and return 2."""
-    from rastrainer_simulator.desktop.gl_window import GlWindow
+    from rastrainer_simulator.desktop.gl_window import GlWindow, is_software_renderer
 
     try:
         window = GlWindow((320, 240), is_fullscreen=False, is_hidden=True)
     except RASTrainerError as error:
         print(error, file=sys.stderr)
         return 2
-    print(f"renderer: {window.renderer_name}")
+    name = window.renderer_name
+    print(f"{_SOFTWARE_RENDERER if is_software_renderer(name) else _RENDERER}{name}")
     return 0
 
 
