@@ -43,6 +43,10 @@ CELLS = """() => {
   const found = [...scroller.querySelectorAll("th, td, button")]
     .filter((part) => part.scrollWidth > part.clientWidth + 1)
     .map((part) => `${part.tagName} ${part.textContent} is cut off`);
+  const line = 44;
+  for (const { clientHeight, textContent } of scroller.querySelectorAll("thead button")) {
+    if (clientHeight > line) found.push(`${textContent} is on another line than its arrow`);
+  }
   scroller.scrollLeft = 10000;
   const { left } = scroller.querySelector("tbody th").getBoundingClientRect();
   const { left: edge } = scroller.getBoundingClientRect();

@@ -42,6 +42,17 @@ def test_the_pages_have_the_same_sentences_with_the_same_placeholders(language):
             assert set(re.findall(r"{\w+}", table[name])) == set(re.findall(r"{\w+}", text)), name
 
 
+def test_no_source_joins_texts_by_a_comma_which_not_every_language_has():
+    sources = {path: path.read_text(encoding="utf-8") for path in TEXTS.parent.rglob("*.ts")}
+    found = [
+        path.name
+        for path, text in sources.items()
+        if re.search(r"say\(.*\}, \$\{|\}, \$\{say", text)
+    ]
+    assert len(sources) > 50
+    assert found == []
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_colored_parts_of_a_drawing_are_named_as_in_the_menus(language):
     page, table = tables(language)[0], LANGUAGES[language]

@@ -2,6 +2,7 @@
 
 import { element } from "../elements";
 import { isTouchError, type TouchStage } from "../stream/messages";
+import { withUnits } from "../texts/typesetting";
 import { figure, holderName, say, type BoardText } from "./texts";
 
 export type Order = "pause" | "say" | "replay";
@@ -109,7 +110,7 @@ export class Tile {
     this.progress.max = seat?.count || 1;
     this.progress.value = seat?.touched ?? 0;
     this.says.textContent = seat === null ? "" : [...seat.warnings, seat.screen || seat.instruction].filter((text) => text !== "").join(" · ");
-    this.facts.replaceChildren(...(seat === null ? [] : factsOf(seat).flatMap(([label, value]) => [element("dt", label), element("dd", value)])));
+    this.facts.replaceChildren(...(seat === null ? [] : factsOf(seat).flatMap(([label, value]) => [element("dt", label), element("dd", withUnits(value))])));
     const isThere = seat !== null;
     this.watch.hidden = !isThere;
     for (const name of ["pause", "say", "replay"] as const) this.buttons[name].hidden = !isThere;
@@ -123,7 +124,7 @@ function stateOf({ link, seat }: TileNews): string {
   if (seat === null) return say(link === "watching" ? "link.connecting" : `link.${link}`);
   const phase = say(`phase.${seat.phase}`);
   const doing = seat.task === "" ? phase : say("doing", { task: seat.task, phase });
-  return WORKING.includes(seat.phase) ? `${doing}, ${say(`touch.${seat.touch}`)}` : doing;
+  return WORKING.includes(seat.phase) ? say("doing.where", { doing, touch: say(`touch.${seat.touch}`) }) : doing;
 }
 
 function toneOf(news: TileNews): string {
