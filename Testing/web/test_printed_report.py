@@ -1,4 +1,4 @@
-"""A report on paper: page breaks leave no page half empty."""
+"""A report on paper, whose page breaks leave no page half empty, and on a phone."""
 
 import importlib.util
 import math
@@ -81,6 +81,17 @@ def filled_share(page):
     inked = np.flatnonzero((page < 250).any(axis=1)[top : len(page) - bottom])
     assert len(inked), "an empty page"
     return (inked[-1] + 1) / (len(page) - top - bottom)
+
+
+def test_a_phone_scrolls_wide_tables_in_their_section_and_not_the_whole_report(browser):
+    page = browser.new_page(viewport={"width": 390, "height": 844})
+    page.set_default_timeout(PATIENCE_MS)
+    page.set_content(report_html(STUDY["four trainees"](), "today"))
+    width, widest = page.evaluate("""[document.documentElement.scrollWidth,
+      Math.max(...[...document.querySelectorAll("table")].map((table) => table.offsetWidth))]""")
+    page.close()
+    assert width == 390
+    assert widest > 390
 
 
 @pytest.mark.soak

@@ -99,6 +99,7 @@ def tables_of(page):
 
 
 def cells(line):
+    line = line.replace("\N{NO-BREAK SPACE}", " ")
     return [html.unescape(text) for text in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", line)]
 
 

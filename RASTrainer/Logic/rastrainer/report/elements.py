@@ -35,7 +35,7 @@ class Cell:
                 tag = "td"
             else:
                 attributes += f' scope="{scope}{"group" if self.span > 1 else ""}"'
-        return f"<{tag}{attributes}>{html.escape(self.text)}</{tag}>"
+        return f"<{tag}{attributes}>{_flowing(self.text)}</{tag}>"
 
 
 Line = list[Cell | str]
@@ -89,11 +89,11 @@ def figure(charts: Sequence[str], caption: str) -> str:
     )
 
 
-_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|(?:mm|s|of 100)\b))")
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|(?:mm|s|of 100)\b))|(?<=,) (?=(?:mm|s)\b)")
 
 
 def _flowing(text: str) -> str:
-    """Return escaped text in which no line ends between a number and its unit."""
+    """Return escaped text in which no line ends between a number, or a name, and its unit."""
     return html.escape(_BEFORE_UNIT.sub("\N{NO-BREAK SPACE}", text))
 
 

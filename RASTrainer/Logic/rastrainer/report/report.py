@@ -208,9 +208,11 @@ table.wide { font-size: 8pt; } .wide th, .wide td { padding: 1.1mm 0.9mm; }
 thead th.group, thead td.group { text-align: center; border-bottom: 1px solid #9aa5b1; }
 td.marginal { font-weight: 600; }
 .total { text-align: center; font-weight: 700; border-top: 1.5px solid #1f2933; }
+.total:last-child { text-align: right; }
 caption { text-align: left; font-weight: 600; padding-bottom: 1mm; }
 footer { margin-top: 10mm; padding-top: 2mm; border-top: 1px solid #cbd2d9; color: #6b7785;
   font-size: 8.5pt; }
+@media screen and (max-width: 190mm) { body { padding: 4mm; } section { overflow-x: auto; } }
 @media print { body { padding: 0; max-width: none; font-size: 9.5pt; } h2 { margin-top: 6mm; } }
 """
 
