@@ -195,7 +195,7 @@ def test_progress_reports_best_score_pass_mark_and_competence():
     assert progress.sentences[1] == "Passed: the mark is 45."
     early = progress_of(history, history[2].trial_id, pass_mark=45.0)
     assert early.scores == (40.0, 41.0, 42.0)
-    assert early.sentences[1] == "Not passed yet: 3 points short of the mark of 45."
+    assert early.sentences[1] == "Not passed yet: 3.0 short of the mark of 45."
     assert early.sentences[2].startswith(
         "0 % of the way to demonstrated competence (LC-CUSUM; trials so far: 3)"
     )
@@ -210,7 +210,7 @@ def test_a_trial_is_not_compared_with_scores_of_another_version():
     assert once.competence.competent_at is None
     assert "trials so far: 1" in once.sentences[2]
     twice = progress_of(history, history[-1].trial_id, pass_mark=60.0)
-    assert twice.sentences[0].startswith("1 points more than in your last trial")
+    assert twice.sentences[0].startswith("Your score is 1 above that of your last trial")
 
 
 def test_without_a_pass_mark_for_its_version_a_trial_neither_passes_nor_fails():
@@ -274,4 +274,4 @@ def test_the_feedback_sentences_are_in_order():
     busy = replace(feedback, advice=feedback.advice[:1] * 3).short_sentences
     assert (len(busy), tuple(busy[-2:])) == (MAX_SHORT, feedback.progress.sentences[-2:])
     assert any("to the mark of 55" in s or "mark is 55" in s for s in short)
-    assert "10 points more than in your last trial of this task" in sentences[-3]
+    assert "Your score is 10 above that of your last trial of this task" in sentences[-3]

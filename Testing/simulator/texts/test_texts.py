@@ -49,6 +49,14 @@ def test_a_language_has_the_sections_of_english_in_their_order_and_each_key_once
     assert len(keys) == len(set(keys))
 
 
+@pytest.mark.parametrize("language", sorted(LANGUAGES))
+def test_a_single_point_is_not_called_points(language):
+    feedback = ("more points", "less points", "more points than last", "less points than last")
+    keys = ("trial.paused", "abort.text", *(f"feedback.{key}" for key in (*feedback, "not passed")))
+    table = LANGUAGES[language]
+    assert [key for key in keys if re.search(r"\} \w* ?(points|Punkt|puntos)", table[key])] == []
+
+
 def test_every_language_is_offered_by_its_own_name_in_all_of_them():
     for tag in LANGUAGES:
         assert len({table[f"settings.language.{tag}"] for table in LANGUAGES.values()}) == 1

@@ -56,18 +56,19 @@ ENGLISH: Mapping[str, str] = {
     "first trial": "This is your first trial of this task in this mode.",
     "first of this score": "Your earlier trials of this task have scores of an earlier version, "
     "which cannot be compared with this one.",
-    "more points": "{points:.0f} points more than the mean of your last {trials} trials of this "
+    "more points": "Your score is {points:.0f} above the mean of your last {trials} trials of this "
     "task.{best}",
-    "less points": "{points:.0f} points fewer than the mean of your last {trials} trials of this "
+    "less points": "Your score is {points:.0f} below the mean of your last {trials} trials of this "
     "task.{best}",
-    "more points than last": "{points:.0f} points more than in your last trial of this task.{best}",
-    "less points than last": "{points:.0f} points fewer than in your last trial of this "
+    "more points than last": "Your score is {points:.0f} above that of your last trial of this "
+    "task.{best}",
+    "less points than last": "Your score is {points:.0f} below that of your last trial of this "
     "task.{best}",
     "best": " It is your best so far.",
     "unacceptable": "Not passed: the true error in the brain, the bias that all touches share, or "
     "the contact with the head is beyond what is acceptable.",
     "passed": "Passed: the mark is {mark:.0f}.",
-    "not passed": "Not passed yet: {points:.0f} points short of the mark of {mark:.0f}.",
+    "not passed": "Not passed yet: {points:.1f} short of the mark of {mark:.0f}.",
     "no mark": "Neither passed nor failed: the pass mark of this study is for another version of "
     "the score.",
     "competent": "Your trials have shown competence since number {number}: of those who still fail "
