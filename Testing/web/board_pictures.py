@@ -1,6 +1,6 @@
 """Make the pictures of a teacher's board: python -m Testing.web.board_pictures.
 
-Six seats that say what a simulator says, of which one has stopped answering, and a class of twelve
+Six seats that answer as simulators do, of which one has stopped answering, and a class of twelve
 virtual trainees.
 """
 
@@ -34,7 +34,7 @@ SAY = Texts().say
 
 
 def assignments(found: ClassStanding, trainee: str) -> str:
-    """Return where a trainee stands, as the seat says it."""
+    """Return where a trainee stands, as the seat reports it."""
     words = AssignmentTexts(Texts(), lambda task: SAY(f"task.{task}"), str.capitalize)
     return words.in_brief(CurriculumMessage.of(trainee, found.standings[trainee]))
 
@@ -45,7 +45,7 @@ def seat(
     state: tuple[Phase, TouchStage, int, int],
     **others: object,
 ) -> str:
-    """Return what a seat says; its state is phase, touch, touched points and time, s."""
+    """Return what a seat reports; its state is phase, touch, touched points and time, s."""
     phase, touch, touched, elapsed = state
     known = {"trainee": trainee, "task": task, "count": 15 if task else 0, "slicer": True}
     known["holder"] = "gamepad" if task else ""
@@ -60,7 +60,7 @@ def seat(
 
 
 def seats(found: ClassStanding) -> dict[str, str]:
-    """Return what each seat says, by its name; two say where their trainees stand."""
+    """Return what each seat reports, by its name; two report where their trainees stand."""
     far, warning = (Phase.RUNNING, TouchStage.FAR), SAY("warning.elsewhere")
     paused, scored = (Phase.PAUSED, TouchStage.FAR), (Phase.SCORED, TouchStage.FAR)
     first, fifth = assignments(found, "T004"), assignments(found, "T002")
@@ -85,7 +85,7 @@ def seats(found: ClassStanding) -> dict[str, str]:
 
 
 def says(text: str) -> Callable[[web.WebSocketResponse], Awaitable[None]]:
-    """Return what has a seat say one thing."""
+    """Return a function that has a seat report one state."""
 
     async def say(socket: web.WebSocketResponse) -> None:
         await socket.send_str(text)
@@ -95,7 +95,7 @@ def says(text: str) -> Callable[[web.WebSocketResponse], Awaitable[None]]:
 
 
 def take_picture(board: BoardClient, stopped: Iterable[web.AppRunner]) -> None:
-    """Picture the board once all seats are shown, and those that have stopped are known to have."""
+    """Picture the board once all seats are shown, and those that have stopped are known."""
     with sync_playwright() as driver:
         browser = launch(driver)
         page = browser.new_page(viewport=SIZE, device_scale_factor=1)

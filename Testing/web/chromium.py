@@ -24,8 +24,8 @@ from tools.build_page import install_packages
 WEB = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web"
 IWER = WEB / "node_modules" / "iwer" / "build" / "iwer.min.js"
 AXE = WEB / "node_modules" / "axe-core" / "axe.min.js"
-# Mesa draws several times faster than Chromium's own software renderer; what is around the canvas
-# is faster without it.
+# Mesa draws several times faster than Chromium's own software renderer; without it, all but
+# the canvas is faster.
 ARGUMENTS = [
     *("--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"),
     "--disable-gpu-compositing",
@@ -35,7 +35,7 @@ POLL_MS = 50
 SMALL = {"width": 400, "height": 220}
 EYES_M = (0.1, 1.62, 0.2)
 _HAS_REJOINED = "page.poses !== window.posesBefore && page.poses.count > 0"
-"""Whether all has arrived again that the simulator sends to a new view; the state comes last."""
+"""Whether all that the simulator sends to a new view has arrived again; the state comes last."""
 
 _EMULATE = """
 ;(() => {
@@ -136,7 +136,7 @@ def open_page(
 ) -> Page:
     """Open the page, pair it by the code in its address, and wait until it shows the scene.
 
-    Pictures take both processors: tests that look at none have it draw nothing in its canvas.
+    Pictures take both processors: tests that need none have it draw nothing in its canvas.
     Its `problems` are what went wrong in it, and `loaded` has the bytes of each address.
     """
     context = browser.new_context(viewport=size, ignore_https_errors=True, has_touch=has_touch)
@@ -208,7 +208,7 @@ def resize(page: Page, width: int, height: int) -> None:
 
 
 def wait_for(page: Page, expression: str) -> None:
-    """Wait until an expression is true; Playwright's own waiting is against the page's rules."""
+    """Wait until an expression is true; Playwright's own waiting breaks the page's rules."""
     give_up = time.monotonic() + PATIENCE_MS / 1000.0
     while not page.evaluate(expression):
         assert time.monotonic() < give_up, f"{expression} never came true"
@@ -216,7 +216,7 @@ def wait_for(page: Page, expression: str) -> None:
 
 
 def show(page: Page, served: ServedViews, screen: Screen) -> None:
-    """Have a page shown a screen, and wait until that is what it shows."""
+    """Send a page a screen, and wait until the page shows it."""
     served.tell(screen)
     wanted = json.loads(outgoing.screen(without_secrets(screen)))["screen"]
     wait_until(lambda: page.evaluate("page.screen") == wanted, "the screen", PATIENCE_MS / 1000.0)

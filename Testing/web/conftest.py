@@ -13,7 +13,7 @@ from Testing.web.place import PATIENT
 
 @pytest.fixture(scope="module")
 def driver():
-    """What starts browsers; ends with its module: others could run no event loop beside it."""
+    """Starts browsers; ends with its module: others could run no event loop beside it."""
     with sync_playwright() as driver:
         yield driver
 
@@ -27,7 +27,7 @@ def browser(driver):
 
 @pytest.fixture(scope="module")
 def loop(shared, tmp_path_factory):  # noqa: F811
-    """A control loop in this process, which leaves the processors to the browser."""
+    """A control loop in this process that leaves the processors to the browser."""
     put_back(shared)
     with ControlLoop(shared, tmp_path_factory.mktemp("loop") / "records") as loop:
         yield loop
@@ -35,7 +35,7 @@ def loop(shared, tmp_path_factory):  # noqa: F811
 
 @pytest.fixture(scope="module")
 def served(loop, loop_thread):
-    """Views of that loop, served to pages that are shown what a test tells them."""
+    """Views of that loop, served to pages that show what a test sends them."""
     served = ServedViews(loop_thread, loop, **PATIENT)
     yield served
     served.close()

@@ -1,4 +1,4 @@
-"""What a trainee works the page with: keys, a gamepad that the browser reads, XR controllers."""
+"""A trainee's input devices on the page: keys, a gamepad that the browser reads, XR controllers."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ _IS_TARGET = """(target) => {
   const { width, height } = place.getBoundingClientRect();
   return Math.min(width, height) >= 24;
 }"""
-"""Whether what is to be clicked looks like it, and is as large as WCAG 2.2 wants it (2.5.8).
+"""Whether a target looks clickable, and is as large as WCAG 2.2 requires (2.5.8).
 
 One look answers both: between two, the page may put another element in its place.
 """
@@ -84,7 +84,7 @@ _SLOW_IS = """(word) =>
 
 
 class PageKeys(KeyHands):
-    """The keyboard, over the page."""
+    """The keyboard, on the page."""
 
     def __init__(self, page: Page):
         super().__init__(_Keyboard(page))
@@ -167,7 +167,7 @@ class Thumbs:
 
 
 KEPT_STICK_SHARE = 0.4
-"""A stick is let go of where its part of the way is smaller than this share of the other's."""
+"""A stick is released if its part of the movement is smaller than this share of the other's."""
 
 
 class PageMouse:
@@ -183,7 +183,7 @@ class PageMouse:
         """Click on an item of the menu or on a hint, once it is there."""
         target = f"#menu li[data-name='{item}'] button, #hints [data-item='{item}']"
         self._page.wait_for_function(_IS_TARGET, arg=target)
-        # The page may set the hints anew at any moment: a click that would miss is made again.
+        # The page may redraw the hints at any moment: a click that would miss is repeated.
         self._page.click(target)
 
     def tap(self, control: str) -> None:
@@ -191,7 +191,7 @@ class PageMouse:
         self.click(f"press {control}")
 
     def push(self, right: float, forward: float, up: float, fine: bool = False) -> None:
-        """Drag the stick of the larger part; slow motion is clicked on and off."""
+        """Drag the stick with the larger part; slow motion is clicked on and off."""
         is_level = self._is_level(math.hypot(right, forward), abs(up))
         across, along = (right, forward) if is_level else (0.0, up)
         wanted = ("first", "last")[not is_level] if across or along else None
@@ -200,12 +200,12 @@ class PageMouse:
             self._dragged = None
         if wanted is None or (self._dragged is None and not self._seize(wanted, fine)):
             return
-        # While a stick is dragged nothing else is asked of the page: each answer may take long.
+        # While a stick is dragged, the page is asked nothing else: each answer may take long.
         x, y, radius = self._stick
         self._page.mouse.move(x + across * radius, y - along * radius)
 
     def _is_level(self, level: float, upright: float) -> bool:
-        """Return whether the first stick is dragged; to change sticks takes long."""
+        """Return whether the first stick is dragged; changing sticks takes long."""
         if self._dragged == "first":
             return level >= KEPT_STICK_SHARE * upright
         if self._dragged == "last":
@@ -215,7 +215,7 @@ class PageMouse:
     def _seize(self, stick: str, fine: bool) -> bool:
         """Take hold of the first or the last stick; return whether it is shown."""
         if fine != self._is_slow and self._page.query_selector(_FINE_HINT) is not None:
-            # Some steps of the tutorial do without this hint, and one may begin at this moment.
+            # Some steps of the tutorial lack this hint, and one may begin at this moment.
             with suppress(Error):
                 self.click("press fine")
                 self._page.wait_for_function(_SLOW_IS, arg="on" if fine else "off")
@@ -283,7 +283,7 @@ class Controllers:
         self._page.evaluate(_POINT, name)
 
     def grab(self, is_held: bool) -> None:
-        """Hold the right grip, or let it go."""
+        """Hold the right grip, or release it."""
         self._page.evaluate(
             """async (value) => {
               device.controllers.right.updateButtonValue("squeeze", value); await frames_(2); }""",
@@ -333,7 +333,7 @@ class TrackedHands:
         self.choose(f"press {control}")
 
     def pinch(self, is_held: bool) -> None:
-        """Pinch in the air, pointing at the floor, or let go."""
+        """Pinch in the air, pointing at the floor, or release."""
         self._page.evaluate(_PINCH, 1 if is_held else 0)
 
     def carry(self, by: Sequence[float]) -> None:
@@ -341,5 +341,5 @@ class TrackedHands:
         self._page.evaluate(_CARRY, list(map(float, by)))
 
     def push(self, *_sticks: float) -> None:
-        """Let go: hands have no sticks."""
+        """Release: hands have no sticks."""
         self.pinch(False)

@@ -35,15 +35,15 @@ PATIENCE_S = 300
 WITHOUT_GRAPHICS = {"silent_s": 10, "lost_s": 20, "gone_s": 300}
 """Limits of views for a machine that draws a headset's pictures by its processor: seconds each."""
 PATIENT = {"silent_s": 60, "lost_s": 600, "gone_s": 600}
-"""A browser that is late, however busy the machine is, neither lets go nor pauses the trial."""
+"""A late browser, however busy the machine is, neither releases the input nor pauses the trial."""
 SETTLED_STATES = 20
-"""In how many states in a row a focus stays that nobody moves any more: a third of a second."""
+"""For how many states in a row a focus stays that no input moves: a third of a second."""
 LEAVES = {"trial": "abort", "abort": "abort", "complete": "abort", "result": "menu"}
 """Which item of a menu leads toward the start."""
 
 
 class Place:
-    """One simulator and who is around it; ended by the `with` statement.
+    """One simulator and its clients; ended by the `with` statement.
 
     Attributes:
         simulator: the process; its `url` is where the page is, its `code` pairs a browser.
@@ -90,11 +90,11 @@ class Place:
         self._stack.close()
 
     def trainee(self, hands: object) -> Trainee:
-        """Return one who does everything by hand."""
+        """Return a trainee who does everything by hand."""
         return Trainee(self.view, hands)
 
     def carried_trainee(self, hands: object) -> CarriedTrainee:
-        """Return one who does the menus by hand and has the tip carried, to be quick."""
+        """Return a trainee who uses menus by hand and has the tip carried, to save time."""
         return CarriedTrainee(self.view, hands, self.client())
 
     def client(self) -> Client:
@@ -119,7 +119,7 @@ class Place:
         return process
 
     def entries(self, kind: str) -> list[dict]:
-        """Return the entries of a kind in the latest trial's journal, as far as it is written."""
+        """Return the entries of a kind in the latest trial's journal, as far as written."""
         journal = max(self.records.glob("*.journal"), key=_begun)
         lines = journal.read_text(encoding="utf-8").rpartition("\n")[0].splitlines()
         return [entry for entry in map(json.loads, lines) if entry["kind"] == kind]
@@ -135,7 +135,7 @@ def _begun(journal: Path) -> str:
 class Trainee(StreamTrainee):
     """Goes through the menus, and touches the points in their order."""
 
-    # A press is seen in the next picture, however late that is: none is missed.
+    # A press is seen in the next picture, however late: none is missed.
     again_s = 60.0
 
     def focus(self, item: str) -> None:
@@ -150,7 +150,7 @@ class Trainee(StreamTrainee):
             settled = settled + 1 if self.menu.focus == item else 0
 
     def go_home(self) -> None:
-        """Go to the start menu from wherever the last one has stopped."""
+        """Go to the start menu from wherever the last trainee has stopped."""
         while self.menu_name != "start":
             before = self.menu
             if before is None:
@@ -161,7 +161,7 @@ class Trainee(StreamTrainee):
                 self.press("back", lambda b=before: self.menu != b, f"before {before.name}")
 
     def go_to_experiment(self) -> None:
-        """Go from wherever the last one has stopped to the choice of head and task."""
+        """Go from wherever the last trainee has stopped to the choice of head and task."""
         self.go_home()
         self.choose("train")
         while self.menu_name != "experiment":
@@ -193,7 +193,7 @@ class Trainee(StreamTrainee):
             for typed in accumulate(TRAINEE):
                 page.keyboard.press(typed[-1])
                 self.until(lambda typed=typed: self.value("trainee") == typed, "the ID")
-                # A field forgets what the simulator was long to answer.
+                # A field forgets what the simulator took long to answer.
                 wait_for(page, f"document.querySelector('#menu input:focus')?.value === '{typed}'")
             return
         self.choose("trainee")
@@ -207,7 +207,7 @@ class Trainee(StreamTrainee):
         self.until(lambda: self.view.state["phase"] == "running", "the trial again")
 
     def touch_all(self, most: int = 15) -> None:
-        """Touch the points that are left, up to so many in all."""
+        """Touch the remaining points, up to so many in all."""
         while self.touched < most:
             label = self.view.state["next"]
             self.approach(label, 0.02)
@@ -232,17 +232,17 @@ class OnPage:
         self.until(lambda: self.menu_name != before, f"after {item}")
 
     def until_on_page(self) -> None:
-        """Wait until the page shows the open menu: the one before may have such an item too."""
+        """Wait until the page shows the open menu: the previous one may have such an item, too."""
         selector = f"body[data-menu='{self.menu_name or ''}']"
         self.page.wait_for_selector(selector, state="attached")
 
     def choose_on_page(self, item: str) -> None:
-        """Choose an item by what the page is worked with."""
+        """Choose an item by the input device."""
         raise NotImplementedError
 
 
 class CarriedTrainee(Trainee):
-    """Is quick: the tip goes by command where it shall."""
+    """Is quick: commands carry the tip to its goals."""
 
     def __init__(self, view: WatchingView, hands: object, client: Client):
         super().__init__(view, hands)

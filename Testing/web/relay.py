@@ -1,4 +1,4 @@
-"""A piece of network between a browser and the simulator, which can stand still or break."""
+"""A piece of network between a browser and the simulator that can stall or break."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Relay:
         self._thread.call(self._goes.clear)
 
     def resume(self) -> None:
-        """Pass on what waits, and everything after it."""
+        """Pass on what is waiting, and everything after it."""
         self._thread.call(self._goes.set)
 
     def cut(self) -> None:

@@ -2,7 +2,7 @@
 
 That of the target errors is of a drawn study: eight trainees do all tasks on the built-in head in
 both modes; in the headset the view misleads all touches by 1 mm. With the folder of the cohort that
-`Testing.error_rates.cohort` has played, the sections that give back its truth are shown, too.
+`Testing.error_rates.cohort` has played, the sections that recover its truth are shown, too.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ LOOK_DOWN_AND_ASIDE = "device.quaternion.set(-0.19, -0.17, -0.03, 0.966)"
 
 
 def keep(page: Page, name: str) -> None:
-    """Keep what the window shows."""
+    """Save what the window shows."""
     page.evaluate("frames_(8)")
     image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
     image.save(FOLDER / name, optimize=True)

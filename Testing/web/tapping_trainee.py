@@ -21,7 +21,7 @@ class Taps(OnPage):
         self.until(lambda: self.value("trainee") == TRAINEE, "the ID")
 
     def begin_by_taps(self, task: str) -> None:
-        """Go into a task from wherever the last one has stopped."""
+        """Go into a task from wherever the last trainee has stopped."""
         self.go_to_experiment()
         self.write_id()
         self.begin_task(task)
@@ -29,7 +29,7 @@ class Taps(OnPage):
 
 
 class TappingTrainee(Taps, CarriedTrainee):
-    """Taps, and is carried by command where the thumbs would lead."""
+    """Taps; commands carry the tip where the thumbs would lead."""
 
     def __init__(self, place, page):
         super().__init__(place.view, Thumbs(page), place.client())

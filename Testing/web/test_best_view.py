@@ -1,4 +1,4 @@
-"""The page's real picture behind the head, and the sticks of a view that is turned by mouse."""
+"""The page's real picture behind the head, and the sticks of a view turned by mouse."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def test_the_page_shows_each_touch_behind_the_head_at_its_best_view(place, page)
         trainee.approach(label, 0.004)
         trainee.lower_onto(label)
         trainee.until(lambda at=label: is_at_best(trainee, at), f"the best view of {label}")
-        # The page's camera flies there, and may be behind by more than some pictures.
+        # The page's camera flies there, and may lag by more than a few pictures.
         wait_until(lambda: count_of_next(page) > 20, f"{label} in the picture", PATIENCE_S)
         assert page.get_attribute("#inset", "data-name") == "Along the skin"
         trainee.have_touched(int(label))

@@ -60,7 +60,7 @@ KEEP_NOTICES = """() => {
   const { setTimeout } = window;
   window.setTimeout = (act, ms) => setTimeout(act, 100 * ms);
 }"""
-"""A notice goes after some seconds, which a busy machine may need to look at it."""
+"""A notice disappears after some seconds, which a busy machine may need to read it."""
 
 
 @pytest.fixture
@@ -75,7 +75,7 @@ def simulator(loop, loop_thread, tmp_path):
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
-    """A class of virtual trainees, one of whom sits at the seat."""
+    """A class of virtual trainees, one of whom is at the seat."""
     path = tmp_path_factory.mktemp("class") / "study.db"
     play_class(path, ["T2", "T10", "T1", LONG.trainee], 12)
     return path

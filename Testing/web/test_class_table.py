@@ -1,4 +1,4 @@
-"""The table of a class in a browser, served by the command: sorted, followed, printed, outlived."""
+"""The table of a class in a browser, served by the command: sorted, updated, printed, outlived."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def study(tmp_path) -> Path:
 
 @contextmanager
 def open_class(browser, folder: Path, *options: str, locale: str = "en-US") -> Iterator:
-    """Give the page of a board that the command serves."""
+    """Yield the page of a board that the command serves."""
     command = (*COMMAND, "--config", str(folder / "teacher"), *options)
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:

@@ -1,4 +1,4 @@
-"""The page in an emulated headset: both eyes, where one stands, hands, pulses, leaving and back.
+"""The page in an emulated headset: eyes, standing position, hands, pulses, leaving and return.
 
 Whole trials by controllers and by gamepad are in test_whole_flow.py.
 """
@@ -59,9 +59,9 @@ def worn(page):
 
 @pytest.fixture
 def trainee(place, worn):
-    """Somebody in the headset at a trial that runs, the tip over the first point.
+    """A trainee in the headset at a running trial, the tip over the first point.
 
-    What a test has held is let go, even where it has failed.
+    What a test has held is released, even if it has failed.
     """
     trainee = place.carried_trainee(Controllers(worn))
     if trainee.menu is not None and trainee.menu.name == "trial":

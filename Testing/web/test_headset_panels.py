@@ -1,4 +1,4 @@
-"""The headset's panels: before the eyes, turned to the person, with room for every language."""
+"""The headset's panels: before the eyes, facing the wearer, with room for every language."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from Testing.web.chromium import EYES_M, enter_headset, open_page, show
 from Testing.web.test_page_access import at_work
 
 BEHIND_M = 1.24
-"""From the place where the trainee stands to the one at the other side of the head."""
+"""From where the trainee stands to the other side of the head."""
 TURNED = (0.0, 1.2, -1.2, 3.0)
 
 PANEL = """(name) => {
@@ -101,7 +101,7 @@ def work(worn):
 
 
 def stand(page, forward=0.0, yaw=0.0):
-    """Have the wearer stand so far from their place, and look there."""
+    """Have the wearer stand so far from their starting position, and look there."""
     page.evaluate(
         """async ([x, y, z, half]) => {
           device.position.set(x, y, z);

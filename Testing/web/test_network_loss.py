@@ -1,4 +1,4 @@
-"""A network that stands still or breaks while somebody trains: paused, resumed, nothing lost."""
+"""A network that stalls or breaks during training: paused, resumed, nothing lost."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def begin(place, relay, browser, headset):
 
 
 def stands(place, trainee) -> bool:
-    """Tell whether the arm stands still."""
+    """Return whether the arm stands still."""
     before = trainee.tip
     for _ in range(20):
         place.view.next_state()

@@ -93,7 +93,7 @@ def test_the_introduction_shows_the_device_in_use_with_its_inputs_colored(place,
         drawing = unquote(picture.get_attribute("src"))
         colored[hands] = drawing.count(f'fill="{ACCENT}"')
     # W, A, S, D, R, F, Shift, Space, Backspace, C, P and M, and B, Q, E, T, G, X, Z for the view;
-    # two sticks, RT, Back and Start, and for the view two ways of the D-pad, LB and RB.
+    # two sticks, RT, Back and Start, and for the view two directions of the D-pad, LB and RB.
     assert colored == {PageKeys: 19, BrowserPad: 9}
 
 

@@ -1,4 +1,4 @@
-"""Everyone can use the page: screen readers, zoom, phones and large displays, in every language."""
+"""Accessibility of the page: screen readers, zoom, phones and large displays, in all languages."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SIZES = {
     "4K": (3840, 2160),
 }
 AXE_SIZE = "phone"
-"""Where axe looks unless it looks everywhere: the other layout is for the soak tests."""
+"""What axe checks unless it checks everything: the other layout is for the soak tests."""
 LOOKED_AT = pytest.mark.parametrize(
     "sizes",
     [
@@ -124,7 +124,7 @@ def complaints(page, screen: str, sizes: tuple[str, ...]) -> list[str]:
 
 @pytest.fixture(scope="module")
 def told_page(served, browser):
-    """A page that shows what a test tells it."""
+    """A page that shows what a test sends it."""
     page = checked_page(browser, served.url, served.code)
     yield page
     assert page.problems == []
@@ -189,7 +189,7 @@ def test_thumb_controls_overlap_nothing_at_any_size(browser, served):
 
 
 def shown(page, trainee) -> str:
-    """Wait until the page shows the menu that the simulator is at; return its name."""
+    """Wait until the page shows the simulator's menu; return its name."""
     name = trainee.menu.name if trainee.menu else ""
     page.wait_for_selector(f'body[data-menu="{name}"]')
     return name
@@ -232,7 +232,7 @@ def test_the_page_declares_its_language(told_page, served):
         served.tell(Screen(language=language))
         told_page.wait_for_selector(f"html[lang={language}]")
         assert told_page.get_attribute("#picture", "aria-label") == name
-        # What was said before the language changed, too.
+        # What was said before the language changed is translated, too.
         told_page.wait_for_selector(f"#control:has-text('{NOBODY_DRIVES[language]}')")
 
 

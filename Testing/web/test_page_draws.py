@@ -40,7 +40,7 @@ DRAW = """
 
 @pytest.fixture
 def draw(page):
-    """Return a function that draws a state with some changes and returns what is seen of it."""
+    """Return a function that draws a state with some changes and returns what is visible."""
     return lambda **changes: page.evaluate(DRAW, changes)
 
 

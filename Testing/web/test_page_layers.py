@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 SOURCES = Path(__file__).parents[2] / "RASTrainerSimulatorServer" / "web" / "src"
-# A folder imports from lines above its own, and nothing else of ours; "." has what all use.
+# A folder imports from lines above its own, and nothing else of ours; "." is what all use.
 LAYERS = """
     texts
     .

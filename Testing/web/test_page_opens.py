@@ -1,4 +1,4 @@
-"""What opens the page: the pairing code, from this computer or the network; and what is missing."""
+"""Opening the page: the pairing code, from this computer or the network; and what is missing."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ addEventListener("DOMContentLoaded", () => {
   new MutationObserver(note).observe(place, { attributes: true, childList: true, subtree: true });
 });
 """
-"""What is shown while a scene comes may have gone by the time that one looks."""
+"""What is shown while a scene is loading may be gone by the time it is checked."""
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +95,7 @@ def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, way
 
 @pytest.fixture(scope="module")
 def foreign_url():
-    """Where a page of somebody else is served, on this computer, too."""
+    """Where another program's page is served, also on this computer."""
 
     class ForeignHandler(BaseHTTPRequestHandler):
         def do_GET(self):
@@ -194,14 +194,14 @@ def test_a_second_operator_cannot_take_control_unasked(place, paired, browser):
     first = place.trainee(PageKeys(paired))
     first.go_home()
     first.choose("train")
-    # Whoever rests may be relieved, and a slow machine would let them rest: when the focus has
+    # An idle view may lose control, and a slow machine would leave it idle: when the focus has
     # moved, the simulator knows of the key that was pressed before.
     paired.keyboard.down("ShiftLeft")
     focus = first.menu.focus
     first.press("down", lambda: first.menu.focus != focus, "another focus")
     other.keyboard.press("Escape")
     other.wait_for_selector("#warnings li[data-tone=warning]")
-    # The warning has come with the menu that is open now.
+    # The warning arrived with the menu that is open now.
     assert other.get_attribute("body", "data-menu") == "introduction"
     paired.wait_for_selector("#control:has-text('You drive')")
     assert not other.evaluate("page.control.isYou")
@@ -209,7 +209,7 @@ def test_a_second_operator_cannot_take_control_unasked(place, paired, browser):
 
 
 def try_code(page, code):
-    """Enter a code, and wait until it is answered: of the one before, the page says the same."""
+    """Enter a code, and wait for the answer: the page showed the same after the previous code."""
     page.fill("#code", code)
     with page.expect_response("**/pair"):
         page.click("#pairing button")

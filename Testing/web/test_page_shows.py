@@ -56,7 +56,7 @@ def test_arrows_appear_and_disappear_with_the_screen(page, served):
     drawn = page.evaluate(DRAWN)
     assert [color for color, *_place in drawn] == ["8ff0d0", "ffe000", "ef5f66"]
     assert [place for _color, *place in drawn] == [pytest.approx(list(each.end)) for each in arrows]
-    # Who has only a mouse gets back, too.
+    # A user with only a mouse can go back, too.
     assert page.locator("#hints button").count() == 1
     page.click("#hints button:has-text('Result')")
     (view,) = {call[1] for call in served.presenter.calls if call[0] == "view_joined"}
@@ -77,7 +77,7 @@ def test_a_finger_leads_back_from_what_is_only_watched(browser, served):
         (*_, view) = (call[1] for call in served.presenter.calls if call[0] == "view_joined")
         served.wait_for_call("on_item", view, "back")
         served.presenter.calls.remove(("on_item", view, "back"))
-        # While something is worked on, the buttons under the thumbs do the same.
+        # While something is adjusted, the buttons under the thumbs do the same.
         show(page, served, Screen(hints=(Hint("Space", "Touch", "press touch"),)))
         assert page.locator("#touch-controls").is_visible()
         assert page.locator("#hints").is_hidden()
@@ -128,7 +128,7 @@ speechSynthesis.speak = (utterance) => {
 speechSynthesis.cancel = () => window.ended();
 window.ended = () => window.reading.shift()?.onend();
 """
-"""A machine without voices never ends a sentence: the test says when one has been read."""
+"""A machine without voices never ends a sentence: the test ends each."""
 
 
 def spoken(**others):

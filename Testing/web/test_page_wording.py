@@ -1,4 +1,4 @@
-"""Page and board say the same in every language, by the names that the menus have for inputs."""
+"""Page and board have the same texts in every language, with the menus' names of inputs."""
 
 from __future__ import annotations
 

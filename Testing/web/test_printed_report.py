@@ -52,7 +52,7 @@ def printed(browser):
 def test_a_printed_report_has_hardly_more_pages_than_its_content_fills(printed, name):
     filled, pdf = printed(STUDY[name]())
     pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
-    # What page breaks leave empty adds up to less than one page.
+    # What page breaks leave empty sums to less than one page.
     assert filled <= pages <= math.ceil(filled) + 1
 
 
@@ -76,7 +76,7 @@ def pages_of(pdf):
 
 
 def filled_share(page):
-    """Return down to which part of its printable height a page has ink, and more than a line."""
+    """Return the part of its printable height down to which a page has more ink than a line."""
     top, bottom = (round(margin * DOTS_PER_MM) for margin in MARGINS_MM)
     inked = np.flatnonzero((page < 250).any(axis=1)[top : len(page) - bottom])
     assert len(inked), "an empty page"

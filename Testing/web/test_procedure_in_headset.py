@@ -45,7 +45,7 @@ def operated(tmp_path_factory, browser) -> dict:
     folder = tmp_path_factory.mktemp("operated")
     with Place(folder, "--speed", SLOW, limits=WITHOUT_GRAPHICS) as place:
         url, code = place.simulator.url, place.simulator.code
-        # No picture is looked at: the panels are drawn, and an empty scene.
+        # No picture is needed: the panels are drawn, and an empty scene.
         page = open_page(browser, url, code, "metaQuest2", draws=False)
         enter_headset(page)
         surgeon = HeadsetSurgeon(place.view, TurningControllers(page))

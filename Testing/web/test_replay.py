@@ -1,4 +1,4 @@
-"""A trial shown again on the page, steered by its keyboard."""
+"""A trial replayed on the page, controlled by its keyboard."""
 
 from __future__ import annotations
 

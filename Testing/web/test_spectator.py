@@ -1,4 +1,4 @@
-"""Somebody who only watches in a browser, through the eyes of who wears a headset, if anybody."""
+"""A spectator in a browser, who sees through the eyes of the headset's wearer, if any."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def opened(browser, served):
 
 @pytest.fixture
 def page(opened, served):
-    """The page of a spectator, at a menu, of whom the simulator has not heard."""
+    """The page of a spectator, at a menu, of whom the simulator does not know yet."""
     served.presenter.calls.clear()
     served.presenter.screen = SCREEN
     served.tell(SCREEN)
@@ -141,7 +141,7 @@ def test_a_spectator_looks_through_the_eyes_of_the_headset_wearer(served, page):
         headset.join(kind="headset")
         headset.send(worn)
         wait_for(page, "page.worn.hands[1].visible")
-        # The camera flies there: place and axes are not right at the same time.
+        # The camera flies there: position and axes do not arrive at the same time.
         wait_for(page, _looks(*y_up(*EYES[:3]), *y_up(*UP), *y_up(0.0, 0.0, 1.0)))
         left, right = page.evaluate("page.worn.hands.map((hand) => hand.visible)")
         assert (left, right) == (False, True)

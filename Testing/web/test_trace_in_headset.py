@@ -32,12 +32,12 @@ class HeadsetDrawer(DrawingTrainee, Trainee):
 
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory, browser) -> dict:
-    """Touch the landmarks, draw, and register; return what came of it."""
+    """Touch the landmarks, draw, and register; return the results."""
     folder = tmp_path_factory.mktemp("drawn")
     scenario = write_landmarked(folder / "scenario")
     options = ("--scenario", str(scenario), "--speed", SLOW)
     with Place(folder, *options, limits=WITHOUT_GRAPHICS, guidance="arrow") as place:
-        # No picture is looked at: the panels are drawn, and an empty scene.
+        # No picture is needed: the panels are drawn, and an empty scene.
         url, code = place.simulator.url, place.simulator.code
         page = open_page(browser, url, code, "metaQuest2", draws=False)
         enter_headset(page)

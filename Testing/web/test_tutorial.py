@@ -24,7 +24,7 @@ REQUIRED = {"order": "fixed", "tutorial": "required"}
 
 
 class WebLearner(ViewLearner):
-    """Somebody at the page."""
+    """A trainee at the page."""
 
     def __init__(self, trainee, page):
         super().__init__(trainee)
@@ -43,7 +43,7 @@ class PhoneLearner(WebLearner):
 
 
 class HeadsetLearner(WebLearner):
-    """Looks to the side, and pushes the stick."""
+    """Looks aside, and pushes the stick."""
 
     def turn_view(self):
         half = math.radians(30.0) / 2.0
@@ -70,7 +70,7 @@ class ThumbTrainee(TappingTrainee):
 
 @dataclass(frozen=True)
 class Way:
-    """Who plays, on what."""
+    """The trainees, by device."""
 
     name: str
     device: SourceKind

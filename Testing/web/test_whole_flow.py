@@ -1,4 +1,4 @@
-"""From the start menu over fifteen steered touches to the result, by everything one can hold.
+"""From the start menu through fifteen steered touches to the result, with every input device.
 
 Nothing here is done but by the hands, and Slicer's side registers and scores what they touched.
 """
@@ -21,7 +21,7 @@ XR = "headset's controllers"
 
 @dataclass(frozen=True)
 class Way:
-    """How one trains: what is held, and what is looked at."""
+    """How a trainee trains: with which input, on which display."""
 
     name: str
     hands: type
@@ -34,7 +34,7 @@ class Way:
 
 SLOW = "0.3"
 """Simulated seconds in a second, for hands that a page reads once a picture: where the processor
-draws, a picture of a headset takes a quarter of a second, and a stick that is let go so late
+draws, a picture of a headset takes a quarter of a second, and a stick that is released so late
 overshoots."""
 WAYS = (
     Way("the keyboard on the page", PageKeys, "keyboard"),

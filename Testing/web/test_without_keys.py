@@ -91,7 +91,7 @@ def place(tmp_path_factory):
 
 @contextmanager
 def page_of(place, browser, *headset, **options):
-    """A page of that place, which leaves the arm to the next one even where a test has failed."""
+    """A page of that place, which leaves the arm to the next one even if a test has failed."""
     simulator = place.simulator
     page = open_page(browser, simulator.url, simulator.code, *headset, draws=False, **options)
     with page.context:
@@ -101,7 +101,7 @@ def page_of(place, browser, *headset, **options):
 
 @pytest.fixture
 def thumbs(place, browser):
-    """Somebody whose trial runs, begun by tapping, and the page."""
+    """A trainee whose trial is running, begun by tapping, and the page."""
     with page_of(place, browser, size=PHONE, has_touch=True) as page:
         trainee = TappingTrainee(place, page)
         trainee.begin_by_taps("task-1")
@@ -122,7 +122,7 @@ def mouse(place, browser):
 
 @contextmanager
 def hand_in_task_1(place, browser):
-    """Somebody in Task 1, begun by a tracked hand."""
+    """A trainee in Task 1, begun by a tracked hand."""
     with page_of(place, browser, "metaQuest3") as page:
         enter_headset(page)
         trainee = HandTrainee(place.view, page)
@@ -180,7 +180,7 @@ def test_a_mouse_enters_an_id_drives_the_arm_and_opens_the_menu(mouse):
     page.wait_for_selector("#touch-controls .stick")
     assert page.query_selector("#touch-controls button:visible") is None
     start = trainee.tip.copy()
-    # Gently: a busy machine lets go late, and the arm must not be far away then.
+    # Gently: a busy machine releases late, and the arm must not be far away then.
     trainee.hands.push(0.0, 0.0, 0.5)
     trainee.until(lambda: trainee.tip[2] > start[2] + 0.01, "a move up")
     trainee.hands.push(-0.5, 0.0, 0.0)
