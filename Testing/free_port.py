@@ -7,7 +7,7 @@ import os
 import random
 import socket
 
-# Below the ports that systems hand out to whoever asks for any (Linux from 32768): a port that is
+# Below the ports that systems assign to those who ask for any (Linux from 32768): a port that is
 # free stays free, though other tests open connections all the time.
 _FIRST, _OF_A_WORKER = 20_000, 1_000
 _WORKER = int(os.environ.get("PYTEST_XDIST_WORKER", "gw9").removeprefix("gw"))

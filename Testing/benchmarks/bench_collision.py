@@ -69,10 +69,10 @@ def _tour(bench: Bench, collision: Collision) -> Iterator[np.ndarray]:
     """Yield joint angles tick by tick: from fiducial to fiducial, 50 mm above the skin between."""
     planner, q = TouchPlanner(bench.robot, collision), None
     for fiducial in np.concatenate([task.fiducials for task in bench.scenario.tasks]):
-        place = transforms.apply(bench.to_world, fiducial / MM_PER_M)
-        normal = np.array(collision.nearest_to_point(tuple(place)).normal)
-        touch = planner.touch(place, normal)
-        over = bench.fabrik.solve(place + 0.05 * normal, touch.direction, q_start=touch.q)
+        position = transforms.apply(bench.to_world, fiducial / MM_PER_M)
+        normal = np.array(collision.nearest_to_point(tuple(position)).normal)
+        touch = planner.touch(position, normal)
+        over = bench.fabrik.solve(position + 0.05 * normal, touch.direction, q_start=touch.q)
         q = np.array(over.q) if q is None else q
         for goal in (over.q, touch.q, over.q):
             length = np.linalg.norm(

@@ -41,7 +41,7 @@ def test_opening_the_module_finds_a_leftover_simulator_which_can_be_joined_and_e
     story.wait_until_connected()
     host.press("endRunningButton")
     host.wait_until(lambda: not host.find("runningSimulatorFrame").visible, "it has ended")
-    host.wait_until(left.poll, "its process, too")
+    host.wait_until(left.poll, "its process ends, too")
     assert host.text("stateText") == "Not connected."
     story.start_simulator()
     assert not host.find("runningSimulatorFrame").visible

@@ -41,5 +41,5 @@ def test_the_test_of_a_connection_names_both_ports(host, link, simulator):  # no
     ):
         host.type("portSpinBox", str(port))
         host.press("probeButton")
-        host.wait_until(lambda w=words: w in host.text("stateText"), f"it says: {words}")
+        host.wait_until(lambda w=words: w in host.text("stateText"), f"the status says: {words}")
     assert link.status.state is LinkState.OFF

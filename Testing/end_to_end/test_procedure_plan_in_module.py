@@ -47,7 +47,9 @@ def test_a_procedure_is_edited_checked_and_saved_in_a_copy_of_its_scenario(host,
     right = planLines(host.scene)[1]
     good = worldPoints(right).copy()
     setPoints(right, ("Entry", "Target"), good + np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 130.0]]))
-    host.wait_until(lambda: "check it again" in host.text("procedurePlanText"), "it is said")
+    host.wait_until(
+        lambda: "check it again" in host.text("procedurePlanText"), "the message is shown"
+    )
     assert cells(host)[0][2] == "–"
     host.type("procedureScenarioLineEdit", "My DBS")
     host.press("saveProcedureButton")

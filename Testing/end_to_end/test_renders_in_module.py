@@ -1,4 +1,4 @@
-"""Connected to a real simulator, Slicer renders only while somebody sees the robot move."""
+"""Connected to a real simulator, Slicer renders only while a user sees the robot move."""
 
 import time
 
@@ -102,7 +102,7 @@ def wait_for_renders(host, arm, count=10):  # noqa: F811
         arm.keep_moving()
         return host.renders >= before + count
 
-    host.wait_until(is_seen, "the robot is seen to move")
+    host.wait_until(is_seen, "the robot visibly moves")
 
 
 def set_layout(name):

@@ -34,7 +34,7 @@ def press_next(host, title, until):
     """Press the button at the top, which says `title`, and wait until it says something else."""
     assert host.text("nextStepButton") == title
     host.press("nextStepButton")
-    host.wait_until(lambda: host.text("nextStepButton") == until, f"it says {until}")
+    host.wait_until(lambda: host.text("nextStepButton") == until, f"the button says {until}")
 
 
 def height(host, folder):
@@ -47,7 +47,7 @@ def play(player, host):
     player.touch(1, 15)
     host.wait_until(lambda: host.text("nextStepButton") == "Waiting…", "all points are touched")
     assert open_sections(host) == ["registration"]
-    host.wait_until(lambda: player.is_done, "the trainee has let go")
+    host.wait_until(lambda: player.is_done, "the trainee has released the buttons")
     player.register()
     host.wait_until(lambda: host.text("nextStepButton") == "Show result", "the trial is scored")
 

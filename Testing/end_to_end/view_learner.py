@@ -1,4 +1,4 @@
-"""Somebody at a view of the simulator, at the tutorial."""
+"""A learner at a view of the simulator, in the tutorial."""
 
 from __future__ import annotations
 

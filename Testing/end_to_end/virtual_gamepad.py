@@ -28,7 +28,7 @@ class SimulatorWithGamepad(SimulatorProcess):
     """`rastrainer simulator` with a gamepad.
 
     Every move has been sent when the call returns, and they are made in order. `tap` holds
-    its button until the simulator has looked at it, however busy the computer is.
+    its button until the simulator has read it, however busy the computer is.
     """
 
     command = (sys.executable, "-m", "Testing.end_to_end.virtual_gamepad")

@@ -59,7 +59,7 @@ class Chunk:
     """Some traces of one case on one head; the counts are of traces.
 
     Attributes:
-        refused: not matched at all, with a sentence.
+        refused: not matched, with a message.
         off: a target is off by more than 3.5 mm.
         off_named: of these, with any warning.
         near_slides: not off, and called sliding.

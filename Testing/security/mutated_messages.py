@@ -101,7 +101,7 @@ class MutatedMessages:
         self._valid = valid_messages()
         self._bodies = [json.dumps(arguments) for arguments in COMMANDS.values()]
         self._bodies += [body.decode("latin-1")[:60_000] for body in HOSTILE_JSON.values()]
-        self._ways: tuple[Callable[[bytearray], bytes], ...] = (
+        self._mutations: tuple[Callable[[bytearray], bytes], ...] = (
             bytes,
             self._with_bits_flipped,
             self._with_bytes_changed,
@@ -124,8 +124,8 @@ class MutatedMessages:
 
     def next(self) -> bytes:
         """Return the next message."""
-        way = self._random.choice(self._ways)
-        message = way(bytearray(self._random.choice(self._valid)))
+        mutate = self._random.choice(self._mutations)
+        message = mutate(bytearray(self._random.choice(self._valid)))
         self.mutated += message not in self._valid
         return message
 

@@ -100,18 +100,18 @@ class StreamAttack:
     def _bad(self) -> bytes:
         """Return one frame or several, most often with an error."""
         good = self._random.choice(self._good)
-        way = self._random.randrange(8)
-        if way < 3:
+        kind = self._random.randrange(8)
+        if kind < 3:
             return frame(TEXT, next(mutations(good, 1, self._random.random())))
-        if way == 3:
+        if kind == 3:
             content = self._random.choice(list(HOSTILE_JSON.values()))
             return frame(TEXT, content[: self._random.choice([100, 16_000, 10**6])])
-        if way == 4:
+        if kind == 4:
             return frame(self._random.randrange(16), good, self._random.random() < 0.7)
-        if way == 5:
+        if kind == 5:
             pieces = [frame(0 if number else TEXT, good, False) for number in range(300)]
             return b"".join(pieces)
-        if way == 6:
+        if kind == 6:
             return b"".join(frame(PING, good[:100]) for _ in range(50)) + frame(BINARY, good)
         damaged = bytearray(frame(TEXT, good, is_masked=self._random.random() < 0.8))
         for _ in range(3):

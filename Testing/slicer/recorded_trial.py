@@ -80,7 +80,7 @@ def scored_analysis(
 ) -> TrialAnalysis:
     """Return the analysis of a gentle trial whose head stood where the seed has it.
 
-    Whatever the record says of other motion is kept.
+    The record's other motion metrics are unchanged.
     """
     motion = dict.fromkeys(SAFETY_METRICS, 0.0) | dict(record.get("motion", {}))
     pose = scenario.perturbed_head_to_world(seed)

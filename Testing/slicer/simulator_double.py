@@ -178,7 +178,7 @@ def connect_module(host, simulator):
     """Connect the module that is open in the host, and wait until it has received the heartbeat."""
     host.type("portSpinBox", str(simulator.port))
     host.press("connectButton")
-    host.wait_until(lambda: simulator.commands, "the module says hello")
+    host.wait_until(lambda: simulator.commands, "the module sends its greeting")
     simulator.send(DeviceName.SIM_SERVER, Status(Status.OK, subcode=PROTOCOL_VERSION))
     host.wait_until(lambda: host.text("stateText").startswith("Connected"), "the heartbeat")
 

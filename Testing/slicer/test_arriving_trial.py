@@ -69,8 +69,8 @@ def test_a_trial_is_stored_scored_and_assessed_while_the_window_stays_responsive
     host = connected
     host.keeps_lock = True
     simulator.send_command("TrialCompleted", record)
-    host.wait_until(lambda: host.find("historyTable").rowCount == 1, "the trial is kept")
-    host.wait_until(lambda: host.text("feedbackText").startswith("Score "), "it is judged")
+    host.wait_until(lambda: host.find("historyTable").rowCount == 1, "the trial is stored")
+    host.wait_until(lambda: host.text("feedbackText").startswith("Score "), "the feedback is shown")
     assert [name for name, _arguments in simulator.commands if name != "Hello"] == [
         "AcknowledgeTrial",
         "SubmitRegistration",
@@ -92,5 +92,7 @@ def test_a_trial_that_is_not_scored_still_gets_feedback(connected, simulator, re
     )
     simulator.send_command("TrialCompleted", record)
     feedback = lambda: connected.text("feedbackText")  # noqa: E731
-    connected.wait_until(lambda: feedback().startswith(("Point ", "No touch ")), "it is judged")
+    connected.wait_until(
+        lambda: feedback().startswith(("Point ", "No touch ")), "the feedback is shown"
+    )
     assert len(journals.pids()) == 1

@@ -41,7 +41,7 @@ def show_scenario(host):
 
 
 def wait_for_images(host):
-    host.wait_until(lambda: images(host) and images(host).GetImageData(), "the images are there")
+    host.wait_until(lambda: images(host) and images(host).GetImageData(), "the images are loaded")
 
 
 def test_the_mri_is_behind_head_and_fiducials_in_each_slice_view(host, tmp_path):
@@ -130,7 +130,7 @@ def test_a_scene_cleared_as_soon_as_the_mri_is_loaded_gets_it_again(host):
 
     session.images.shown.connect(clear_and_show_again)
     host.press("showScenarioButton")
-    host.wait_until(lambda: cleared, "the images are there")
+    host.wait_until(lambda: cleared, "the scene is cleared")
     wait_for_images(host)
 
 
@@ -175,7 +175,7 @@ class Trial:
             lambda: np.allclose(place(self._host.scene), wanted, atol=1e-2), "the slices are there"
         )
 
-    def wishes(self):
+    def requests(self):
         """Whether poses were requested, in each of the greetings."""
         hellos = [sent for name, sent in self._simulator.commands if name == "Hello"]
         return [hello["toolTipHz"] > 0 for hello in hellos]
@@ -197,15 +197,15 @@ def test_the_slices_move_to_each_next_point_of_a_trial_unless_unchecked(host, tr
 
 
 def test_following_the_tool_with_the_slices_makes_the_module_request_poses(host, trial, simulator):
-    assert not any(trial.wishes())
+    assert not any(trial.requests())
     host.unfold("slicesToolCheckBox")
     host.check("slicesToolCheckBox")
-    host.wait_until(lambda: trial.wishes()[-1], "poses are wished")
+    host.wait_until(lambda: trial.requests()[-1], "poses are requested")
     for place_ras in ((10.0, 70.0, 60.0), (-30.0, 20.0, 80.0)):
         world = transforms.apply(COLIN27.head_to_world, place_ras)
         pose = transforms.rigid(np.eye(3), world)
         simulator.send(DeviceName.TOOL_TIP_TO_WORLD, transform_of(pose))
         trial.wait_for_slices_at(place_ras)
     host.check("slicesToolCheckBox", False)
-    host.wait_until(lambda: not trial.wishes()[-1], "poses are wished no more")
+    host.wait_until(lambda: not trial.requests()[-1], "poses are no longer requested")
     trial.wait_for_slices_at(COLIN27.task("task-1").fiducials[0])

@@ -61,7 +61,9 @@ def choose_trial(panel):
 
 
 def wait_for_feedback(panel):
-    panel.wait_until(lambda: panel.text("feedbackText").startswith("Score "), "it is judged")
+    panel.wait_until(
+        lambda: panel.text("feedbackText").startswith("Score "), "the feedback is shown"
+    )
 
 
 def endless_journal(folder):

@@ -48,7 +48,7 @@ def test_an_empty_host_is_reported_and_host_and_port_outlive_the_scene(host):
 @pytest.mark.usefixtures("connected")
 def test_the_connection_outlives_a_cleared_scene(host, simulator):
     host.clear_scene()
-    host.wait_until(lambda: len(simulator.commands) > 1, "the module says hello again")
+    host.wait_until(lambda: len(simulator.commands) > 1, "the module sends its greeting again")
 
 
 @pytest.mark.usefixtures("connected")

@@ -32,7 +32,9 @@ class Instructor:
         self.simulator.send(DeviceName.SIM_STATE, String(json.dumps(values)))
 
     def wait_for(self, title):
-        self.wait_until(lambda: self.host.text("nextStepButton") == title, f"it says {title}")
+        self.wait_until(
+            lambda: self.host.text("nextStepButton") == title, f"the button says {title}"
+        )
 
     def wait_until(self, condition, what):
         def beats():
@@ -139,7 +141,7 @@ def test_the_same_button_connects_to_a_simulator_on_another_computer(host):
     host.type("hostLineEdit", "localhost.localdomain")
     host.wait_until(lambda: host.text("nextStepButton") == "Connect", "the button follows")
     host.press("nextStepButton")
-    host.wait_until(lambda: host.text("linkText") != "Not connected", "it is looked for")
+    host.wait_until(lambda: host.text("linkText") != "Not connected", "the module searches for it")
 
 
 def test_the_button_can_be_reached_by_keyboard(host):

@@ -471,7 +471,9 @@ def test_a_trial_gets_feedback_and_is_replayed(panels, add_trial):
     add_trial(1, "T-001")
     panels.press("createTraineeButton")
     panels.choose("traineeComboBox", "T-001")
-    panels.wait_until(lambda: panels.text("feedbackText").startswith("Score "), "it is judged")
+    panels.wait_until(
+        lambda: panels.text("feedbackText").startswith("Score "), "the feedback is shown"
+    )
     assert "This is your first trial of this task" in panels.text("feedbackText")
     panels.press("replayButton")
     assert "only on the computer whose simulator recorded it" in panels.messages[-1].text
@@ -489,7 +491,9 @@ def test_a_canceled_replay_or_one_whose_scene_is_closed_leaves_nothing_behind(pa
     write_recorded_trial(Path.home() / "RASTrainer" / "trials", str(uuid.UUID(int=1)), 16.0)
     panels.press("createTraineeButton")
     panels.choose("traineeComboBox", "T-001")
-    panels.wait_until(lambda: panels.text("feedbackText").startswith("Score "), "it is judged")
+    panels.wait_until(
+        lambda: panels.text("feedbackText").startswith("Score "), "the feedback is shown"
+    )
     for meddle in (lambda: panels.press("replayButton"), panels.clear_scene):
         done = []
 

@@ -53,7 +53,7 @@ def tell(host, simulator, phase, **procedure):
     logic = host.widget.logic.session.procedure
     before = logic.status
     simulator.send(DeviceName.SIM_STATE, String(json.dumps(state)))
-    host.wait_until(lambda: logic.status != before, "the state has come")
+    host.wait_until(lambda: logic.status != before, "the state has arrived")
     assert logic.status.phase == phase
 
 
@@ -131,7 +131,9 @@ def test_touches_that_cannot_be_registered_can_only_be_repeated(surgery):
     host, simulator = surgery
     simulator.responder = lambda name, _arguments: f"{name} is refused."
     tell(host, simulator, "verifying", registrationInUse=False)
-    host.wait_until(lambda: host.find("registerAgainButton").enabled, "they can be touched again")
+    host.wait_until(
+        lambda: host.find("registerAgainButton").enabled, "the points can be touched again"
+    )
     assert not host.find("acceptButton").enabled
     assert "could not be registered: have all points" in host.text("procedureInstructionText")
     assert "were not registered: " in host.text("procedureMessageText")

@@ -72,7 +72,9 @@ def test_a_replay_registers_all_its_touches_and_to_its_own_tasks_fiducials(host,
     # They are not paired with another task's fiducials.
     host.choose("taskComboBox", "Task 1")
     host.press("showScenarioButton")
-    host.wait_until(lambda: "show the task" in host.text("registrationText"), "it is said")
+    host.wait_until(
+        lambda: "show the task" in host.text("registrationText"), "the message is shown"
+    )
     assert host.find("fitsTable").item(0, 1) is None
     host.choose("taskComboBox", "Task 2")
     host.press("showScenarioButton")
@@ -86,7 +88,7 @@ def test_a_trial_in_progress_is_not_disturbed_and_begins_without_the_replays_tou
     with SimulatorDouble(lambda name, _arguments: answers.get(name, {})) as simulator:
         host.type("portSpinBox", str(simulator.port))
         host.press("connectButton")
-        host.wait_until(lambda: simulator.commands, "the module says hello")
+        host.wait_until(lambda: simulator.commands, "the module sends its greeting")
         state = {"trialId": str(uuid.UUID(int=9)), "phase": "running", "task": "task-2"}
         simulator.send(DeviceName.SIM_STATE, String(json.dumps({**state, "trainee": "T001"})))
         captured = capturedPointsNode(host.scene)

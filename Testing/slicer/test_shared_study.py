@@ -63,4 +63,4 @@ def test_the_list_shows_a_trainee_added_by_another_slicer(host):
     assert combo.currentText == "T001"
     with Study.open(path) as other:
         other.delete_trainee("T001")
-    host.wait_until(lambda: combo.currentText == "Choose a trainee", "who is deleted is gone")
+    host.wait_until(lambda: combo.currentText == "Choose a trainee", "the deleted trainee is gone")

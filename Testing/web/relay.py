@@ -57,8 +57,8 @@ class Relay:
     async def _relay(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         far_reader, far_writer = await asyncio.open_connection(HOST, self._target)
         self._writers += [writer, far_writer]
-        ways = (self._pass(reader, far_writer), self._pass(far_reader, writer))
-        await asyncio.gather(*ways)
+        directions = (self._pass(reader, far_writer), self._pass(far_reader, writer))
+        await asyncio.gather(*directions)
 
     async def _pass(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         with contextlib.suppress(ConnectionError):

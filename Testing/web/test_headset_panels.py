@@ -230,8 +230,8 @@ def test_an_arrow_points_to_a_next_point_that_is_out_of_sight(work):
     arrow = work.evaluate(ARROW, behind)
     assert arrow["isSeen"]
     assert arrow["isInRoom"], "it is not drawn in the close-up"
-    way = np.subtract(behind, arrow["at"])
-    assert arrow["way"] == pytest.approx(list(way / np.linalg.norm(way)), abs=1e-5)
+    outward = np.subtract(behind, arrow["at"])
+    assert arrow["way"] == pytest.approx(list(outward / np.linalg.norm(outward)), abs=1e-5)
     assert not work.evaluate(ARROW, None)["isSeen"]
 
 

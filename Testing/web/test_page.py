@@ -101,7 +101,7 @@ def test_the_menu_of_heads_shows_the_picture_of_the_focused_one(place, page):
     trainee = place.trainee(PageKeys(page))
     trainee.go_to_experiment()
     trainee.choose("scenario")
-    trainee.until(lambda: len(trainee.menu.items) > 1, "the heads at hand")
+    trainee.until(lambda: len(trainee.menu.items) > 1, "the available heads")
     trainee.focus("head colin27")
     picture = page.wait_for_selector("#menu img[src$='/scenarios/colin27.png']")
     assert picture.evaluate("image => image.decode().then(() => image.naturalWidth)") == 640

@@ -148,7 +148,8 @@ def test_no_page_of_the_simulator_breaks_an_accessibility_rule_or_overlaps_at_an
 def at_work(language: str) -> Screen:
     """Return a trial with two warnings."""
     texts = Texts(LANGUAGES[language])
-    say, ways = texts.say, texts.listed(texts.say(f"way.{way}") for way in ("right", "back"))
+    say = texts.say
+    directions = texts.listed(say(f"way.{name}") for name in ("right", "back"))
     point = say("status.point", point="13")
     return Screen(
         language=language,
@@ -156,7 +157,7 @@ def at_work(language: str) -> Screen:
             say("task.task-4"),
             say("status.points", kept=12, count=15),
             "2:31",
-            say("status.toward", name=point, distance=120, direction=ways),
+            say("status.toward", name=point, distance=120, direction=directions),
         ),
         instruction=ScreenMessage(say("touched", trainee="P07", label="12", point="13"), Tone.GOOD),
         warnings=(

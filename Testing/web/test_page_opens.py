@@ -70,9 +70,9 @@ def paired(place, browser):
     return open_page(browser, place.simulator.url, place.simulator.code, draws=False)
 
 
-@pytest.mark.parametrize("way", ["loopback", "network"])
-def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, way):
-    url = place.simulator.url if way == "loopback" else place.network
+@pytest.mark.parametrize("origin", ["loopback", "network"])
+def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, origin):
+    url = place.simulator.url if origin == "loopback" else place.network
     stranger.goto(url)
     stranger.wait_for_selector("#pairing:not([hidden])")
     assert stranger.evaluate(TRY_TO_JOIN, url.replace("http", "ws", 1)) == "refused"
@@ -87,10 +87,10 @@ def test_an_unpaired_visitor_sees_the_form_and_nothing_else(place, stranger, way
     stranger.wait_for_selector("body[data-scene]")
     assert stranger.evaluate("window.isSecureContext")
     # Only the views of this computer learn how others are paired.
-    if way == "loopback":
+    if origin == "loopback":
         stranger.wait_for_selector(f"#status:has-text('{place.simulator.code}')")
     text = stranger.inner_text("#status")
-    assert (place.simulator.code in text, place.network in text) == (way == "loopback",) * 2
+    assert (place.simulator.code in text, place.network in text) == (origin == "loopback",) * 2
 
 
 @pytest.fixture(scope="module")

@@ -74,7 +74,7 @@ def error_at_center(matrix: np.ndarray, head_to_world: np.ndarray, mesh: HeadMes
 def random_walk(
     mesh: HeadMesh, allowed: np.ndarray, random: np.random.Generator, count: int
 ) -> np.ndarray:
-    """Vertices along a path over the skin that turns at will, like somebody who draws at random."""
+    """Vertices along a path over the skin that turns at will, like a random drawing."""
     neighbors: dict[int, list[int]] = {}
     for a, b in mesh.edges[allowed[mesh.edges].all(axis=1)].tolist():
         neighbors.setdefault(a, []).append(b)

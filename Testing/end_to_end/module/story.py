@@ -110,7 +110,7 @@ class Story:
         host = self.host
         host.wait_until(lambda: "paused" in host.text("phaseText"), "the trial waits")
         host.press("pauseButton")
-        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial goes on")
+        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial continues")
         self.player = Player(self.port, self.records)
 
     def touch_some(self) -> None:
@@ -121,7 +121,7 @@ class Story:
         host.press("pauseButton")
         host.wait_until(lambda: "paused" in host.text("phaseText"), "the trial is paused")
         host.press("pauseButton")
-        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial goes on")
+        host.wait_until(lambda: "running" in host.text("phaseText"), "the trial continues")
 
     def touch_the_others(self) -> None:
         self._touch(7, 15)
@@ -139,9 +139,9 @@ class Story:
         host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "15 residuals")
         host.choose("residualsTable", 3)
         host.press("excludeButton")
-        host.wait_until(lambda: host.find("residualsTable").rowCount == 14, "one is left out")
+        host.wait_until(lambda: host.find("residualsTable").rowCount == 14, "one point is left out")
         host.press("undoButton")
-        host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "it is back")
+        host.wait_until(lambda: host.find("residualsTable").rowCount == 15, "all points are back")
         host.choose("kindComboBox", "Affine")
         host.choose("kindComboBox", "Rigid")
         host.check("headColoredCheckBox")
@@ -161,7 +161,7 @@ class Story:
         host.press("showTablesButton")
         host.press("learningCurveButton")
         assert host.scene.GetFirstNodeByClass("vtkMRMLPlotChartNode") is not None
-        host.wait_until(lambda: "LC-CUSUM" in host.text("feedbackText"), "it is judged")
+        host.wait_until(lambda: "LC-CUSUM" in host.text("feedbackText"), "the feedback is shown")
         host.press("replayButton")
         replay = host.scene.GetFirstNodeByName(f"Replay of {TRAINEE}, task-1")
         assert replay.GetNumberOfItems() > 100
@@ -247,7 +247,9 @@ class Story:
         host = self.host
         os.kill(int(self._pid_file.read_text()), signal.SIGKILL)
         host.wait_until(lambda: "ended by itself" in host.text("programText"), "its end is shown")
-        host.wait_until(lambda: not host.text("stateText").startswith("Connected"), "the link, too")
+        host.wait_until(
+            lambda: not host.text("stateText").startswith("Connected"), "the link is closed, too"
+        )
 
     def _touch(self, first: int, last: int) -> None:
         host = self.host

@@ -73,12 +73,12 @@ class Tutorial:
         self._next("Start Task 1")
         # The trial run has feedback, too, but no slip.
         slip = f"Point {SLIP_AT} was"
-        self._wait_until(lambda: slip in host.text("feedbackText"), "the feedback is there")
+        self._wait_until(lambda: slip in host.text("feedbackText"), "the feedback is shown")
         self._take("07-score")
         self._plan()
         self._take("08-plan")
         self._only("score")
-        self._wait_until(lambda: host.find("worstTouchButton").enabled, "the trial is judged")
+        self._wait_until(lambda: host.find("worstTouchButton").enabled, "the trial is assessed")
         host.press("worstTouchButton")
         self._wait_until(lambda: "clearance" in host.text("replayText"), "the replay is shown")
         self._take("09-worst-touch")
@@ -183,7 +183,7 @@ class Tutorial:
 
     def _wait_for(self, title: str) -> None:
         host = self._host
-        self._wait_until(lambda: host.text("nextStepButton") == title, f"it says {title}")
+        self._wait_until(lambda: host.text("nextStepButton") == title, f"the button says {title}")
 
     def _wait_until(self, condition: Callable[[], Any], what: str) -> None:
         self._host.wait_until(condition, what, PATIENCE_S)

@@ -174,10 +174,10 @@ def test_the_tip_moves_right_when_the_stick_is_pushed_right(trial, scenario):
     start = trial.tip
     for _ in range(100):
         trial.step(OperatorInput(translation=(1.0, 0.0, 0.0), operator="gamepad"))
-    way = trial.tip - start
+    moved = trial.tip - start
     right = axes_of_the_camera(scenario).right
-    assert way @ right == pytest.approx(np.linalg.norm(way), rel=1e-6)
-    assert np.linalg.norm(way) > 0.03
+    assert moved @ right == pytest.approx(np.linalg.norm(moved), rel=1e-6)
+    assert np.linalg.norm(moved) > 0.03
     assert trial.state.operator == "gamepad"
     assert trial.state.motion is Motion.STICK
 
@@ -247,9 +247,9 @@ def test_a_jog_moves_along_the_axes_of_its_frame(trial, scenario, frame):
     start = trial.tip
     trial.do(CommandName.JOG, velocityMmS=[0.0, -40.0, 0.0], frame=frame, durationS=0.5)
     trial.until(HANDS_OFF, lambda state: state.motion is Motion.NONE)
-    way = trial.tip - start
-    assert way / np.linalg.norm(way) == pytest.approx(-axes[1], abs=1e-3)
-    assert np.linalg.norm(way) == pytest.approx(0.04 * 0.5, rel=0.05)
+    moved = trial.tip - start
+    assert moved / np.linalg.norm(moved) == pytest.approx(-axes[1], abs=1e-3)
+    assert np.linalg.norm(moved) == pytest.approx(0.04 * 0.5, rel=0.05)
 
 
 def test_while_the_trial_is_paused_the_arm_does_not_move_and_motions_are_refused(trial):

@@ -1,4 +1,4 @@
-"""At the lowest quality what stands still is kept, and the picture looks as if all was drawn."""
+"""At the lowest quality what stands still is reused, and the picture looks as if all was drawn."""
 
 import itertools
 from dataclasses import replace

@@ -103,7 +103,7 @@ def test_the_ghost_follows_the_recorded_path_on_the_head_of_the_current_trial(pl
     recorded = RecordedTrial(read_track(place.best), anywhere)
     place.prefer(ghost="own best")
     place.start_and_load()
-    ways = set()
+    positions = set()
     for elapsed in np.linspace(0.0, recorded.worst[2], 9):
         now, before = replace(place.state, elapsed=elapsed), recorded.state_at(elapsed)
         assert not np.allclose(before.head_to_world, now.head_to_world, atol=1e-4)
@@ -113,9 +113,9 @@ def test_the_ghost_follows_the_recorded_path_on_the_head_of_the_current_trial(pl
             on_the_head(before.head_to_world, before.tool_tip_to_world),
             atol=1e-9,
         )
-        ways.add(tuple(shown[:3, 3]))
+        positions.add(tuple(shown[:3, 3]))
     # The arm rests while the disk keeps a touch, as long as that may take.
-    assert len(ways) > 1
+    assert len(positions) > 1
     assert place.submit("Pause").ok
     place.until_menu("trial")
     stopped = place.ghost[TOOL]

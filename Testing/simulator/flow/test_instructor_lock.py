@@ -90,7 +90,7 @@ def test_after_the_pin_is_typed_the_order_can_be_chosen_and_locked_again(trainee
     trainee.tap("right")
     assert trainee.presenter._session.preferences.order == "any"
     trainee.choose("lock")
-    trainee.until(lambda: "order" not in enabled(trainee), "the lock")
+    trainee.until(lambda: "order" not in enabled(trainee), "the items are locked")
 
 
 def test_the_pin_is_entered_by_a_gamepad(pilot):
@@ -136,7 +136,7 @@ def test_a_wrong_pin_unlocks_nothing_and_after_five_no_pin_is_checked(trainee, o
         trainee.hands.type("" if number == 0 else OTHER)
         trainee.tap("accept")
         until_message(trainee, "wait 1 s" if number == 4 else "not the PIN of this seat")
-        trainee.until(lambda: trainee.item("unlock").value == "_", "the digits gone")
+        trainee.until(lambda: trainee.item("unlock").value == "_", "the digits are cleared")
         trainee.step(round(6.0 / STEP_S))
     trainee.hands.type(PIN)
     trainee.tap("accept")

@@ -27,7 +27,7 @@ def test_a_board_reads_who_is_training_what_and_how_far_the_trial_is(trainee, pr
     assert seat.instruction == presenter.screen.instruction.text
     # A notice is none of the warnings.
     assert presenter.instruct(InstructorOrder.SAY, "Well done.") == ""
-    trainee.until(lambda: said(trainee), "the sentence")
+    trainee.until(lambda: said(trainee), "the message")
     assert presenter.seat().warnings == ()
     outside.has_slicer = False
     trainee.until(lambda: presenter.seat().warnings, "the warning of the lost Slicer")
@@ -35,7 +35,7 @@ def test_a_board_reads_who_is_training_what_and_how_far_the_trial_is(trainee, pr
 
 def test_a_teachers_message_is_shown_and_disappears_after_its_time(trainee, presenter):
     assert presenter.instruct(InstructorOrder.SAY, "Look from the side <b>.") == ""
-    trainee.until(lambda: said(trainee), "the sentence")
+    trainee.until(lambda: said(trainee), "the message")
     (warning,) = presenter.screen.warnings
     assert warning.text == "Your instructor: Look from the side <b>."
     assert warning.tone is Tone.PLAIN

@@ -88,7 +88,7 @@ def test_after_a_stroke_elsewhere_the_next_place_changes(trainee):
     trainee.until(lambda: guidance(trainee).next_place is not None, "the next place")
     first = guidance(trainee).next_place
     draw_stroke(trainee)
-    trainee.until(lambda: guidance(trainee).next_place != first, "another place")
+    trainee.until(lambda: guidance(trainee).next_place != first, "a different next place")
 
 
 def test_the_best_view_is_that_of_the_next_place_to_draw(trainee):

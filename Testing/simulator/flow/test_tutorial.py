@@ -136,7 +136,7 @@ def test_a_step_counts_only_the_movement_it_asks_for(learner):
     learner.step(10)
     assert status(learner)[1:] == ("Step 1 of 14", "0 of 30 mm")
     learner.hands.push(1.0, 0.0, 0.0, True)
-    learner.until(lambda: status(learner)[2:] == ("15 of 30 mm",), "half of it")
+    learner.until(lambda: status(learner)[2:] == ("15 of 30 mm",), "half of the distance")
     learner.until(lambda: instruction(learner) == "Well done.", "the praise")
     assert learner.watcher.kinds[-1] == "step"
     learner.hands.push(0.0, 0.0, 0.0, False)
@@ -155,7 +155,7 @@ def test_controls_not_yet_taught_do_nothing(learner):
 def test_a_touch_that_does_not_count_says_why(learner):
     go_to_step(learner, TutorialStep.LOWER)
     learner.tap("touch")
-    learner.until(lambda: "Too far from point 1" in instruction(learner), "the sentence")
+    learner.until(lambda: "Too far from point 1" in instruction(learner), "the message")
     assert learner.watcher.kinds[-1] == "error"
     assert status(learner)[1] == "Step 10 of 14"
     assert "Point 1: " in status(learner)[-1]

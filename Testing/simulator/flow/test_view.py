@@ -91,8 +91,8 @@ def test_the_sticks_of_a_headset_follow_the_eyes(by_hand):
         presenter.on_sticks(5, (0.0, 0.8, 0.0), (0.0, 0.0), False, yaw_deg)
         before = np.array(by_hand.tip)
         by_hand.step(25)
-        way = by_hand.tip - before
-        assert way @ ahead > 0.9 * np.linalg.norm(way) > 0.0
+        moved = by_hand.tip - before
+        assert moved @ ahead > 0.9 * np.linalg.norm(moved) > 0.0
 
 
 def test_the_view_moves_to_each_next_point_by_itself_and_waits_for_the_sticks(trainee):
@@ -102,7 +102,7 @@ def test_the_view_moves_to_each_next_point_by_itself_and_waits_for_the_sticks(tr
     trainee.step(25)
     assert orbit(trainee) == FRONT
     trainee.hands.push(0.0, 0.0, 0.0, False)
-    trainee.until(lambda: orbit(trainee) != FRONT, "the way to the best view")
+    trainee.until(lambda: orbit(trainee) != FRONT, "the move to the best view")
     trainee.step(200)
     pictures = trainee.presenter.pictures(trainee.state)
     assert pictures.main.focal_point == pytest.approx(pictures.inset.focal_point)

@@ -136,12 +136,14 @@ class OneHand(Pad):
 
     def push(self, right, forward, up, fine):
         is_upright = abs(up) > max(abs(right), abs(forward))
-        way = (ControlName.MOVE_UP if up > 0.0 else ControlName.MOVE_DOWN) if is_upright else None
-        if self._pressed not in (None, way):
+        control = (
+            (ControlName.MOVE_UP if up > 0.0 else ControlName.MOVE_DOWN) if is_upright else None
+        )
+        if self._pressed not in (None, control):
             self._press(self._pressed, False)
-        if way is not None:
-            self._press(way, True)
-        self._pressed = way
+        if control is not None:
+            self._press(control, True)
+        self._pressed = control
         level = (0.0, 0.0) if is_upright else (right, -forward)
         axes = dict(zip((f"{self._side}x", f"{self._side}y"), level, strict=True))
         axes[f"{self._side}trigger"] = float(fine)
@@ -181,7 +183,7 @@ def test_one_hand_works_the_menus_and_touches_all_points(pilot, tmp_path, preset
     while pilot.menu.name != "start":
         before = pilot.menu.name
         pilot.tap("back")
-        pilot.until(lambda b=before: pilot.menu.name != b, "the menu before")
+        pilot.until(lambda b=before: pilot.menu.name != b, "the previous menu")
     pilot.start("task-1")
     pilot.play("task-1")
     pilot.tap("undo")

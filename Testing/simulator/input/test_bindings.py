@@ -171,7 +171,7 @@ LEFT_PAD |= {"+lefttrigger", *(f"{sign}left{axis}" for sign in "-+" for axis in 
 LEFT_KEYS = {f"Key{letter}" for letter in "QWERTASDFGZXCVB"} | {"Tab", "ShiftLeft", "Space"}
 LEFT_KEYS |= {"F1", "F2", "F3", "F4", "Escape", *(f"Digit{digit}" for digit in "12345")}
 RIGHT_KEYS = {f"Key{letter}" for letter in "YUIOPHJKLBNM"} | {"ShiftRight", "Space", "Enter"}
-RIGHT_KEYS |= {"Backspace", "Delete", *(f"Arrow{way}" for way in ("Up", "Down", "Left", "Right"))}
+RIGHT_KEYS |= {"Backspace", "Delete", *(f"Arrow{name}" for name in ("Up", "Down", "Left", "Right"))}
 REACH = {
     (InputDevice.GAMEPAD, RIGHT_ALONE): RIGHT_PAD,
     (InputDevice.GAMEPAD, LEFT_ALONE): LEFT_PAD,

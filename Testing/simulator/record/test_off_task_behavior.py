@@ -24,7 +24,7 @@ PAUSE, RESUME = (
 )
 IDLE = [HANDS_OFF] * round(WAIT_S / DT)
 ROUND_TRIP = [
-    OperatorInput(translation=(0.0, 0.0, way)) for way in (1.0, -1.0) * 8 for _ in range(150)
+    OperatorInput(translation=(0.0, 0.0, sign)) for sign in (1.0, -1.0) * 8 for _ in range(150)
 ]
 
 BESIDE = {"nothing": (), "idle": IDLE, "pause": (PAUSE, *IDLE, RESUME), "detours": ROUND_TRIP}

@@ -42,8 +42,8 @@ def submit(scenario, task, choose):
     random = np.random.default_rng(8)
     bad = np.repeat([0.0, BAD_MM], [10, 5])
     for size in bad:
-        way = random.normal(size=3)
-        off = size * way / np.linalg.norm(way) / MM_PER_M
+        direction = random.normal(size=3)
+        off = size * direction / np.linalg.norm(direction) / MM_PER_M
         place = np.array(trial.fiducial(trial.state.next_point)) + off
         reply = trial.do(CommandName.CAPTURE, tuple(place))
         assert reply.ok, reply.message

@@ -54,9 +54,9 @@ def test_a_stick_that_reports_nan_feeds_nothing(drive):
 
 def test_a_commanded_feed_lasts_for_its_duration_within_the_limit(drive):
     drive.start(50.0, 0.1)
-    ways = [drive.way(DT, DRILLING, HANDS_OFF).distance for _ in range(30)]
-    assert sum(ways) == pytest.approx(0.005 * 0.1)
-    assert ways[25:] == [0.0] * 5
+    distances = [drive.way(DT, DRILLING, HANDS_OFF).distance for _ in range(30)]
+    assert sum(distances) == pytest.approx(0.005 * 0.1)
+    assert distances[25:] == [0.0] * 5
     drive.start(-2.0, 0.01)
     assert sum(drive.way(DT, DRILLING, HANDS_OFF).distance for _ in range(5)) == pytest.approx(
         -2e-5

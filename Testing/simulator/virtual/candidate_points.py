@@ -110,10 +110,10 @@ class CandidatePoints:
         """The point is not farther away than that."""
         self._keep(self._away(at) < most_m + UNSURE_M)
 
-    def is_away(self, at: np.ndarray, told_m: float, way: np.ndarray) -> None:
+    def is_away(self, at: np.ndarray, shown_m: float, direction: np.ndarray) -> None:
         """The point is about that far away, in about that direction."""
-        is_ahead = (self.all - at) @ way > -UNSURE_M
-        self._keep((np.abs(self._away(at) - told_m) < 0.0025 + UNSURE_M) & is_ahead)
+        is_ahead = (self.all - at) @ direction > -UNSURE_M
+        self._keep((np.abs(self._away(at) - shown_m) < 0.0025 + UNSURE_M) & is_ahead)
 
     def is_off_path(self, at: np.ndarray) -> None:
         """The tip is beside the path from the last point to the next."""

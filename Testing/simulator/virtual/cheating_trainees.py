@@ -194,24 +194,24 @@ class Pilot:
         end = above - self._center
         start = start * (1.0 + LIFT_MM / np.linalg.norm(start))
         for share in np.linspace(0.0, 1.0, 9):
-            way = (1.0 - share) * start + share * end
+            toward = (1.0 - share) * start + share * end
             radius = (1.0 - share) * np.linalg.norm(start) + share * np.linalg.norm(end)
-            self.move(self._center + radius * way / np.linalg.norm(way), BRISK_MM_S)
+            self.move(self._center + radius * toward / np.linalg.norm(toward), BRISK_MM_S)
         self.move(place, SLOW_MM_S)
 
     def slide_to(self, place: np.ndarray) -> bool:
         """Drag the tip over the skin; return whether it came within a millimeter."""
         least, stuck = np.inf, 0
         for _ in range(round(MAX_DRAG_S / DT)):
-            way = place - self.tip
-            away = float(np.linalg.norm(way))
+            to_goal = place - self.tip
+            away = float(np.linalg.norm(to_goal))
             if away < 1.0:
                 return True
             least, stuck = (away, 0) if away < least - 0.05 else (least, stuck + 1)
             if stuck * DT > 1.0:
                 return False
             outward = self._outward_at_tip()
-            along = way - outward * float(way @ outward)
+            along = to_goal - outward * float(to_goal @ outward)
             velocity = DRAG_MM_S * along / max(float(np.linalg.norm(along)), 1e-9)
             if self._simulation.state.proximity is not Proximity.CONTACT:
                 velocity = velocity - DRAG_PUSH_MM_S * outward

@@ -43,7 +43,7 @@ class Picture:
 
     Attributes:
         axes: (3, 3) float, rows: right, up and ahead in World, as the room behind shows them.
-        pixel_m: size of a pixel at what is looked at, from the drawn size of the marks.
+        pixel_m: size of a pixel at the object in view, from the drawn size of the marks.
         spots: where things are seen, in m right and up of the picture's middle, at that distance:
             "fiducial", "number", "tip", and "head", the middle of its outline.
     """

@@ -209,13 +209,13 @@ class ReadingTrainee:
         """Go to the middle of where the touch counts, along one direction and then across it."""
         out = outward(self._at)
         first = _unit(np.cross(out, (0.0, 1.0, 0.0)))
-        for way in (first, np.cross(out, first)):
-            there = self._along_where_it_counts(way)
-            back = self._along_where_it_counts(-way)
+        for direction in (first, np.cross(out, first)):
+            there = self._along_where_it_counts(direction)
+            back = self._along_where_it_counts(-direction)
             if there and back:
                 self._creep_to((there[-1] + back[-1]) / 2.0)
 
-    def _along_where_it_counts(self, way: np.ndarray) -> list[np.ndarray]:
+    def _along_where_it_counts(self, direction: np.ndarray) -> list[np.ndarray]:
         """Go in one direction along the skin, past where a touch counts; return the positions."""
         places: list[np.ndarray] = []
         for _ in range(CENTER_READS):
@@ -223,7 +223,7 @@ class ReadingTrainee:
                 places.append(self._at)
             elif not self._goes_on or (places and self._is_away_from_point):
                 break
-            self._along_skin(way, CENTER_M_S)
+            self._along_skin(direction, CENTER_M_S)
         return places
 
     def _creep_to(self, place: np.ndarray) -> None:

@@ -1,4 +1,4 @@
-"""What the motion metrics and the score say of honest play and of each way to cheat."""
+"""What the motion metrics and the score say of honest play and of each name to cheat."""
 
 import functools
 
@@ -35,7 +35,7 @@ def honest(setup, task):
 @pytest.fixture(scope="module")
 def cheat(setup, task):
     """A function that plays the task in one of the ways to cheat, each only once."""
-    return functools.cache(lambda way: CHEATS[way](setup, task, SEED))
+    return functools.cache(lambda name: CHEATS[name](setup, task, SEED))
 
 
 def touch_errors(played):
@@ -97,9 +97,9 @@ def test_a_common_aiming_bias_shifts_all_touches_equally_along_the_skin(setup, t
     assert played.record.motion["pressing_depth_mm"] < 0.6
 
 
-@pytest.mark.parametrize("way", CHEATS)
-def test_no_cheat_scores_more_than_40_points_or_passes(setup, cheat, way):
-    score = score_of(setup, cheat(way))
+@pytest.mark.parametrize("name", CHEATS)
+def test_no_cheat_scores_more_than_40_points_or_passes(setup, cheat, name):
+    score = score_of(setup, cheat(name))
     assert score.score <= 40.0
     assert not passes(score.score, score.acceptable, PASS_MARK)
 
@@ -111,10 +111,10 @@ def test_honest_play_is_acceptable_and_scores_far_more(setup, honest):
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize("way", CHEATS)
+@pytest.mark.parametrize("name", CHEATS)
 @pytest.mark.parametrize("head", planned_heads.HEADS)
-def test_no_cheat_scores_more_than_40_points_or_passes_on_another_head(head, way, tmp_path):
+def test_no_cheat_scores_more_than_40_points_or_passes_on_another_head(head, name, tmp_path):
     other = planned_heads.setup_of(head, tmp_path)
-    score = score_of(other, CHEATS[way](other, "task-1", SEED))
+    score = score_of(other, CHEATS[name](other, "task-1", SEED))
     assert score.score <= 40.0
     assert not passes(score.score, score.acceptable, PASS_MARK)

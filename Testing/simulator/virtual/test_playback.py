@@ -52,7 +52,7 @@ def trial(track, setup):
 
 
 class Viewer:
-    """Somebody who watches a playback."""
+    """A viewer of a playback."""
 
     def __init__(self, trial, setup):
         self.playback = Playback(trial, setup)

@@ -33,7 +33,7 @@ PRESSED, AT_REST = 1.0, (0.0,) * 17
 
 
 class Rater:
-    """Somebody at the presenter, with the replays of a study."""
+    """A rater at the presenter, with the replays of a study."""
 
     def __init__(self, folder, study, loader, rater="R1", forms=(GEARS, OSATS), language="en"):
         self.records = folder / RECORDS

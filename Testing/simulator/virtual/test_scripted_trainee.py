@@ -20,7 +20,7 @@ DT = 0.05
         # Coming from below, the arm reaches a point with its shaft at the skin.
         ("egg", "task-3"),
     ],
-    ids=["way under the head", "shaft at the skin"],
+    ids=["path under the head", "shaft at the skin"],
 )
 def test_all_fiducials_are_reached_and_the_tip_never_goes_under_the_head(head, task, tmp_path):
     setup, heights = setup_of(head, tmp_path), []

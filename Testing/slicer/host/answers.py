@@ -64,7 +64,7 @@ class Answers:
         """Show a message box; return the name of the button that the user presses."""
         answer = self.take(title, text)
         if answer is None and len(buttons) > 1:
-            FAILURES.add(f"Nobody has answered this question: {text}")
+            FAILURES.add(f"No answer was prepared for this question: {text}")
             answer = next(name for name in ("Cancel", "No", buttons[-1]) if name in buttons)
         answer = answer or buttons[0]
         if answer not in buttons:
@@ -78,7 +78,7 @@ class Answers:
         """Return the path chosen in a file dialog; an empty one if it is canceled."""
         answer = self.take(caption)
         if answer is None:
-            FAILURES.add(f"Nobody has chosen a file in the dialog “{caption}”.")
+            FAILURES.add(f"No file was prepared for the dialog “{caption}”.")
         return str(answer or "")
 
 

@@ -130,7 +130,7 @@ def waited_for_processor_s() -> float:
 def _ours(frame: FrameType | None) -> list[str]:
     """Return our functions in a stack, the innermost first.
 
-    Without a look at any file: whoever holds a frame for longer keeps what is painted with alive.
+    Without reading any file: holding a frame for longer would keep painters alive.
     """
     names = []
     while frame is not None:

@@ -34,7 +34,7 @@ class LayoutManager(Checked):
     """Stands in for `qSlicerLayoutManager`.
 
     Attributes:
-        layout: number of the layout that is shown, whoever has chosen it.
+        layout: number of the layout that is shown, no matter who has chosen it.
         threeDViewCount: number of 3D views in it.
         plotViewCount: number of plot views in it.
         tableViewCount: number of table views in it.

@@ -2,7 +2,7 @@
 
 It behaves as CTK's launcher, which Slicer renames: it saves the environment that it was started in
 under `APPLAUNCHER_<level>_…`, puts Slicer's folders before what is there, starts the real Python
-as a child, passes no signal on, and tells a child that a signal has ended as status 1. Whoever ends
+as a child, passes no signal on, and reports a child that a signal has ended as status 1. Killing
 the launcher leaves the real Python alone.
 
 Its packages are Slicer's. Those of the tests lie in the same environment, so that they can be

@@ -52,7 +52,7 @@ def replay(tour: Tour) -> str:
     hands = tour.hands
     hands.open("scoreCollapsibleButton")
     hands.click("replayButton")
-    hands.wait_until(lambda: slicer.util.getNodes("Replay of *"), "the replay is there")
+    hands.wait_until(lambda: slicer.util.getNodes("Replay of *"), "the replay is loaded")
     hands.wait_until(lambda: hands.find("worstTouchButton").enabled, "the replay is ready")
     hands.click("worstTouchButton")
     hands.wait_until(lambda: "clearance" in hands.text("replayText"), "the clearance is shown")

@@ -25,7 +25,7 @@ def curriculum(tour: Tour) -> str:
     text = hands.text("curriculumText")
     tour.dialogs.answer("End the curriculum", "Yes")
     hands.click("endCurriculumButton")
-    hands.wait_until(lambda: not table.rowCount, "there is none any more")
+    hands.wait_until(lambda: not table.rowCount, "none is left")
     return text
 
 
@@ -43,7 +43,9 @@ def study(tour: Tour) -> str:
     hands.wait_until(lambda: table.rowCount, "the steps are listed")
     text = hands.text("stepText")
     leads = ("Answer", "Start the step", "Break")
-    hands.wait_until(lambda: hands.text("nextStepButton") in leads, "the button leads on")
+    hands.wait_until(
+        lambda: hands.text("nextStepButton") in leads, "the button leads to the next step"
+    )
     _answer_questionnaire(tour)
     hands.must(table.item(0, 1).text() == "done", "The answers are not kept.")
     tour.dialogs.answer("Skip the step", "This is a tour, not a study.")

@@ -115,7 +115,7 @@ class Hands:
         said = self._unexpected[self._known :]
         self._known = len(self._unexpected)
         if said:
-            raise TourError(f"A dialog has opened that nobody expected: {'; '.join(said)}")
+            raise TourError(f"An unexpected dialog has opened: {'; '.join(said)}")
 
     def must(self, condition: Any, sentence: str) -> None:
         """Raise `TourError` with a message unless something is true."""

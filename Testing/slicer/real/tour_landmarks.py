@@ -24,7 +24,7 @@ def place(tour: Tour) -> str:
     hands.click("removeLandmarkButton")
     hands.wait_until(lambda: table.rowCount == OF_COLIN27 - 1, "one is removed")
     hands.click("undoLandmarkButton")
-    hands.wait_until(lambda: table.rowCount == OF_COLIN27, "it is back")
+    hands.wait_until(lambda: table.rowCount == OF_COLIN27, "the landmark is back")
     hands.choose("landmarkNameComboBox", PLACED)
     _place(tour)
     hands.wait_until(lambda: table.rowCount == OF_COLIN27 + 1, "another one is placed")

@@ -80,7 +80,9 @@ def verify(tour: Tour) -> str:
     """Touch all points once more, and accept the second registration after a checkpoint."""
     hands = tour.hands
     hands.click("registerAgainButton")
-    hands.wait_until(lambda: hands.find("pointsProgressBar").value == 0, "all is open again")
+    hands.wait_until(
+        lambda: hands.find("pointsProgressBar").value == 0, "all points are open again"
+    )
     _touch_all(tour)
     tour.play("--checkpoint", str(CHECKPOINT))
     text = "procedureInstructionText"
@@ -144,9 +146,9 @@ def _advance_and_withdraw(tour: Tour) -> None:
     hands, state = tour.hands, "procedureStateText"
     before = hands.text(state)
     hands.click("advanceButton")
-    hands.wait_until(lambda: ": 1.0 mm" in hands.text(state), f"it goes on from {before}")
+    hands.wait_until(lambda: ": 1.0 mm" in hands.text(state), f"the state changes from {before}")
     hands.click("withdrawButton")
-    hands.wait_until(lambda: ": 0.0 mm" in hands.text(state), "it goes back")
+    hands.wait_until(lambda: ": 0.0 mm" in hands.text(state), "the drill is withdrawn")
 
 
 def _watch_slices(tour: Tour) -> None:

@@ -14,7 +14,7 @@ SETUP_TIMEOUT_S = 1800.0
 WEB_PAGE = """
 import http.server, os, threading
 server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), http.server.SimpleHTTPRequestHandler)
-# Whoever ends Slicer's launcher of Python leaves Python itself alone: it ends by itself.
+# Killing Slicer's launcher of Python does not kill Python itself: it ends by itself.
 threading.Timer(60.0, os._exit, (0,)).start()
 print(server.server_port, flush=True)
 server.serve_forever()
@@ -76,7 +76,7 @@ def create_trainee(tour: Tour) -> str:
     hands.find("pseudonymLineEdit").text = TRAINEE
     hands.check("newConsentCheckBox")
     hands.click("nextStepButton")
-    hands.must(TRAINEE in hands.find("traineeComboBox").currentText, "Nobody is chosen.")
+    hands.must(TRAINEE in hands.find("traineeComboBox").currentText, "No trainee is chosen.")
     for is_active in (False, True):
         hands.click("archiveButton")
         active = [each.pseudonym for each in tour.session.trainees.trainees()]
@@ -157,19 +157,19 @@ def fix_registration(tour: Tour) -> str:
     table = hands.find("residualsTable")
     hands.wait_until(lambda: table.rowCount == 14, "the point is left out")
     hands.click("undoButton")
-    hands.wait_until(lambda: table.rowCount == 15, "it is back")
+    hands.wait_until(lambda: table.rowCount == 15, "the point is back")
     table.selectRow(3)
     hands.click("excludeButton")
     hands.wait_until(lambda: table.rowCount == 14, "another point is left out")
     hands.click("undoButton")
-    hands.wait_until(lambda: table.rowCount == 15, "it is back, too")
+    hands.wait_until(lambda: table.rowCount == 15, "the point is back, too")
     table.selectRow(3)
     hands.find("fleSpinBox").value = FLE_MM
     hands.click("fleButton")
     stated = f"{FLE_MM:.2f}"
     hands.wait_until(lambda: table.item(3, 3).text() == stated, "the point weighs less")
     hands.click("undoButton")
-    hands.wait_until(lambda: table.item(3, 3).text() != stated, "it weighs as much again")
+    hands.wait_until(lambda: table.item(3, 3).text() != stated, "the point has its weight again")
     hands.choose("kindComboBox", "Affine")
     hands.choose("kindComboBox", "Rigid")
     hands.check("headColoredCheckBox")
@@ -184,5 +184,5 @@ def score(tour: Tour) -> str:
     hands.click("nextStepButton")
     hands.open("measuresGroupBox")
     hands.wait_until(lambda: hands.find("scoreTable").rowCount, "the score is shown")
-    hands.wait_until(lambda: "Score" in hands.text("feedbackText"), "the feedback is there")
+    hands.wait_until(lambda: "Score" in hands.text("feedbackText"), "the feedback is shown")
     return hands.text("feedbackText").splitlines()[0]

@@ -44,8 +44,8 @@ def test_the_pairing_code_gives_a_key_and_a_cookie_that_scripts_cannot_read(serv
     assert {"HttpOnly", "SameSite=Strict", "Path=/"} <= set(cookie.split("; "))
     key = cookie.split(";")[0].partition("=")[2]
     assert key.encode() in body
-    for way in (bearer(key), {"Cookie": f"{COOKIE}={key}"}):
-        assert request(served.url, "/sounds/touch.wav", headers=way)[0] == 200
+    for headers in (bearer(key), {"Cookie": f"{COOKIE}={key}"}):
+        assert request(served.url, "/sounds/touch.wav", headers=headers)[0] == 200
 
 
 def test_sounds_are_wav_files(served):

@@ -159,7 +159,7 @@ def test_a_view_that_falls_behind_gets_the_latest_screen_and_not_all_before_it(s
     last = f"{count - 1} {text}"
     messages = view.all_until(lambda m: m["type"] == "screen" and text in str(m) and _is(m, last))
     screens = [message for message in messages if message["type"] == "screen"]
-    assert len(screens) < count / 2, "what nobody read was replaced, not kept"
+    assert len(screens) < count / 2, "what no client read was replaced, not queued"
 
 
 def test_a_view_that_no_longer_reads_does_not_hold_up_the_shutdown(serve, connect):

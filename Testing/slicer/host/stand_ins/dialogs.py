@@ -68,7 +68,7 @@ class QDialog(QtWidgets.QDialog):
     def exec(self) -> int:
         play: Callable[[QtWidgets.QDialog], None] | None = ANSWERS.take(self.windowTitle())
         if play is None:
-            FAILURES.add(f"Nobody has answered the dialog “{self.windowTitle()}”.")
+            FAILURES.add(f"No answer was prepared for the dialog “{self.windowTitle()}”.")
             return 0
         self.show()
         play(self)
@@ -119,7 +119,7 @@ class QInputDialog(QtWidgets.QInputDialog):
             return dialog.textValue() if dialog.exec() else ""
         answer = ANSWERS.take(title, label)
         if answer is None:
-            FAILURES.add(f"Nobody has answered “{label}”.")
+            FAILURES.add(f"No answer was prepared for “{label}”.")
         # The text that the field begins with is the message's details.
         ANSWERS.messages.append(Message(title, label, text, answer or ""))
         return answer or ""
