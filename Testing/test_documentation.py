@@ -196,7 +196,7 @@ def module_at(path: str) -> str:
     return module
 
 
-def test_each_file_of_a_walk_leads_to_another_one_of_it():
+def test_each_file_of_a_walk_leads_to_another_one_in_it():
     walks = modules_of_walks()
     assert len(walks) == 3
     for modules in walks.values():

@@ -144,7 +144,7 @@ def test_the_crash_is_reported_and_the_link_recovers(slicer_side):
     ]
 
 
-def test_the_trial_is_recovered_from_the_journal_and_kept_once(slicer_side):
+def test_the_trial_is_recovered_from_the_journal_and_stored_once(slicer_side):
     with Study.open(slicer_side.study) as study:
         (trial,) = study.history("T-042")
     assert len(slicer_side.scored) == 1

@@ -79,7 +79,7 @@ def test_a_layout_chosen_by_the_user_meanwhile_stays(looking):
     looking.enter()
 
 
-def test_the_users_layout_comes_back_when_the_tables_disappear_with_their_scene(looking):
+def test_the_users_layout_is_restored_when_the_tables_disappear_with_their_scene(looking):
     looking.press("showTablesButton")
     looking.clear_scene()
     looking.wait_until(lambda: not looking.find("showTablesButton").checked, "the button follows")

@@ -131,7 +131,7 @@ def check_saved_scene(path, results):
     assert scene.GetFirstNodeByName("ToolTipToWorld") is None
 
 
-def test_files_are_written_for_a_trial_whose_true_error_nobody_revealed(
+def test_files_are_written_for_a_trial_whose_true_error_was_not_revealed(
     colin_record, tmp_path, monkeypatch
 ):
     captions = []

@@ -83,7 +83,7 @@ def test_a_target_is_placed_on_the_mri_and_lies_where_it_was_placed(host):
     assert 40 < volume.values[i, j, k] < 200
 
 
-def test_the_button_brings_the_mri_back_where_others_are_shown_or_the_scene_was_cleared(host):
+def test_the_button_restores_the_mri_if_others_are_shown_or_the_scene_was_cleared(host):
     show_scenario(host)
     other = host.scene.AddNewNodeByClass(VOLUME, "Another MRI")
     slicer.util.setSliceViewerLayers(background=other)

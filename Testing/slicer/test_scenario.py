@@ -115,7 +115,7 @@ def overwrite_mesh(path, mesh):
     os.utime(path, (later, later))
 
 
-def test_a_scenario_rebuilt_under_its_name_is_shown_anew(scene, planned):
+def test_a_scenario_rebuilt_under_its_name_is_shown_again(scene, planned):
     showScenario(scene, planned)
     showTask(scene, planned, "task-1")
     overwrite_mesh(planned.head_mesh, ball_head(70.0))

@@ -212,7 +212,7 @@ def test_a_simulator_missing_or_damaged_in_the_module_is_reported(setup, source,
     assert not setup.folder.parent.exists()
 
 
-def test_another_modules_simulator_of_the_same_version_is_not_taken_for_this_ones(installed):
+def test_another_modules_simulator_of_the_same_version_is_not_mistaken_for_this_ones(installed):
     assert (installed.installedVersion, installed.isCurrent) == (__version__, True)
     write_package(installed.package.folder, f"{CLI}# Mended.\n")
     assert (installed.installedVersion, installed.isCurrent) == (__version__, False)

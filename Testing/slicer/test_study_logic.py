@@ -401,7 +401,7 @@ def test_answers_given_at_the_simulator_are_stored_once_for_whichever_trainee_is
         {"questionnaire": "dance"},
     ],
 )
-def test_answers_that_do_not_belong_to_the_step_are_not_kept(enrolled, wrong):
+def test_answers_that_do_not_belong_to_the_step_are_not_stored(enrolled, wrong):
     answered(enrolled, **wrong)
     enrolled.tell(phase="running")
     assert enrolled.next == "hmd/before/ssq"

@@ -126,7 +126,7 @@ def test_a_replayed_trace_is_saved_with_the_scene(headless_scene, scene, tmp_pat
     assert node(again.scene, "trace").GetPolyData().GetNumberOfPoints() == 45
 
 
-def test_a_journal_from_another_robot_or_no_journal_at_all_is_reported(scene, tips, tmp_path):  # noqa: ARG001
+def test_a_missing_journal_or_one_from_another_robot_is_reported(scene, tips, tmp_path):  # noqa: ARG001
     chain = readArmChain(URDF)
     longer = chain.origins.copy()
     longer[3, 2, 3] += 10.0

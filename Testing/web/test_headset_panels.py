@@ -159,7 +159,7 @@ BAR = """() => {
 }"""
 
 
-def test_a_bar_tells_that_not_all_items_of_a_menu_are_in_sight(menu):
+def test_a_bar_shows_that_not_all_items_of_a_menu_are_visible(menu):
     assert not menu.evaluate(BAR)
     menu.evaluate("""page.headset.showScreen({ ...page.screen, menu: { ...page.screen.menu,
       items: Array.from({ length: 30 }, (_, number) => ({ ...page.screen.menu.items[0],

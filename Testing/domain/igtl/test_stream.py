@@ -118,7 +118,7 @@ def test_endless_garbage_ends_the_stream_and_takes_no_memory(reader):
     assert reader.refusal
 
 
-def test_header_of_an_unknown_version_is_not_taken_for_a_header(reader):
+def test_header_of_an_unknown_version_is_not_mistaken_for_a_header(reader):
     unknown = header(b"TRANSFORM", 48, version=3) + bytes(48)
     assert reader.feed(pack(STATE) + unknown + pack(TIP)) == [STATE, TIP]
     assert reader.errors == {StreamError.GARBAGE: 1}

@@ -66,7 +66,7 @@ def test_bone_lies_between_its_tables():
     assert bone == pytest.approx((37.0, 44.0))
 
 
-def test_marrow_between_two_tables_is_bone_and_what_lies_deeper_is_not():
+def test_marrow_between_two_tables_is_bone_and_deeper_tissue_is_not():
     skull = slabs((47.0, 50.0), (43.5, 44.5), (10.0, 20.0))
     bone = bone_ahead(skull, np.array([1.0, 2.0, 80.0]), -Z, 200.0)
     assert bone == pytest.approx((30.0, 36.5))

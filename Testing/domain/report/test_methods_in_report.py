@@ -113,7 +113,7 @@ def test_methods_are_paired_within_a_mode():
     assert pair.first_means.tolist() == pytest.approx(of_desktop)
 
 
-def test_where_nobody_played_two_methods_nothing_is_tested():
+def test_nothing_is_tested_if_nobody_played_two_methods():
     data = played(methods=("fiducials", "landmarks"))
     by_half = tuple(
         t for t in data.trials if (int(t.trainee[1:]) % 2 == 0) == (t.method == "fiducials")

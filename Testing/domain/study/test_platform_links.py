@@ -42,7 +42,7 @@ def test_forgetting_a_trainee_leaves_nothing_of_their_link(links):
     assert links.users("T002") == [{"issuer": ISSUER, "subject": "u2"}]
 
 
-def test_no_file_is_made_where_nobody_is_linked(links):
+def test_no_file_is_written_if_nobody_is_linked(links):
     links.forget("T001")
     assert links.users("T001") == []
     assert not links.path.exists()

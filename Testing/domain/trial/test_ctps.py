@@ -64,7 +64,7 @@ def test_the_printed_r_squared_are_correlations(published):
     assert f"{published['desktop'].r_squared:.3f}" == "0.845"
 
 
-def test_equation_3_gives_half_of_the_tables(published):
+def test_equation_3_yields_half_of_the_tables(published):
     assert f"{published['hmd'].equation_3_overall:.1f}" == "32.4"
     assert f"{published['desktop'].equation_3_overall:.1f}" == "33.6"
     reference = CohortReference(120.0, 1.0)

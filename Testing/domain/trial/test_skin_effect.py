@@ -65,7 +65,7 @@ def test_the_error_without_the_shift_is_computed_from_the_points_moved_back(scen
     assert unshifted_tre_mm(record, scenario, pose, UNMOVED) is None
 
 
-def test_one_sentence_tells_what_the_shift_was_and_what_it_did(scenario):
+def test_one_sentence_describes_the_shift_and_its_effect(scenario):
     analysis, truth = scored(scenario, SKIN)
     assert truth.true_tre_mm > 0.5
     (sentence,) = analysis.feedback.skin_sentences

@@ -46,7 +46,7 @@ def test_all_distances_are_due_once_something_else_has_moved():
     assert bounds.due(1.0) == [0, 1, 2]
 
 
-def test_a_distance_that_two_moving_parts_close_is_due_after_half_the_way():
+def test_a_distance_that_two_moving_parts_close_is_due_after_half_of_it():
     bounds = DistanceBounds(1, closing=2.0)
     bounds.due(0.0)
     bounds.put_off(0, FAR + 1.0, 0.0)

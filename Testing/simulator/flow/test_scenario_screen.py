@@ -52,7 +52,7 @@ def test_heads_are_listed_with_pictures_and_unusable_ones_say_why(at_heads):
     at_heads.until_menu("experiment")
 
 
-def test_a_chosen_head_is_loaded_and_no_task_begins_meanwhile(at_heads, heads):
+def test_a_chosen_head_is_loaded_and_no_task_begins_until_then(at_heads, heads):
     at_heads.choose("head mine")
     at_heads.until(lambda: at_heads.item("head mine").value == "is being loaded", "the loading")
     assert [name for name, _ in heads.loads] == ["mine"]
@@ -109,7 +109,7 @@ def test_nothing_begins_in_the_menus_while_a_client_loads_a_head(at_heads):
     at_heads.until(lambda: at_heads.item("tutorial").is_enabled, "the tutorial may begin")
 
 
-def test_a_trial_that_is_refused_since_a_head_is_being_loaded_says_so_in_the_trainees_language(
+def test_a_trial_refused_while_a_head_is_being_loaded_says_so_in_the_trainees_language(
     at_heads,
 ):
     session = at_heads.presenter._session

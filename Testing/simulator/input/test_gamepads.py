@@ -31,7 +31,7 @@ def test_each_button_is_reported_by_sdls_name_alone(gamepads, ear, plugged, butt
 
 
 @pytest.mark.parametrize("axis", AXES[:4])
-def test_each_direction_of_a_stick_is_an_input_of_its_own(gamepads, ear, plugged, axis):
+def test_each_direction_of_a_stick_is_a_separate_input(gamepads, ear, plugged, axis):
     gamepad, _felt = plugged
     for position, pushed, rests in ((0.5, "+" + axis, "-" + axis), (-1.0, "-" + axis, "+" + axis)):
         gamepad.move(**{axis: position})

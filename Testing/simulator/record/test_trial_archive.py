@@ -104,7 +104,7 @@ def test_the_truth_of_an_older_trial_is_revealed_only_for_a_registration(tmp_pat
     assert after["seed"] == 7
 
 
-def test_once_the_truth_of_an_older_trial_is_revealed_nobody_registers_it_again(tmp_path):
+def test_an_older_trial_is_not_registered_again_once_its_truth_is_revealed(tmp_path):
     write_trial(tmp_path)
     for archive in (TrialArchive(tmp_path), TrialArchive(tmp_path)):
         data = archive.answer(CommandName.SUBMIT_REGISTRATION, REGISTRATION, NOW)

@@ -262,7 +262,7 @@ def test_a_registration_that_arrives_twice_is_answered_twice_and_stored_once(sce
 
 
 @pytest.mark.parametrize("phase", [Phase.REGISTERED, Phase.SCORED])
-def test_nobody_registers_again_once_the_truth_is_revealed(scenario, phase):
+def test_no_trial_is_registered_again_once_the_truth_is_revealed(scenario, phase):
     trial = in_phase(scenario, phase)
     revealed = trial.do(CommandName.SUBMIT_REGISTRATION, **REGISTRATION).data
     truth = tuple(np.linalg.inv(trial.training.truth.head_to_world).ravel())

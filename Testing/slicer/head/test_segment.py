@@ -64,7 +64,7 @@ def ball_errors(mesh):
     return np.abs(np.linalg.norm(upper - CENTER, axis=1) - RADIUS)
 
 
-def test_a_head_comes_back_from_its_segment_with_the_base_that_was_shown(node, found):
+def test_a_head_made_from_its_segment_has_the_base_that_was_shown(node, found):
     showSegment(node, found)
     segment = showSegment(node, found)
     assert node.GetSegmentation().GetNumberOfSegments() == 1
