@@ -12,7 +12,7 @@ from rastrainer.igtl.content import ERROR_KEY, STATUS_KEY, SUCCESS
 from rastrainer_headless.peer_sockets import recordCrash
 
 WireText = str | bytes
-"""Python gets a text of VTK's as `bytes` where it is not UTF-8."""
+"""Python gets a text of VTK's as `bytes` if it is not UTF-8."""
 
 
 class HeadlessCommand(vtk.vtkObject):

@@ -134,7 +134,7 @@ _NEW_NODE_CLASS = {**NODE_CLASS, Transform.TYPE: "vtkMRMLLinearTransformNode"}
 
 
 def asSlicerHas(text: str) -> str | bytes:
-    """Return a text of a message as VTK hands it to Python: as bytes where it is not UTF-8."""
+    """Return a text of a message as VTK hands it to Python: as bytes if it is not UTF-8."""
     data = text.encode("utf-8", "surrogateescape")
     try:
         return data.decode("utf-8")

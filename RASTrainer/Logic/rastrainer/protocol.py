@@ -242,4 +242,4 @@ STAND_OFF_LIMIT_MM = 80.0
 SKIN_LIMIT_MM = 20.0
 SKIN_KEYS = ("shiftMm", "indentationMm")
 FEED_LIMIT_MM_S = 50.0
-"""Of `Feed`; drill and instrument have lower limits of their own."""
+"""Of `Feed`; drill and instrument have their own, lower limits."""

@@ -166,7 +166,7 @@ _TABLES: Mapping[InputDevice, Mapping[str, Table]] = {
 
 
 def presets_of(device: InputDevice) -> Mapping[str, Table]:
-    """Return a device's layouts by their names; keys have none of their own for the left-handed."""
+    """Return a device's layouts by their names; keys have none specifically for the left-handed."""
     return _TABLES[device]
 
 

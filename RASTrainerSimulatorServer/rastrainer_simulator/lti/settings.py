@@ -31,7 +31,7 @@ LOGIN, LAUNCH, KEYS = "/login", "/launch", "/jwks"
 
 
 def https_url(value: Any) -> str:
-    """Accept the address of a page: https, but for this computer, without a name or password."""
+    """Accept the address of a page: https, except on this computer, without a name or password."""
     try:
         parts = urlsplit(text(500)(value))
         is_usable = bool(parts.hostname) and not ("@" in parts.netloc or parts.fragment)

@@ -1,4 +1,4 @@
-"""Arrays as VTK's surfaces and back, smooth but for sharp edges; solids for furniture, in m."""
+"""Arrays as VTK's surfaces and back, smooth except at sharp edges; solids for furniture, in m."""
 
 from __future__ import annotations
 

@@ -175,7 +175,7 @@ def read_procedures(fields: Fields) -> tuple[Procedure, ...]:
 
 
 def read_procedure(path: Path) -> Procedure:
-    """Return the procedure in a file of its own, written as in a scenario's list.
+    """Return the procedure as a separate file, written as in a scenario's list.
 
     Meshes are only named, not read; they are in the folder `no-go` beside the file.
 

@@ -1,4 +1,4 @@
-"""Commands on their way to the simulator, and messages that have arrived from it.
+"""Commands in transit to the simulator, and messages that have arrived from it.
 
 Each command gets exactly one reply, whatever happens; what has arrived is emitted little by little.
 """

@@ -113,7 +113,7 @@ class ScenarioCache:
 
 
 def _stamp(folder: Path) -> int:
-    """Return when a scenario was written, ns; 0 where it is not there."""
+    """Return when a scenario was written, ns; 0 if it does not exist."""
     try:
         return (folder / FILE_NAME).stat().st_mtime_ns
     except OSError:
