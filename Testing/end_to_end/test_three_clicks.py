@@ -95,7 +95,7 @@ def test_the_button_leads_through_the_trial_to_its_score_and_the_next_task(set_u
     assert open_sections(host) == ["training"]
     play(player, host)
     press_next(host, "Show result", until="Start Task 1")
-    assert "task-1" in host.find("trialComboBox").currentText
+    assert "Task 1" in host.find("trialComboBox").currentText
 
 
 def test_the_simulator_is_set_up_first_after_confirmation(host, tmp_path, options):

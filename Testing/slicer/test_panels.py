@@ -182,7 +182,8 @@ def test_history_is_shown_plotted_and_exported(panels, add_trial, tmp_path):
         add_trial(number, "T-001", completionTimeS=100.0 - number)
     panels.press("createTraineeButton")
     panels.choose("traineeComboBox", "T-001")
-    assert [row[3] for row in cells(panels, "historyTable")] == ["99.0", "98.0", "97.0"]
+    rows = cells(panels, "historyTable")
+    assert [row[2:4] for row in rows] == [["Task 1", time] for time in ("99.0", "98.0", "97.0")]
     panels.press("learningCurveButton")
     chart = findNode(panels.scene, "vtkMRMLPlotChartNode", Role.LEARNING_CURVE)
     assert chart.GetNumberOfPlotSeriesNodes() == 2
@@ -425,7 +426,7 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     add_trial(2, "T-001")
     panels.press("createTraineeButton")
     panels.choose("traineeComboBox", "T-001")
-    assert panels.find("trialComboBox").currentText.startswith("2: task-1")
+    assert panels.find("trialComboBox").currentText.startswith("2: Task 1")
     measures = [row[0] for row in cells(panels, "scoreTable")]
     assert measures[0] == "Score"
     tip = panels.find("scoreTable").item(measures.index("Expected TRE"), 0).toolTip()
@@ -434,7 +435,7 @@ def test_a_trial_is_scored_beside_the_reference_group_and_exported(
     assert "rises with a slower completion" in panels.text("ctpsText")
     groups = {row[2] for row in cells(panels, "standingsTable")}
     assert groups == {"own", "reference"}
-    panels.choose("trialComboBox", "1: task-1")
+    panels.choose("trialComboBox", "1: Task 1")
     assert cells(panels, "motionTable") == [["Smoothness, SPARC", "−1.90"]]
     panels.press("showTablesButton")
     assert findNode(panels.scene, "vtkMRMLTableNode", Role.SCORE) is not None

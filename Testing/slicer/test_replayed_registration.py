@@ -13,6 +13,7 @@ from rastrainer.protocol import DeviceName
 from rastrainer.scenario.scenario import load_scenario
 from rastrainer.slicer.scene.nodes import capturedPointsNode
 from rastrainer.study.database.study import Study
+from rastrainer.study.outcomes import task_title
 from rastrainer_simulator.assets import asset_path
 from Testing.slicer.recorded_trial import scored_analysis, write_recorded_trial
 from Testing.slicer.simulator_double import SimulatorDouble
@@ -51,7 +52,7 @@ def trials(host, make_record):
 
 def replay(host, trials, number, task):
     """Replay a trial and wait until its own touches are registered."""
-    host.choose("trialComboBox", f"{number}: {task}")
+    host.choose("trialComboBox", f"{number}: {task_title(task)}")
     host.press("replayButton")
     expected = pytest.approx(trials[task], abs=0.01)
     host.wait_until(lambda: shown_fre(host) == expected, f"the touches of {task} are registered")

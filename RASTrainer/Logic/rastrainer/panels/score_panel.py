@@ -38,6 +38,7 @@ from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
 from rastrainer.study.database.database import StudyPlace
 from rastrainer.study.database.values import StoredTrial
+from rastrainer.study.outcomes import short_mode_title, task_title
 from rastrainer.study.study_data import read_study_data
 from rastrainer.trial.analysis import TrialAnalysis
 from rastrainer.trial.ctps import CTPS_WARNING
@@ -206,7 +207,9 @@ class ScorePanel:
             _("Choose a trainee with a scored trial.")
             if trial is None
             else _("{trainee}, {task}, {mode}").format(
-                trainee=trial.record.trainee, task=trial.record.task, mode=trial.record.mode
+                trainee=trial.record.trainee,
+                task=task_title(trial.record.task),
+                mode=short_mode_title(trial.record.mode),
             )
         )
 
@@ -289,7 +292,9 @@ def _reportOn(study: StudyPlace, folder: Path) -> Path:
 
 def _entry(number: int, trial: StoredTrial) -> str:
     return _("{number}: {task}, {day}").format(
-        number=number, task=trial.record.task, day=trial.record.started_utc[:16].replace("T", " ")
+        number=number,
+        task=task_title(trial.record.task),
+        day=trial.record.started_utc[:16].replace("T", " "),
     )
 
 

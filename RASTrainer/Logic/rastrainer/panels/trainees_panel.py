@@ -30,6 +30,7 @@ from rastrainer.slicer.translation import _
 from rastrainer.study.database.aborted_trials import StoredAbortedTrial
 from rastrainer.study.database.database import EXAMPLE, study_place
 from rastrainer.study.database.values import StoredTrial, Trainee, day_of
+from rastrainer.study.outcomes import short_mode_title, task_title
 
 
 class TraineesPanel:
@@ -310,10 +311,11 @@ def _aborted(aborted: Sequence[StoredAbortedTrial]) -> str:
 
 def _historyRow(number: int, trial: StoredTrial) -> tuple[str, ...]:
     record = trial.record
+    task = task_title(record.task)
     return (
         str(number),
         record.started_utc[5:16].replace("T", " "),
-        record.task if record.mode == Mode.DESKTOP.value else f"{record.task}, {record.mode}",
+        task if record.mode == Mode.DESKTOP.value else f"{task}, {short_mode_title(record.mode)}",
         f"{record.completion_time_s:.1f}",
         millimeters(trial.true_tre_mm).removesuffix(" mm"),
         "–" if trial.score is None else f"{trial.score.score:.1f}",

@@ -42,6 +42,7 @@ from rastrainer.slicer.settings import (
 )
 from rastrainer.slicer.signal import Listening
 from rastrainer.slicer.translation import _
+from rastrainer.study.outcomes import task_title
 
 PHASES = {
     Phase.IDLE.value: _("no trial is open"),
@@ -181,7 +182,7 @@ class TrainingPanel:
                 setText(label, "–")
             setSentence(ui.instructionText, "")
             return
-        trial = f"{shortName(progress.trainee)}, {shortName(progress.task)}"
+        trial = f"{shortName(progress.trainee)}, {shortName(task_title(progress.task))}"
         setText(ui.trialText, trial if progress.trainee else "–")
         setText(ui.phaseText, PHASES.get(progress.phase, progress.phase))
         ui.pointsProgressBar.maximum = progress.total
