@@ -169,7 +169,7 @@ def test_nothing_is_estimated_from_three_trainees():
 
 
 def test_the_report_has_a_table_of_variation_with_n():
-    page = report_html(drawn())
+    page = report_html(drawn()).replace("\N{NO-BREAK SPACE}", " ")
     assert "What completion time and error vary with" in page
     assert "120 trials of the 12 trainees who did every mode" in page
     assert "Trainee × mode (SD)" in page
