@@ -56,24 +56,35 @@ class Watcher:
 
 
 class LockStep:
-    """Lets a control loop tick only when a test wants it: nothing depends on how fast it is."""
+    """Lets a control loop tick only when a test wants it: nothing depends on how fast it is.
+
+    Between two ticks the loop waits where all its subscribers have been called: what the test sees
+    of the loop is what they have seen.
+    """
 
     def __init__(self, loop):
         self._loop = loop
         self._go, self._done = threading.Semaphore(0), threading.Semaphore(0)
-        self._is_free = False
-        loop.subscribe(self._tick)
+        self._is_free = self._has_waited = False
+        self._tick_alone, loop._tick = loop._tick, self._tick
 
     def tick(self) -> None:
+        if not self._has_waited:
+            self._wait_for_loop()
+            self._has_waited = True
         self._go.release()
-        assert self._done.acquire(timeout=PATIENCE_S), "the control loop has stopped"
+        self._wait_for_loop()
 
     def free(self) -> None:
         """Let the loop run alone."""
         self._is_free = True
         self._go.release()
 
-    def _tick(self, _result) -> None:
+    def _wait_for_loop(self) -> None:
+        assert self._done.acquire(timeout=PATIENCE_S), "the control loop has stopped"
+
+    def _tick(self) -> None:
+        self._tick_alone()
         if not self._is_free:
             self._done.release()
             # A test that has failed stops the loop without freeing it.
