@@ -105,7 +105,7 @@ def test_a_teacher_adds_a_seat_by_keyboard_sees_it_change_gives_orders_and_remov
     presenter = simulator.served.presenter
     presenter.reported_seat = AT_WORK
     page = open_board(browser, board)
-    assert page.locator("#empty").is_visible()
+    page.wait_for_selector("#empty:not([hidden])")
     page.focus("#add")
     page.keyboard.press("Enter")
     page.keyboard.type("Window 3")
