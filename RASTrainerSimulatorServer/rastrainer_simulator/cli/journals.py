@@ -66,7 +66,7 @@ def run_measure(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json_text(motion))
         return 0
-    known = [MOTION_METRICS[name] for name in MOTION_METRICS if name in motion]
+    known = [metric for name, metric in MOTION_METRICS.items() if name in motion]
     rows = [[d.title, f"{motion[d.name]:.4g}", d.unit] for d in known]
     print(f"{arguments.journal}: {reading.sentence}\n{text_table(['', 'value', 'unit'], rows)}")
     if arguments.explain:

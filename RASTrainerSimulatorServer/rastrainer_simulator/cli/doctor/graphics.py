@@ -123,8 +123,9 @@ def check_graphics(probe: Sequence[str] = ()) -> Iterator[CheckResult]:
         reason = (done.stderr.strip().splitlines() or [f"it ended with {done.returncode}"])[-1]
         yield _failure(f"OpenGL does not work: {reason}")
         return
-    _kind, _colon, renderer = answers[0].partition(": ")
-    if answers[0].startswith(_SOFTWARE_RENDERER):
+    answer = answers[0]
+    renderer = answer.partition(": ")[2]
+    if answer.startswith(_SOFTWARE_RENDERER):
         yield CheckResult(
             "graphics",
             CheckStatus.WARNING,
