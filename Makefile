@@ -22,6 +22,9 @@ simulator: .venv/installed page
 # OpenBLAS computes in one thread: several in each of many processes only wait for one another, which
 # took three times the processors' time.
 ONE_THREAD := OPENBLAS_NUM_THREADS=1
+# What failed runs once more, alone, if AGAIN is set: see Testing/run_again.py.
+AGAIN ?=
+RUN_AGAIN := $(if $(AGAIN),-p Testing.run_again)
 AS_SLOW := $(if $(SLOW),RASTRAINER_SLOW=$(SLOW) PYTHONPATH=$(CURDIR)/Testing/slow_machine)
 
 # A test that hangs says where and ends the run, and so does a worker that crashes: xdist would wait
@@ -31,7 +34,7 @@ ENDING := --max-worker-restart=0 -o faulthandler_timeout=900 -o faulthandler_exi
 
 test: .venv/test-installed page
 	$(BIN)/python tools/system_packages.py test
-	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(AS_SLOW) $(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder $(ENDING) -q
+	$(ONE_THREAD) PYTHONDONTWRITEBYTECODE= RASTRAINER_KINEMATICS=$(KINEMATICS) $(AS_SLOW) $(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder $(ENDING) $(RUN_AGAIN) -q
 
 # What takes minutes to hours: attacks, crashes, cut links, whole trials in the headset.
 soak: .venv/soak-installed page
