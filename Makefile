@@ -8,7 +8,7 @@ BIN := .venv/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 VENV_PYTHON := $(BIN)/python$(if $(filter Windows_NT,$(OS)),.exe)
 UNAME := $(shell uname 2>/dev/null)
 
-.PHONY: demo test soak bench simulator extension lint format docs lock audit page clean
+.PHONY: demo test soak bench simulator extension extension-repository lint format docs lock audit page clean
 
 demo: .venv/installed
 	$(BIN)/python tools/system_packages.py demo
@@ -49,6 +49,10 @@ bench: .venv/bench-installed page
 # What Slicer's extension needs beyond the sources: the simulator's wheel, put beside its module.
 extension: .venv/installed
 	$(BIN)/python tools/simulator_wheel.py
+
+# The repository that Slicer's Extensions Index registers: see docs/release.md.
+extension-repository: .venv/installed
+	$(BIN)/python tools/extension_repository.py
 
 page: .venv/installed
 	$(BIN)/python tools/build_page.py

@@ -34,7 +34,7 @@ class RASTrainer(ScriptedLoadableModule):
         parent.categories = [translate("qSlicerAbstractCoreModule", "Training")]
         parent.dependencies = []
         parent.contributors = [
-            "RASTrainer organization (https://github.com/RASTrainer/SlicerRASTrainer/issues)"
+            "RASTrainer organization (https://github.com/RASTrainer/RASTrainer/issues)"
         ]
         parent.helpText = _(
             "A trainee drives a simulated robot to fifteen numbered points on a head and touches "
@@ -42,7 +42,7 @@ class RASTrainer(ScriptedLoadableModule):
             "points in the patient's MRI, and the trial is scored and kept. Patients' images in "
             "DICOM are loaded with Slicer's module DICOM; nothing is sent anywhere. Not for "
             "clinical use. See more information in "
-            '<a href="https://github.com/RASTrainer/SlicerRASTrainer">the documentation</a>.'
+            '<a href="https://github.com/RASTrainer/RASTrainer">the documentation</a>.'
         )
         parent.acknowledgementText = _(
             "Method, tasks and the score CTPS follow the paper <i>Virtual reality-based training "

@@ -1,9 +1,7 @@
 """What CMake installs, by the extension's own lists: complete, and it opens."""
 
-import hashlib
 import json
 import os
-import shutil
 import subprocess
 import sys
 from importlib import import_module
@@ -17,10 +15,9 @@ from rastrainer.slicer.program.simulator_package import WHEEL, SimulatorPackage
 ROOT = Path(__file__).parents[2]
 STUB = Path(__file__).parent / "cmake"
 MODULES = Path("lib", "Slicer-5.13", "qt-scripted-modules")
-PARTS = ("RASTrainer", "assets/robots/iiwa7", "assets/scenarios/colin27", "assets/studies")
-FILES = ("CMakeLists.txt", "LICENSE.txt", "NOTICE.md")
+ASSETS = ("robots/iiwa7", "scenarios/colin27", "studies")
 sys.path.insert(0, str(ROOT / "tools"))
-simulator_wheel = import_module("simulator_wheel")
+extension_repository = import_module("extension_repository")
 
 LARGER_APPLICATION = """
 cmake_minimum_required(VERSION 3.20)
@@ -29,34 +26,17 @@ add_subdirectory("{source}" extension)
 """
 
 
-def make_checkout(folder):
-    """Return a fresh clone of what CMake reads, without the simulator's wheel."""
-    without = shutil.ignore_patterns("*.whl*", "__pycache__")
-    for part in PARTS:
-        shutil.copytree(ROOT / part, folder / part, ignore=without)
-    for name in FILES:
-        shutil.copy(ROOT / name, folder / name)
-    return folder
-
-
-def make_extension(checkout, wheel):
-    """Do in a clone what `make extension` does; return the clone."""
-    simulator_wheel.copy_beside_module(
-        wheel, checkout / "RASTrainer" / "Resources" / "RASTrainerSimulator"
-    )
-    return checkout
+@pytest.fixture
+def repository(built_wheel, tmp_path):
+    """The tree that Slicer's Extensions Index registers."""
+    extension_repository.write_tree(built_wheel, tmp_path / "clone")
+    return tmp_path / "clone"
 
 
 @pytest.fixture
-def checkout(tmp_path):
-    """A fresh clone."""
-    return make_checkout(tmp_path / "clone")
-
-
-@pytest.fixture
-def with_wheel(checkout, built_wheel):
-    """A clone in which `make extension` has run."""
-    return make_extension(checkout, built_wheel)
+def wheel(repository):
+    """The wheel in it."""
+    return repository / "RASTrainer" / "Resources" / "RASTrainerSimulator" / WHEEL
 
 
 def configure(source, build, *options):
@@ -76,8 +56,8 @@ def install(build, tree):
 def tree(built_wheel, tmp_path_factory):
     """The folder of modules in an installed tree, which tests only read."""
     folder = tmp_path_factory.mktemp("installed")
-    clone = make_extension(make_checkout(folder / "clone"), built_wheel)
-    status, said = configure(clone, folder / "build")
+    extension_repository.write_tree(built_wheel, folder / "clone")
+    status, said = configure(folder / "clone", folder / "build")
     assert status == 0, said
     return install(folder / "build", folder / "tree")
 
@@ -89,34 +69,20 @@ def relative(folder, pattern="*"):
 
 
 def test_without_the_simulators_wheel_there_is_no_package_and_a_message_says_how_to_build_it(
-    checkout, tmp_path
+    repository, wheel, tmp_path
 ):
-    status, said = configure(checkout, tmp_path / "build")
+    wheel.unlink()
+    status, said = configure(repository, tmp_path / "build")
     assert status != 0
-    assert f"The simulator's wheel {WHEEL} is missing. Build it, in {checkout}, by:" in said
+    assert f"The simulator's wheel {WHEEL} is missing. Build it, in {repository}, by:" in said
     assert "make extension" in said
 
 
-def test_a_wheel_other_than_the_one_that_was_built_is_refused(with_wheel, tmp_path):
-    wheel = with_wheel / "RASTrainer" / "Resources" / "RASTrainerSimulator" / WHEEL
+def test_a_wheel_other_than_the_one_that_was_built_is_refused(repository, wheel, tmp_path):
     wheel.write_bytes(wheel.read_bytes() + b"more")
-    status, said = configure(with_wheel, tmp_path / "build")
+    status, said = configure(repository, tmp_path / "build")
     assert status != 0
     assert f"is not the file that {WHEEL}.sha256 notes" in said
-
-
-def test_slicers_build_uses_the_released_wheel_by_its_hash(checkout, built_wheel, tmp_path):
-    digest = hashlib.sha256(built_wheel.read_bytes()).hexdigest()
-    address = f"-DRASTrainer_SIMULATOR_WHEEL_URL={built_wheel.as_uri()}"
-    hashed = "-DRASTrainer_SIMULATOR_WHEEL_SHA256="
-    status, said = configure(checkout, tmp_path / "other", address, f"{hashed}{'0' * 64}")
-    assert status != 0, said
-    status, said = configure(checkout, tmp_path / "build", address, f"{hashed}{digest}")
-    assert status == 0, said
-    modules = install(tmp_path / "build", tmp_path / "tree")
-    package = SimulatorPackage.of(modules)
-    assert package.digest() == digest
-    assert "rastrainer @ file://" in package.requirements()
 
 
 def test_the_installed_tree_holds_the_whole_module(tree):
@@ -127,12 +93,12 @@ def test_the_installed_tree_holds_the_whole_module(tree):
 
 def test_the_installed_tree_holds_everything_that_the_scenario_and_the_robot_reference(tree):
     installed = tree / "Resources" / "RASTrainer"
-    for part in PARTS[1:]:
-        assert relative(installed / part.removeprefix("assets/")) == relative(ROOT / part)
+    for part in ASSETS:
+        assert relative(installed / part) == relative(ROOT / "assets" / part)
     scenario = installed / "scenarios" / "colin27"
     described = json.loads((scenario / "scenario.json").read_text(encoding="utf-8"))
     files = [described["head"], described["volume"]["file"]]
-    files += [f"tasks/{task}" for task in relative(ROOT / PARTS[2] / "tasks")]
+    files += [f"tasks/{task}" for task in relative(scenario / "tasks")]
     assert [name for name in files if not (scenario / name).is_file()] == []
 
 
@@ -146,10 +112,10 @@ def test_the_installed_tree_includes_the_simulator_and_the_licenses_of_everythin
         assert installed.read_bytes() == (ROOT / name).read_bytes()
 
 
-def test_as_part_of_a_larger_application_everything_lies_beside_the_module(with_wheel, tmp_path):
+def test_as_part_of_a_larger_application_everything_lies_beside_the_module(repository, tmp_path):
     larger = tmp_path / "larger"
     larger.mkdir()
-    text = LARGER_APPLICATION.format(source=with_wheel)
+    text = LARGER_APPLICATION.format(source=repository)
     (larger / "CMakeLists.txt").write_text(text, encoding="utf-8")
     status, said = configure(larger, tmp_path / "build")
     assert status == 0, said
